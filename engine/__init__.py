@@ -24,15 +24,15 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     (2), (15)       continuous logarithm           engine.paths.complex_log.continue_logarithm
     Section 7.2     branch at the anchor           engine.paths.complex_log.root_sheets
     Section 4.1     harmonic in-betweens           engine.interpolation.inbetweens.Inbetweens
-    (3)             logarithmic blend of f_z       engine.interpolation.passage.derivatives.Passage
+    (3)             logarithmic blend of f_z       engine.interpolation.keyframe_blend.derivatives.KeyframeBlend
     (4), (5)        ν variant                      engine.interpolation.blends.nu.NuBlend
     (6), (7)        η variant                      engine.interpolation.blends.eta.EtaBlend
     (8)             scaled η variant               engine.interpolation.inbetweens.Inbetweens
-    (16)            ρ within k at a point          engine.interpolation.scaling.pointwise.allowed
-    (17)            ρ within σ_a                   engine.interpolation.scaling.pointwise.allowed
-    (18)            ρ within σ_b                   engine.interpolation.scaling.pointwise.allowed
-    Section 7.3     largest ρ(t) of the outline    engine.interpolation.scaling.sharp.SharpScaling
-    Property 4      ρ(t) without kinks             engine.interpolation.scaling.smooth.Scaling
+    (16)            ρ within k at a point          engine.interpolation.scaling.pointwise.largest_rho
+    (17)            ρ within σ_a                   engine.interpolation.scaling.pointwise.largest_rho
+    (18)            ρ within σ_b                   engine.interpolation.scaling.pointwise.largest_rho
+    Section 7.3     largest ρ(t) of the outline    engine.interpolation.scaling.exact_rho.ExactRho
+    Property 4      ρ(t) without kinks             engine.interpolation.scaling.smoothed_rho.SmoothedRho
     (9), (13)       metric on the outline          engine.interpolation.blends.outline.OutlineMetric
     (10), (11)      σ_a, σ_b of the metric         engine.interpolation.blends.outline.OutlineMetric
     (12)            K of the metric, Lemma 7       engine.interpolation.blends.outline.OutlineMetric

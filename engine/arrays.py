@@ -63,14 +63,14 @@ def readonly(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
     return freeze(np.array(array, order="C"))
 
 
-def ragged(counts: Indices) -> tuple[Indices, Indices]:
+def ragged_indices(counts: Indices) -> tuple[Indices, Indices]:
     """Return, for groups of these sizes one after the other, each entry's group and place in it."""
     group = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
     return group, place
 
 
-def held_bytes(*things: object, but: Iterable[object] = ()) -> int:
+def nbytes_of(*things: object, but: Iterable[object] = ()) -> int:
     """Return the memory of the arrays that things are made of, each counted once, in bytes.
 
     Things are arrays, also sparse ones, dataclasses, and tuples of them; what `but` is made of is

@@ -110,8 +110,8 @@ def test_a_sample_on_layers_is_what_its_script_says(name):
     carrier = joints.placement(head.id, frame)
     moved = Animation(clip_of(document, head.id), points=at).positions(frame)
     own = Animation(clip_of(document, laugh.id), points=np.array([laugh.anchor]))
-    held = joints.placement(laugh.id, frame).on(own.positions(frame))
-    assert_allclose(held, carrier.on(moved), rtol=0, atol=1e-9 * 1500)
+    held = joints.placement(laugh.id, frame).apply(own.positions(frame))
+    assert_allclose(held, carrier.apply(moved), rtol=0, atol=1e-9 * 1500)
 
 
 def test_the_octopus_crosses_its_arms_one_way_and_then_the_other():

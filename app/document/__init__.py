@@ -9,7 +9,6 @@ from app.document.checks import LAST_FRAME as LAST_FRAME
 from app.document.commands import (
     Command as Command,
     PoseReplacement as PoseReplacement,
-    choice_commands as choice_commands,
     combine_commands as combine_commands,
     cycle_commands as cycle_commands,
     filming_commands as filming_commands,
@@ -20,7 +19,8 @@ from app.document.commands import (
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
-    stiffness_commands as material_commands,
+    stiffness_commands as stiffness_commands,
+    switch_group_commands as switch_group_commands,
     track_commands as track_commands,
     with_all_targets as with_all_targets,
     with_number as with_number,

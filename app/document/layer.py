@@ -347,7 +347,7 @@ class Layer:
         """Tell whether a pose is proven to keep the bounds of now."""
         proven = pose.certificate
         # The solver proves a pose for the limits of its time, which it may have had to widen.
-        return proven.certified and self.bounds.allow(
+        return proven.is_certified and self.bounds.allow(
             k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
@@ -476,7 +476,7 @@ def rest_pose(domain: MeshedDomain, handles: Iterable[Handle]) -> Pose:
     """Return the pose of a drawing as it was drawn, with its handles where they grip."""
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     targets = {each.id: Target(position=each.position) for each in handles}
-    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, certified=True)
+    undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, is_certified=True)
     return Pose.of(rest, targets, undistorted)
 
 

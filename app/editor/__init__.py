@@ -5,40 +5,44 @@ Out: a `Session`: the document, what is shown of it, and what is under way.
 Imports: every room below but the command line and the panels.
 """
 
-from app.editor import failures as failures, layering as layering, promises as promises
+from app.editor import (
+    error_reports as error_reports,
+    layering as layering,
+    pending_changes as pending_changes,
+)
 from app.editor.action import Action as Action, do as do
 from app.editor.dialogs import (
     Dialog as Dialog,
     FileDialog as FileDialog,
-    Leftover as Leftover,
     ProblemReport as ProblemReport,
     Question as Question,
-    Recovery as Recovery,
+    RecoverableFile as RecoverableFile,
+    RecoveryDialog as RecoveryDialog,
     ShortcutSheet as ShortcutSheet,
 )
-from app.editor.failures import sentence as sentence
+from app.editor.error_reports import as_sentence as as_sentence
 from app.editor.project import Project as Project
 from app.editor.session import (
-    BoneMark as BoneMark,
-    BoxMark as BoxMark,
+    AttachOverlay as AttachOverlay,
+    BoneOverlay as BoneOverlay,
+    BoxOverlay as BoxOverlay,
     CurveKind as CurveKind,
     CutTool as CutTool,
-    EntryMark as EntryMark,
     ExportRun as ExportRun,
-    Guide as Guide,
-    GuideStep as GuideStep,
     HeatMap as HeatMap,
     Hint as Hint,
-    JointMark as JointMark,
-    KnifeMark as KnifeMark,
+    KnifeOverlay as KnifeOverlay,
     Mark as Mark,
     MaterialTool as MaterialTool,
+    NumericEntryOverlay as NumericEntryOverlay,
     Overlays as Overlays,
+    RotationOverlay as RotationOverlay,
     Session as Session,
-    StrokeMark as StrokeMark,
-    SweepMark as SweepMark,
+    StrokeOverlay as StrokeOverlay,
     Tint as Tint,
     Toast as Toast,
+    TutorialStage as TutorialStage,
+    TutorialState as TutorialState,
     with_project as with_project,
 )
 from app.editor.timeline_view import (
@@ -49,18 +53,23 @@ from app.editor.timeline_view import (
     KeyBox as KeyBox,
     KeyDrag as KeyDrag,
     KeyRow as KeyRow,
-    KeysOf as KeysOf,
+    KeysByRow as KeysByRow,
     MarkerDrag as MarkerDrag,
-    Scrub as Scrub,
-    Strip as Strip,
+    ScrubDrag as ScrubDrag,
     SwitchDrag as SwitchDrag,
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
+    TimeRangeView as TimeRangeView,
     TrackRow as TrackRow,
     TurnDrag as TurnDrag,
+    display_frame as display_frame,
     frames_in as frames_in,
     layer_of as layer_of,
     row_of as row_of,
-    seen_at as seen_at,
 )
-from app.editor.work import Jobs as Jobs, Kind as Kind, Puppet as Puppet, Twin as Twin
+from app.editor.work import (
+    ComparisonRuntime as ComparisonRuntime,
+    JobKind as JobKind,
+    Jobs as Jobs,
+    LayerRuntime as LayerRuntime,
+)

@@ -56,7 +56,7 @@ class ShortcutSheet:
     """The list of all keys."""
 
 
-class Leftover(NamedTuple):
+class RecoverableFile(NamedTuple):
     """Unsaved work of an earlier time: its file, its origin, when it was kept, and its bytes."""
 
     path: Path
@@ -66,10 +66,10 @@ class Leftover(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Recovery:
+class RecoveryDialog:
     """A choice among all unsaved work of earlier times; what is not chosen stays."""
 
-    candidates: tuple[Leftover, ...]
+    candidates: tuple[RecoverableFile, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,7 +78,7 @@ class ProblemReport:
 
     text: str
     is_kept: bool  # whether it is of an earlier time, and stays until it is saved or discarded
-    behind: Recovery | None = None  # what is asked next: one question at a time
+    behind: RecoveryDialog | None = None  # what is asked next: one question at a time
 
 
-Dialog = FileDialog | Question | ShortcutSheet | Recovery | ProblemReport
+Dialog = FileDialog | Question | ShortcutSheet | RecoveryDialog | ProblemReport

@@ -24,7 +24,7 @@ CutTool = Literal["keep", "remove", "knife", "pick", "holes"]
 Tint = Literal["depth", "stiffness"]
 MaterialTool = Literal["stiff", "soft", "normal", "bone"]
 Tone = Literal["info", "good", "error"]
-GuideStep = Literal["handle", "time", "pose", "play", "export", "done"]
+TutorialStage = Literal["handle", "time", "pose", "play", "export", "done"]
 CLICK = 3.0  # pixels of the screen that a click may wander
 P = ParamSpec("P")
 
@@ -44,13 +44,13 @@ class Overlays:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Split:
+class CompareView:
     """Another method beside the drawing's own: how the viewport is divided."""
 
     method: Variant | Baseline  # by which all layers are shown in the right part
-    place: float = 0.5  # of the divider, as a share of the viewport's width
+    divider: float = 0.5  # of the divider, as a share of the viewport's width
     # Whether the two are side by side, each whole, and not under a divider over one place.
-    beside: bool = False
+    is_side_by_side: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -68,7 +68,7 @@ class Toast:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoxMark:
+class BoxOverlay:
     """A box that the pointer spans in the plane, from corner to corner."""
 
     corner: complex
@@ -76,16 +76,16 @@ class BoxMark:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SweepMark:
+class RotationOverlay:
     """By how many radians the shape is turned around a handle, and how many the pointer swept."""
 
     handle: int
-    turn: float
-    swept: float
+    angle: float
+    swept_angle: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EntryMark:
+class NumericEntryOverlay:
     """What was typed during a drag, and the axis through a place that it keeps to, if any."""
 
     place: complex
@@ -94,7 +94,7 @@ class EntryMark:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class StrokeMark:
+class StrokeOverlay:
     """A stroke of the brush, in the plane, that is not done yet."""
 
     points: tuple[complex, ...]
@@ -103,14 +103,14 @@ class StrokeMark:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class KnifeMark:
+class KnifeOverlay:
     """A line of the knife, in the plane, that is not done yet."""
 
     points: tuple[complex, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JointMark:
+class AttachOverlay:
     """The way from an anchor to the pointer, and the layer there, which may be refused."""
 
     start: complex
@@ -120,7 +120,7 @@ class JointMark:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoneMark:
+class BoneOverlay:
     """The way from a handle to the pointer, or to another handle, between which there may be none.
 
     Ends are in the plane.
@@ -131,7 +131,15 @@ class BoneMark:
     is_refused: bool
 
 
-Mark = BoxMark | SweepMark | EntryMark | StrokeMark | KnifeMark | JointMark | BoneMark
+Mark = (
+    BoxOverlay
+    | RotationOverlay
+    | NumericEntryOverlay
+    | StrokeOverlay
+    | KnifeOverlay
+    | AttachOverlay
+    | BoneOverlay
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,7 +169,7 @@ class Hint:
     key: Literal["", "ctrl", "shift", "alt", "ctrl+shift"] = ""
 
 
-class ToolInHand(Protocol):
+class ActiveTool(Protocol):
     """A tool that has the pointer in the viewport; places are of the plane."""
 
     def move(self, session: "Session", place: complex) -> None:
@@ -177,11 +185,11 @@ class ToolInHand(Protocol):
         """End, and take back all that was done."""
 
     @property
-    def marks(self) -> tuple[Mark, ...]:
+    def tool_overlays(self) -> tuple[Mark, ...]:
         """What is drawn of it over the picture."""
 
     @property
-    def ways(self) -> tuple[Hint, ...]:
+    def active_hints(self) -> tuple[Hint, ...]:
         """What can be done meanwhile."""
 
 
@@ -201,7 +209,7 @@ class ExportRun:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Guide:
+class TutorialState:
     """How far somebody has come who is led through a first animation.
 
     Where the drawing is a sample, a handle is to be put at its `aim` and dragged to its `goal`.
@@ -209,9 +217,9 @@ class Guide:
 
     project: Project | None = None  # None while the drawing is chosen and opened
     handles: frozenset[tuple[int, int]] = frozenset()  # those that were there, by layer and id
-    aim: complex | None = None
-    goal: complex | None = None
-    step: GuideStep = "handle"
+    handle_place: complex | None = None
+    target_place: complex | None = None
+    stage: TutorialStage = "handle"
     has_played: bool = False  # since it moves
     exported: ExportPlan | None = None  # the last export before the one that is awaited
 
@@ -241,16 +249,18 @@ class Session:
     export: ExportRun | None = None
     exported: ExportPlan | None = None  # that was completed last
     cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
-    guide: Guide | None = None  # through a first animation
+    tutorial: TutorialState | None = None  # through a first animation
     named_layer: int | None = None  # for which a name is asked
     pointed_layer: int | None = None  # on whose row in the list the pointer is
-    wanted_panel: str = ""  # is brought to the front by the next frame of the window
+    panel_to_focus: str = ""  # is brought to the front by the next frame of the window
     export_frame: BoundingBox | None = None  # shown in the viewport while the export's settings are
-    keeps_aspect: bool = True  # of an export whose size is entered
+    is_aspect_locked: bool = True  # of an export whose size is entered
     curves: CurveKind = "relative"
-    split: Split | None = None  # None shows the drawing alone
-    last_split: Split = Split(method=Variant.LINEAR)  # as it was when it was put away
-    pointer: ToolInHand | None = None
+    compare_view: CompareView | None = None  # None shows the drawing alone
+    last_compare_view: CompareView = CompareView(
+        method=Variant.LINEAR
+    )  # as it was when it was put away
+    active_tool: ActiveTool | None = None
     cutting: CutTool | None = None  # what is in hand that cuts out; None poses
     material: MaterialTool | None = None  # what is in hand that makes parts stiff or soft
     strength: float = 10.0  # how many times as stiff, or as soft, the brush makes what it covers
@@ -258,21 +268,23 @@ class Session:
     moves: bool = False  # whether a drag, or an arrow, moves the whole layer
     records: bool = False  # whether the next drag of a handle is recorded while it plays
     recording_speed: float = 1.0  # times the animation's own
-    snaps: bool = False  # whether what the pointer does goes in steps
-    insists: bool = False  # whether what it pulls beyond its reach is wanted there all the same
+    is_snapping: bool = False  # whether what the pointer does goes in steps
+    is_forcing_targets: bool = (
+        False  # whether what it pulls beyond its reach is wanted there all the same
+    )
     # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.
-    in_timeline: bool = False
+    is_timeline_focused: bool = False
     copied: tuple[CopiedKeys, ...] = ()  # of each layer whose keys were copied together
     copied_tracks: tuple[CopiedTrack, ...] = ()  # of each track, likewise
-    space_used: bool = False  # Space was held to move the view
+    is_space_used: bool = False  # Space was held to move the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about what is under the pointer
     tint: Tint | None = None  # what the drawing shows by colours while that is set
-    failing: set[str] = field(default_factory=set)  # what cannot be kept, as was told
+    reported_failures: set[str] = field(default_factory=set)  # what cannot be kept, as was told
     graphics: str = ""  # what draws the window; empty before its first frame
-    noted: list[str] = field(default_factory=list)  # the names of the last actions
-    trouble: str = ""  # where the program itself failed last
-    quitting: bool = False
+    logged_actions: list[str] = field(default_factory=list)  # the names of the last actions
+    last_error_trace: str = ""  # where the program itself failed last
+    is_quitting: bool = False
 
     def __post_init__(self) -> None:
         """Take the preferences to be as they were read, and nothing to be kept yet."""
@@ -280,9 +292,9 @@ class Session:
         self.autosave = Autosave(self.folder)
 
     @property
-    def poses(self) -> bool:
+    def is_posing(self) -> bool:
         """Whether drags pose, and nothing else is in hand."""
-        drafts = self.project is not None and self.project.draft is not None
+        drafts = self.project is not None and self.project.motion_setup is not None
         return not (drafts or self.moves) and self.cutting is None and self.material is None
 
     @property
@@ -309,7 +321,7 @@ class Session:
             chosen=chosen,
         )
 
-    def tell(
+    def show_notice(
         self,
         text: str,
         *,

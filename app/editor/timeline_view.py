@@ -34,7 +34,7 @@ class TrackRow(NamedTuple):
 # The row of the poses of a layer, by its id, or that of a track.
 KeyRow = int | TrackRow
 # The frames of some keys, by their rows.
-KeysOf = Mapping[KeyRow, frozenset[int]]
+KeysByRow = Mapping[KeyRow, frozenset[int]]
 
 
 def layer_of(row: KeyRow) -> int:
@@ -61,7 +61,7 @@ def frames_in(document: Document, row: KeyRow) -> frozenset[int]:
     return frozenset(key.frame for key in keys_in(document, row))
 
 
-def seen_at(document: Document, track: Track | None, frame: int) -> int:
+def display_frame(document: Document, track: Track | None, frame: int) -> int:
     """Return the frame at which a key is seen: a track's is late by its delay.
 
     In a loop it comes round, and so it does in a cycle that takes the track.
@@ -81,7 +81,7 @@ def _cycle_of(document: Document, track: Track) -> Cycle | None:
     return next((cycle for cycle in cycles if cycle.repeats_keys(track.keys)), None)
 
 
-def own_frame(document: Document, track: Track, seen: int) -> int | None:
+def source_frame(document: Document, track: Track, seen: int) -> int | None:
     """Return the frame of the key of a track that is seen at a frame; None where none can be."""
     first, last = document.frames.first, document.frames.last
     own, cycle = seen - track.delay, _cycle_of(document, track)
@@ -93,7 +93,7 @@ def own_frame(document: Document, track: Track, seen: int) -> int | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Strip:
+class TimeRangeView:
     """The stretch of time that is on the screen."""
 
     start: float  # the frame at its left edge
@@ -160,7 +160,7 @@ class TimeDrag:
 class KeyDrag(TimeDrag):
     """The pointer moves keys, or copies of them."""
 
-    keys: KeysOf  # as they are in `before`
+    keys: KeysByRow  # as they are in `before`
     row: KeyRow  # of the one under the pointer, which is of the active layer
     pressed: int  # its frame
     copies: bool
@@ -223,24 +223,24 @@ class KeyBox:
 
     start: float  # the pointer's frame at the press
     row: KeyRow  # that the pointer was on
-    keeps: KeysOf  # the keys that are chosen besides
+    keeps: KeysByRow  # the keys that are chosen besides
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Scrub:
+class ScrubDrag:
     """The pointer moves the playhead, which is `offset` frames later than the pointer."""
 
     offset: float = 0.0
 
 
-TimeGesture = TimeDrag | KeyBox | Scrub
+TimeGesture = TimeDrag | KeyBox | ScrubDrag
 
 
 # By how many pixels handles, by their ids, fall short of their targets in each key's pose.
-Shortfalls = Mapping[Pose, Mapping[int, float]]
+KeyErrors = Mapping[Pose, Mapping[int, float]]
 
 
-def measure_shortfalls(layer: Layer, earlier: Derived[Layer, Shortfalls]) -> Shortfalls:
+def measure_key_errors(layer: Layer, earlier: Derived[Layer, KeyErrors]) -> KeyErrors:
     """Measure the poses of a layer; those that were measured before are not again."""
     source = earlier.source
     is_alike = source is not None and _measured_by(layer) == _measured_by(source)
@@ -260,24 +260,24 @@ def _measured_by(layer: Layer) -> tuple[object, ...]:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Timing:
+class TimelineState:
     """What may change of a project's timeline besides the document."""
 
-    strip: Strip | None = None  # what it shows; None fits all frames
+    time_range: TimeRangeView | None = None  # what it shows; None fits all frames
     gesture: TimeGesture | None = None
     # What it shows while the gesture lasts: nothing may move under the pointer.
-    gesture_strip: Strip | None = None
+    gesture_time_range: TimeRangeView | None = None
     # The frame that was shown last, so that the strip follows the playhead only when it moves.
-    seen: int = 0
+    last_shown_frame: int = 0
     # By how many em the rows of layers are scrolled down, where there are more than have room.
     scrolled: float = 0.0
     # The row that was chosen last, and the layers whose tracks had rows then, so that the rows
     # are scrolled to it only when that is another one.
-    seen_rows: tuple[KeyRow, frozenset[int]] | None = None
-    unfolded: frozenset[int] = frozenset()  # the layers whose tracks have rows
-    shortfalls: Derived[Layer, Shortfalls] = field(default_factory=lambda: Derived({}))
+    last_shown_rows: tuple[KeyRow, frozenset[int]] | None = None
+    expanded_layers: frozenset[int] = frozenset()  # the layers whose tracks have rows
+    target_errors: Derived[Layer, KeyErrors] = field(default_factory=lambda: Derived({}))
     # The frames at which keys of a row are seen, in their order.
-    keyed: Derived[tuple[Document, KeyRow], tuple[int, ...]] = field(
+    keyed_frames: Derived[tuple[Document, KeyRow], tuple[int, ...]] = field(
         default_factory=lambda: Derived(())
     )
     # The frames of keys that the limits slow down, and by which shares, as far as that was known

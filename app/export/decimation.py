@@ -9,7 +9,7 @@ from scipy.spatial import Delaunay
 from app.render.gpu import border_edges
 from engine.arrays import Booleans, Complexes, Indices, Integers, Singles
 from engine.domain import MeshedDomain
-from engine.domain.meshing import Mesh, in_order_of
+from engine.domain.meshing import Mesh, copy_draw_order
 from engine.geometry import as_xy
 
 TOLERANCE: Final = 0.05  # pixels between where a vertex is and where it is drawn, at most
@@ -105,7 +105,7 @@ class MeshDecimator:
             return painted
         if self._ordered is None or self._ordered[0] is not painted:
             everything = Mesh(vertices=self._fewer.vertices, triangles=painted)
-            self._ordered = painted, in_order_of(self._fewer, everything).triangles
+            self._ordered = painted, copy_draw_order(self._fewer, everything).triangles
         return self._ordered[1]
 
     def _refine(self, poses: Sequence[Complexes]) -> None:

@@ -28,9 +28,9 @@ from app.render.gpu import (
 )
 from app.storage import Cancellation
 from engine.arrays import Bytes
-from engine.domain import find_seam
+from engine.domain import find_closed_cuts
 from engine.domain.meshing import Mesh
-from engine.geometry import HERE, Similarity
+from engine.geometry import IDENTITY_MOTION, Similarity
 
 _SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
 _TILE: Final = 4096  # pixels each way that are drawn at once, at most
@@ -127,7 +127,7 @@ class FrameRenderer:
                     texture = GpuPicture(context, pictures[layer.id])
                     textures[id(pictures[layer.id])] = texture
                     owned.callback(texture.release)
-                seam = find_seam(layer.domain)
+                seam = find_closed_cuts(layer.domain)
                 gpu_mesh = GpuMesh(
                     programs, texture, rest=rest, triangles=mesh.triangles, seam=seam
                 )
@@ -185,7 +185,7 @@ class FrameRenderer:
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
             seen = {
-                clip.layer.id: mesh.pose(vertices, placement=posed.camera or HERE)
+                clip.layer.id: mesh.pose(vertices, placement=posed.camera or IDENTITY_MOTION)
                 for mesh, vertices, clip in drawn
                 if is_visible(self._document, clip.layer, posed.frame)
             }
@@ -211,7 +211,7 @@ class FrameRenderer:
         height, width, _ = pixels.shape
         width, height = min(width, view.size[0]), min(height, view.size[1])
         vertices = np.concatenate([placed.positions for placed in posed.vertices])
-        box = bounding_box(view.to_pixels((posed.camera or HERE).on(vertices)))
+        box = bounding_box(view.to_pixels((posed.camera or IDENTITY_MOTION).apply(vertices)))
         # Two pixels more: none that a triangle touches is left out.
         left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
         right, bottom = (math.ceil(side) + 2 for side in _sides(box.upper))

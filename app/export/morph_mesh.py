@@ -24,9 +24,9 @@ from app.export.plan import ExportPlan
 from app.export_formats import EXPORT_FORMATS
 from app.motion import TriangleOrder, bounding_box
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
-from engine.domain import Seam, find_seam
-from engine.domain.meshing import in_order_of, triangulate
-from engine.streaming import ShapeTargets, build_targets
+from engine.domain import ClosedCuts, find_closed_cuts
+from engine.domain.meshing import copy_draw_order, triangulate
+from engine.streaming import MorphTargets, build_morph_targets
 
 Value = TypeVar("Value")
 
@@ -55,7 +55,7 @@ class MorphMesh:
         painted so.
     sights : tuple of (float, bool)
         From when on the layer is seen, or is not.
-    motion : ShapeTargets
+    motion : MorphTargets
         In pixels, y up; its times, like all others, are seconds from the first frame on.
     """
 
@@ -65,7 +65,7 @@ class MorphMesh:
     uv: Floats
     triangle_orders: tuple[tuple[float, Integers], ...]
     visibility_changes: tuple[tuple[float, bool], ...]
-    motion: ShapeTargets
+    motion: MorphTargets
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -93,7 +93,7 @@ def _lighter(layer: Layer, triangles: int) -> Layer:
     if len(domain.mesh.triangles) <= triangles:
         return layer
     mesh = triangulate(domain.outline, triangles, holes=domain.loops[1:])
-    return replace(layer, domain=replace(domain, mesh=in_order_of(mesh, domain.mesh)))
+    return replace(layer, domain=replace(domain, mesh=copy_draw_order(mesh, domain.mesh)))
 
 
 def build_morph_scene(
@@ -137,9 +137,9 @@ def build_morph_scene(
     found = []
     for index, clip in enumerate(clips):
         layer, mesh = clip.layer, clip.layer.domain.mesh
-        seam = find_seam(layer.domain)
-        places = mesh.vertices if seam is None else seam.closed(mesh.vertices)
-        steps = build_targets(
+        seam = find_closed_cuts(layer.domain)
+        places = mesh.vertices if seam is None else seam.close_cuts(mesh.vertices)
+        steps = build_morph_targets(
             _painted(document, plan, seam, poses[layer.id]),
             places,
             times,
@@ -182,16 +182,16 @@ def _with_peak_opacity(document: Document) -> Document:
 
 
 def _painted(
-    document: Document, plan: ExportPlan, seam: Seam | None, poses: FrameVertices
+    document: Document, plan: ExportPlan, seam: ClosedCuts | None, poses: FrameVertices
 ) -> Callable[[float], Complexes]:
     """Return where vertices are painted at a time: with slits closed, as the camera shows them."""
     has_frame = EXPORT_FORMATS[plan.format].has_frame
 
     def at(frame: float) -> Complexes:
         places = poses.positions(frame)
-        places = places if seam is None else seam.closed(places)
+        places = places if seam is None else seam.close_cuts(places)
         shot = camera_at(document, frame) if has_frame else None
-        return places if shot is None else shot.canvas_motion(document.canvas).on(places)
+        return places if shot is None else shot.canvas_motion(document.canvas).apply(places)
 
     return at
 
@@ -206,15 +206,15 @@ def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:
 
 
 def _share(
-    steps: Generator[float, None, ShapeTargets], frames: tuple[int, int], part: tuple[int, int]
-) -> Generator[float, None, ShapeTargets]:
+    steps: Generator[float, None, MorphTargets], frames: tuple[int, int], part: tuple[int, int]
+) -> Generator[float, None, MorphTargets]:
     """Take steps that tell which frame they are at, and yield what that is of the whole work."""
     (first, last), (index, count) = frames, part
     while True:
         try:
             frame = next(steps)
         except StopIteration as stop:
-            motion: ShapeTargets = stop.value
+            motion: MorphTargets = stop.value
             return motion
         yield (index + (frame - first) / max(last - first, 1)) / count
 

@@ -55,7 +55,7 @@ def compute_baseline(
         handles=np.array([handle.position for handle in clip.layer.handles], dtype=np.complex128),
         bounds=clip.layer.bounds,
     )
-    remembered = MemoizedFrames(prepared.intervals[0])
+    remembered = MemoizedFrames(prepared.segments[0])
     for frame in range(clip.frames.first, clip.frames.last + 1):
         moment = segment_time_at(clip, frame)
         if moment.segment == interval and keyed_pose_at(clip, moment) is None:

@@ -9,7 +9,7 @@ from app.document import Pose
 from app.motion.triangle_order import TriangleOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.domain import MeshedDomain
-from engine.domain.meshing import Mesh, in_order_of, triangulate
+from engine.domain.meshing import Mesh, copy_draw_order, triangulate
 from engine.maps import Span
 
 # Triangles of the meshes, of all layers together, that are shown while the full ones would be too
@@ -94,7 +94,7 @@ class DeformMesh:
         if len(source.mesh.triangles) <= FINER * wanted:
             return cls.fine(source)
         mesh = triangulate(source.outline, wanted, holes=source.loops[1:])
-        coarse = replace(source, mesh=in_order_of(mesh, source.mesh))
+        coarse = replace(source, mesh=copy_draw_order(mesh, source.mesh))
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 
     def locate(self, points: Complexes, positions: Complexes) -> "MeshPoints":

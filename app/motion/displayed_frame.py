@@ -25,7 +25,7 @@ from app.motion.parenting import ParentTransforms, PivotFrame, compose_chain, pa
 from app.motion.vertices import StreamedVertices, Vertices
 from engine.arrays import Complexes
 from engine.domain import MeshedDomain
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -44,7 +44,7 @@ class DisplayedFrame:
     correction: SecondaryCorrection | None = None  # what tracks and springs add
     is_approximate: bool = False  # whether that only stands in for the frame's own
     # Where the layer is in the scene; all else is where it is by itself.
-    placement: RigidMotion = HERE
+    placement: RigidMotion = IDENTITY_MOTION
 
     @property
     def is_current(self) -> bool:
@@ -201,7 +201,7 @@ def _earlier_transform(
     known = {each.id: each for each in earlier.document.layers} if earlier else {}
     was = known.get(layer.id)
     if earlier is None or was is None or joint not in earlier.document.attachments_of(was):
-        return HERE
+        return IDENTITY_MOTION
     return earlier.kept_transform(was, joint, frame)
 
 

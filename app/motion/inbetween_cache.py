@@ -37,7 +37,7 @@ from app.motion.inbetweens import (
 )
 from app.motion.vertices import StreamedVertices, VertexArray, Vertices
 from engine.arrays import Complexes
-from engine.interpolation import Inbetweens, Joint
+from engine.interpolation import Inbetweens, InteriorKnot
 
 BUDGET = 2**30  # bytes of one store
 SPARE = 64  # the part of it that may be taken by what no present clip needs: a 64th
@@ -146,7 +146,7 @@ class InbetweenCache:
             if known is None or not isinstance(known.inbetweens, Inbetweens):
                 return None
             inbetweens, time = known.inbetweens, moment.weight
-        moved = inbetweens.corrected(correction.series, sampler.basis).frame(time)
+        moved = inbetweens.with_correction(correction.series, sampler.basis).frame(time)
         triangles = self.mesh.order.triangles(clip, frame)
         return VertexArray(positions=moved.positions, triangles=triangles)
 
@@ -228,10 +228,10 @@ class InbetweenCache:
             known = self.segment(clip, number)
             if known is None or not known.is_ready:
                 continue
-            first = int(isinstance(transit.start, Joint))
+            first = int(isinstance(transit.start, InteriorKnot))
             ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
             for end, key, kept in zip(ends, keys, known.velocity_shares or (1.0, 1.0), strict=True):
-                if isinstance(end, Joint):
+                if isinstance(end, InteriorKnot):
                     found[key.frame] = kept
         return found
 

@@ -15,8 +15,8 @@ from app.motion.inbetweens import (
     segment_poses,
 )
 from engine.arrays import Complexes
-from engine.interpolation import Inbetweens, Sites
-from engine.streaming import Channels, Distortions, Positions, Series, build_series
+from engine.interpolation import Inbetweens, SampledDomain
+from engine.streaming import Distortions, MotionComponents, Positions, Series, build_series
 
 # All in-betweens of two keys, ready to be evaluated.
 AnyInbetweens = Inbetweens | MemoizedFrames
@@ -46,7 +46,7 @@ class CachedSegment(NamedTuple):
     single_frame: SingleFrame | None = None
     inbetweens: AnyInbetweens | None = None
     velocity_shares: tuple[float, float] | None = None
-    sites: Sites | None = None
+    sites: SampledDomain | None = None
     series: Series | None = None
     distortions: Series | None = None
 
@@ -68,7 +68,7 @@ class CachedSegment(NamedTuple):
             own += self.inbetweens.nbytes
         if isinstance(self.inbetweens, Inbetweens):
             # Those of the other key are its neighbour's.
-            own += self.inbetweens.passage.ends[0].nbytes
+            own += self.inbetweens.keyframe_blend.ends[0].nbytes
         streamed = [each.nbytes if each else 0 for each in (self.series, self.distortions)]
         return own, streamed[0], streamed[1]
 
@@ -195,7 +195,9 @@ class SeriesBuild:
                 break
         return self
 
-    def _build(self, inbetweens: Inbetweens, sites: Sites) -> Generator[None, None, Series]:
-        source: Channels = (Distortions if self.distortions else Positions).of(inbetweens, sites)
+    def _build(self, inbetweens: Inbetweens, sites: SampledDomain) -> Generator[None, None, Series]:
+        source: MotionComponents = (Distortions if self.distortions else Positions).of(
+            inbetweens, sites
+        )
         yield
         return (yield from build_series(source))

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.document import Clip, DepthPoint, depth_points_at
 from engine.arrays import Floats, Integers
-from engine.domain.meshing import Mesh, in_depth_order, spread_depth
+from engine.domain.meshing import Mesh, sort_by_depth, spread_depth
 
 _KEPT: Final = 8  # of a mesh, of the points that are in front: as many as an animation goes between
 
@@ -34,7 +34,7 @@ class TriangleOrder:
 
 
 def _ordered_triangles(mesh: Mesh, fronts: tuple[DepthPoint, ...]) -> Integers:
-    return in_depth_order(mesh, _depths(mesh, fronts))
+    return sort_by_depth(mesh, _depths(mesh, fronts))
 
 
 def _depths(mesh: Mesh, fronts: tuple[DepthPoint, ...]) -> Floats:

@@ -11,7 +11,7 @@ from app.render.gpu import (
     is_software,
     to_float32_points,
 )
-from engine.geometry import HERE, RigidMotion, Similarity
+from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
 from engine.streaming import MOST_ROWS, Series
 
 
@@ -36,7 +36,9 @@ class DrawnMesh:
         self._series_pose: PosedMesh | None = None
         self._current: tuple[Vertices, PosedMesh] | None = None
 
-    def pose(self, vertices: Vertices, *, placement: RigidMotion | Similarity = HERE) -> PosedMesh:
+    def pose(
+        self, vertices: Vertices, *, placement: RigidMotion | Similarity = IDENTITY_MOTION
+    ) -> PosedMesh:
         """Return the mesh with its vertices there and painted in their order; new ones go up."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
@@ -66,7 +68,7 @@ class DrawnMesh:
             return self._series_pose
         seam, positions = self._mesh.seam, vertices.positions
         self._written.write(
-            to_float32_points(positions if seam is None else seam.closed(positions))
+            to_float32_points(positions if seam is None else seam.close_cuts(positions))
         )
         return self._pose
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from app.document import Clip, Track, segment_layout, track_cycle
 from engine.arrays import Floats, Indices
-from engine.geometry.kinematics import FADE, frames_to_settle
+from engine.geometry.kinematics import FADE_FRAMES, frames_to_settle
 
 
 def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:
@@ -22,7 +22,7 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
     end = max([clip.keys[-1].frame, *(ring.end for ring in segment_layout(clip).cycles)])
     for spring in springs:
         settled = frames_to_settle(clip.fps, spring.frequency, spring.damping)
-        rests = end + spring.lag + settled + FADE
+        rests = end + spring.lag + settled + FADE_FRAMES
         acts |= (clip.keys[0].frame <= frames) & (frames <= rests)
     for track in tracks:
         acts |= np.isfinite(_times(track, clip, frames))

@@ -75,7 +75,7 @@ class SegmentReport:
     @property
     def may_fold(self) -> bool:
         """Whether some in-between folds, or is not proven not to."""
-        return not self.proof.never_folds
+        return not self.proof.is_locally_injective
 
     @property
     def error(self) -> DistortionRange:
@@ -111,7 +111,7 @@ class Report:
     @property
     def verdict(self) -> Verdict:
         """The worst of the intervals' and the frames'; over if a keyframe is not certified."""
-        if not all(certificate.certified for _, certificate in self.keys):
+        if not all(certificate.is_certified for _, certificate in self.keys):
             return Verdict.OVER
         return Verdict.worst([*(each.verdict for each in self.segments), self.corrected_verdict])
 
@@ -214,8 +214,8 @@ def _segment_report(
         correction=inbetweens.correction,
         limits=limits,
         proof=proof,
-        unsettled=_frames(clip, number, proof.unsettled),
-        loose=_frames(clip, number, proof.loose),
+        unsettled=_frames(clip, number, proof.unproven_times),
+        loose=_frames(clip, number, proof.not_tight),
     )
 
 

@@ -99,7 +99,7 @@ def report_corrected(
     carried : callable, optional
         Where the layer hangs, at a frame.
     """
-    ends = boundary.points[boundary.following]
+    ends = boundary.points[boundary.next_samples]
     points = np.concatenate(
         [boundary.points, *(boundary.points * (1 - s) + ends * s for s in BETWEEN)]
     )
@@ -150,8 +150,12 @@ def _proven(animation: Animation, frame: int) -> DistortionRange | None:
     if correction is None:
         return None
     inbetweens, time = animation.base.segment_at(frame)
-    proof = prove(inbetweens.corrected(correction.series, animation.sampler.basis), time)
-    return DistortionRange(proof.k, proof.sigma_a, proof.sigma_b) if proof.never_folds else None
+    proof = prove(inbetweens.with_correction(correction.series, animation.sampler.basis), time)
+    return (
+        DistortionRange(proof.k, proof.sigma_a, proof.sigma_b)
+        if proof.is_locally_injective
+        else None
+    )
 
 
 def _measured(animation: Animation, at: float) -> DistortionRange:

@@ -67,7 +67,7 @@ class CorrectedSample(NamedTuple):
         correction = self.frames.at(clip, frame)
         if correction is None or not isinstance(between, Inbetweens):
             return between.frame(time)
-        return between.corrected(correction.series, self.basis).frame(time)
+        return between.with_correction(correction.series, self.basis).frame(time)
 
 
 def measure_curves(

@@ -20,7 +20,7 @@ from app.document import (
 )
 from app.motion import Animation, PoseSampler
 from engine.arrays import Booleans, Complexes
-from engine.deform import Deformer, Hand, Handles, Link, State, Wish
+from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles, HandleTargets, State
 from engine.errors import EngineError
 from engine.maps import Boundary, Certificate, HarmonicMap, certify
 
@@ -79,7 +79,7 @@ class Rig:
             pulls = [*(handle.effective_weight for handle in held), *(PIN for _ in pins)]
             handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
         # Where it is stiff, new poses give way less.
-        bounds = layer.bounds.where_stiff(boundary)
+        bounds = layer.bounds.scaled_by_stiffness(boundary)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
         return cls(layer=layer, handles=held, deformer=deformer)
 
@@ -89,8 +89,11 @@ class Rig:
         return _pins(self.layer)
 
     def build_targets(
-        self, targets: Mapping[int, Target], pins: tuple[Target, ...], hands: Sequence[Hand] = ()
-    ) -> Wish:
+        self,
+        targets: Mapping[int, Target],
+        pins: tuple[Target, ...],
+        hands: Sequence[BoundedPull] = (),
+    ) -> HandleTargets:
         """Return where handles are wanted, as the deformer takes it.
 
         Hands are told by the ids of the handles that they pull; those that are gone, or hold no
@@ -98,33 +101,35 @@ class Rig:
         """
         index = {handle.id: i for i, handle in enumerate(self.handles)}
         pulling = [
-            Hand([index[i] for i in sorted(hand.handles) if i in index], hand.pull)
+            BoundedPull([index[i] for i in sorted(hand.handles) if i in index], hand.max_force)
             for hand in (*hands, *self.find_yielding_joints(hands))
             if not index.keys().isdisjoint(hand.handles)
         ]
         wanted = [*(targets[identity] for identity in index), *pins]
-        return self.deformer.handles.wish(
+        return self.deformer.handles.targets(
             np.array([target.position for target in wanted], dtype=np.complex128),
             [np.nan if target.rotation is None else target.rotation for target in wanted],
             pulling,
             self._links(index) if pulling else (),
         )
 
-    def _links(self, index: Mapping[int, int]) -> list[Link]:
+    def _links(self, index: Mapping[int, int]) -> list[DistanceConstraint]:
         """Return what keeps the ends of stiff bones in reach of each other."""
         links = []
         for bone in self.layer.bones:
             if bone.stiffness > 1 and index.keys() >= set(bone.ends):
                 start, end = (self.layer.handle(identity).position for identity in bone.ends)
                 limits, rest = (
-                    self.layer.bounds.stiffened(np.array(bone.stiffness)),
+                    self.layer.bounds.scaled_by(np.array(bone.stiffness)),
                     abs(end - start),
                 )
                 nearest, farthest = rest * float(limits.sigma_b), rest * float(limits.sigma_a)
-                links.append(Link(index[bone.ends[0]], index[bone.ends[1]], nearest, farthest))
+                links.append(
+                    DistanceConstraint(index[bone.ends[0]], index[bone.ends[1]], nearest, farthest)
+                )
         return links
 
-    def find_yielding_joints(self, hands: Sequence[Hand]) -> list[Hand]:
+    def find_yielding_joints(self, hands: Sequence[BoundedPull]) -> list[BoundedPull]:
         """Return the joints that give in to hands that pull beyond them, each by itself.
 
         They are those on the way along bones from a pulled handle to where the bones end or part.
@@ -141,7 +146,7 @@ class Rig:
                 if len(beside[joint]) == 2 and joint not in joints | pulled | locked:
                     joints.add(joint)
                     waiting.append(joint)
-        return [Hand([joint], JOINT_PULL) for joint in sorted(joints)]
+        return [BoundedPull([joint], JOINT_PULL) for joint in sorted(joints)]
 
     def make_pose(
         self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
@@ -165,7 +170,7 @@ class Rig:
 
     def allow_pose(self, pose: Pose) -> Deformer:
         """Return a deformer that allows a pose, be it outside the layer's present bounds."""
-        return self.deformer.allowing(self.layer.map_of(pose), LEEWAY)
+        return self.deformer.widened_for(self.layer.map_of(pose), LEEWAY)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -211,7 +216,7 @@ class DragSolver:
         self,
         targets: Mapping[int, Target],
         steps: int,
-        hands: Sequence[Hand] = (),
+        hands: Sequence[BoundedPull] = (),
         pulled: Collection[int] = (),
     ) -> "DragSolver":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest.
@@ -231,7 +236,7 @@ class DragSolver:
         return replace(self, rig=rig, deformer=deformer, state=state)
 
     def release(
-        self, targets: Mapping[int, Target], hands: Sequence[Hand]
+        self, targets: Mapping[int, Target], hands: Sequence[BoundedPull]
     ) -> tuple["DragSolver", Mapping[int, Target]]:
         """Return the drag after hands let go here, and the new targets of what these have pulled.
 
@@ -240,7 +245,7 @@ class DragSolver:
         """
         wish = self.rig.build_targets(targets, self.pins, hands)
         at = self.deformer.positions(self.state)
-        left = wish.let_go(at, self.deformer.handles.stiffness).positions
+        left = wish.released(at, self.deformer.handles.stiffness).positions
         giving = (*hands, *self.rig.find_yielding_joints(hands))
         pulled = {identity for hand in giving for identity in hand.handles}
         places = {
@@ -304,7 +309,7 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
         )
         # What is shown may be older than what is stiff now.
         certificate = certify(mixed, boundary, layer.bounds)
-        if certificate.certified:
+        if certificate.is_certified:
             break
     else:
         mixed, certificate = layer.map_of(near), near.certificate

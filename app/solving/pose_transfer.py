@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Layer, Pose, Target
 from app.solving.drag_solver import Rig, fit_map, pins_of
 from engine.arrays import Complexes
-from engine.deform import Way
+from engine.deform import StartingPoint
 from engine.geometry import contains, diameter
 from engine.maps import HarmonicMap, certify
 
@@ -190,7 +190,7 @@ def solve_from_map(
     begin: HarmonicMap,
     targets: Mapping[int, Target],
     pins: Sequence[Target],
-    ways: tuple[Way, ...] = tuple(Way),
+    ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
 ) -> Pose:
     """Return the pose with these wishes that is found from a map, along some ways."""
     deformer, wish = rig.deformer, rig.build_targets(targets, tuple(pins))
@@ -208,7 +208,7 @@ def find_initial_map(
     pose: Pose,
     likeness: SimilarityTransform,
     targets: Mapping[int, Target],
-) -> tuple[HarmonicMap, tuple[Way, ...]]:
+) -> tuple[HarmonicMap, tuple[StartingPoint, ...]]:
     """Return the map with which the solver begins to look for the image of a pose, and its ways.
 
     It is the map nearest to S ∘ f ∘ S⁻¹ where the two drawings are alike, and the pose the minimum
@@ -216,14 +216,14 @@ def find_initial_map(
     """
     shape = source.map_of(pose)
     if is_similar(rig.layer, source, likeness):
-        return _image(rig, source, shape, likeness), (Way.HERE,)
+        return _image(rig, source, shape, likeness), (StartingPoint.HERE,)
     turn = likeness.transform_rotation(mean_rotation(source, shape))
     apart = [
         target.position - turn * rig.layer.handle(identity).position
         for identity, target in targets.items()
     ]
-    begin = rig.deformer.at_rest.moved(turn, complex(np.mean(apart)) if apart else 0j)
-    return begin, tuple(Way)
+    begin = rig.deformer.rest_map.moved(turn, complex(np.mean(apart)) if apart else 0j)
+    return begin, tuple(StartingPoint)
 
 
 def mean_rotation(layer: Layer, shape: HarmonicMap) -> complex:

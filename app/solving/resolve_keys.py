@@ -121,7 +121,7 @@ def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
     index = len(renewal.poses)
     pose = _solved(renewal, rig, index)
     outside = renewal.unsolved
-    if not pose.certificate.certified:
+    if not pose.certificate.is_certified:
         outside = (*outside, _in_words(renewal.before, index))
     return replace(renewal, rig=rig, poses=(*renewal.poses, pose), unsolved=outside)
 
@@ -161,16 +161,16 @@ def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
         pose, first = into.poses[index], _carried_over(before, old, rig)
         if before.anchor is not None and into.anchor is not None:
             pins = tuple(transfer_target(pin, shape, before.anchor, into.anchor) for pin in pins)
-    if not renewal.solves_all and certify(first, boundary, bounds).certified:
+    if not renewal.solves_all and certify(first, boundary, bounds).is_certified:
         return pose
     wish = rig.build_targets(pose.targets, pins)
     state, _ = rig.deformer.settle(rig.start_at(first), wish, at_most=MOST_STEPS, throw=False)
     certificate = certify(state.map, boundary, bounds)
-    if into is not None and not certificate.certified:
+    if into is not None and not certificate.is_certified:
         # Where the new shape is larger, what was carried over may have no way back into the bounds.
         state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS, throw=False)
         certificate = certify(state.map, boundary, bounds)
-    if into is None and not certificate.certified:
+    if into is None and not certificate.is_certified:
         return replace(pose, certificate=certify(first, boundary, bounds))
     return rig.make_pose(state.map, pose.targets, certificate)
 

@@ -13,11 +13,11 @@ from app.document import (
     SwitchKey,
     TransformKey,
     attachments_repeat,
-    choice_commands,
     is_switch_in_cycle,
     is_visible,
     layer_commands,
     repeating_cycle,
+    switch_group_commands,
 )
 from app.errors import LissomError, join_names
 from app.motion import ParentTransforms, anchor_or_default, reparent_in_place
@@ -116,7 +116,7 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
             identities = {name: find_layer(document, name).id for name in given.layers}
         except LissomError as error:
             raise LissomError(f"choice {given.name!r}: {error}") from error
-        form = choice_commands.create_switch_group(given.name, tuple(identities.values()))
+        form = switch_group_commands.create_switch_group(given.name, tuple(identities.values()))
         document = form(document)
         turns = tuple(SwitchKey(frame, identities[layer]) for frame, layer in given.turns)
         (*others, made) = document.switch_groups

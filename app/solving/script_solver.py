@@ -19,8 +19,8 @@ from app.document import (
     handle_commands,
     is_visible,
     layer_commands,
-    material_commands,
     measure_target_errors,
+    stiffness_commands,
 )
 from app.errors import LissomError
 from app.solving.drag_solver import DragSolver, Rig
@@ -37,7 +37,7 @@ from app.solving.script_scene import (
     with_world_transforms,
 )
 from app.storage import make_still_layer
-from engine.deform import Hand
+from engine.deform import BoundedPull
 from engine.errors import EngineError
 
 # A drag that is not at rest by then creeps along a bound.
@@ -218,13 +218,13 @@ def _with_material(
                 f"{whose}no outline is seen within {each.radius:g} px of ({at.real:g}, "
                 f"{at.imag:g}): nothing is stiff or soft there"
             )
-        document = material_commands.paint_stiffness(identity, [at], **options)(document)
+        document = stiffness_commands.paint_stiffness(identity, [at], **options)(document)
     ids = [handle.id for handle in document.layer(identity).handles]
     for bone in part.bones:
         ends = (ids[bone.ends[0]], ids[bone.ends[1]])
         first, second = (document.layer(identity).handle(end).name for end in ends)
         try:
-            document = material_commands.add_bone(identity, ends, bone.stiffness)(document)
+            document = stiffness_commands.add_bone(identity, ends, bone.stiffness)(document)
         except EngineError as error:
             raise LissomError(f"stiff from {first!r} to {second!r}: {error}") from error
     return document, notices
@@ -309,7 +309,7 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         for i, wished in targets.items()
     ):
         return start, notices
-    hands = tuple(Hand((identity,), key.pull) for identity in named)
+    hands = tuple(BoundedPull((identity,), key.pull) for identity in named)
     drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
     shortfall = measure_target_errors(layer, drag.make_pose(targets))
     drag, released = drag.release(targets, hands)

@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
-from app.editor.actions import dismiss
+from app.editor.actions import dismiss_toast
 from app.ui.style import TOAST, Look, colour_u32, small_text
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
@@ -45,7 +45,7 @@ def draw_toasts(session: Session, look: Look) -> list[Action]:
         imgui.pop_style_color()
         imgui.pop_style_var(3)
         if left < 0 and not hovered:
-            actions.append(do(dismiss, toast))
+            actions.append(do(dismiss_toast, toast))
     return actions
 
 
@@ -81,7 +81,7 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
     imgui.set_cursor_pos(ImVec2(imgui.get_window_width() - 2.1 * look.em, 0.35 * look.em))
     imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
     if imgui.small_button(f"{icons.ICON_FA_XMARK}###dismiss"):
-        actions.append(do(dismiss, toast))
+        actions.append(do(dismiss_toast, toast))
     imgui.pop_style_color()
     return actions
 

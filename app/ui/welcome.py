@@ -13,7 +13,7 @@ from imgui_bundle import (
 )
 
 from app.editor import Action, Session, do
-from app.editor.actions import files, guiding
+from app.editor.actions import files, tutorials
 from app.errors import display_name
 from app.render import Thumbnail
 from app.ui.shortcuts import BINDINGS
@@ -99,7 +99,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
 
 def _first(look: Look, pictures: Previews) -> list[Action]:
     """Draw the way to a first animation, by the giraffe or by an own drawing."""
-    sample = next((each for each in files.samples() if each.name == TUTORIAL_SAMPLE), None)
+    sample = next((each for each in files.sample_files() if each.name == TUTORIAL_SAMPLE), None)
     if sample is None:
         return []
     actions: list[Action] = []
@@ -107,7 +107,7 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
     corner, size = imgui.get_cursor_screen_pos(), ImVec2(WIDTH * em, FIRST * em)
     imgui.set_next_item_allow_overlap()
     if imgui.invisible_button("make it bow", size):
-        actions.append(do(guiding.begin))
+        actions.append(do(tutorials.begin_tutorial))
     _frame(look, corner, size, is_hot=imgui.is_item_hovered())
     room = ImVec2(FIRST * em, size.y - 0.8 * em)
     _show_sample(sample, pictures, corner + ImVec2(0.8 * em, 0.4 * em), room)
@@ -121,7 +121,7 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
     below = imgui.get_cursor_pos()
     imgui.set_cursor_screen_pos(ImVec2(left, corner.y + 4.1 * em))
     if text_button("…or with your own drawing", hint="Open it, and go through the same steps"):
-        actions.append(do(guiding.begin_with_own))
+        actions.append(do(tutorials.begin_tutorial_with_own_drawing))
     imgui.set_cursor_pos(below)
     imgui.dummy(ImVec2(0, 0.4 * em))
     return actions
@@ -131,7 +131,7 @@ def _samples(look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
     bold_text(look, "Try one of these")
     imgui.dummy(ImVec2(0, 0.2 * look.em))
-    for index, sample in enumerate(files.samples()):
+    for index, sample in enumerate(files.sample_files()):
         if index % 4:
             imgui.same_line(0, GAP * look.em)
         elif index:
@@ -198,7 +198,7 @@ def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         if _row(look, path, index, pictures.still(path) if is_there else None, is_there=is_there):
-            actions.append(do(files.open_recent, path))
+            actions.append(do(files.open_recent_file, path))
         imgui.pop_style_color()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     return actions

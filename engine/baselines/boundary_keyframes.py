@@ -11,9 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, as_points
-from engine.baselines.triangulated_domain import TriangulatedDomain, factorised, solved
+from engine.baselines.triangulated_domain import (
+    TriangulatedDomain,
+    factorise_symmetric,
+    solve_complex,
+)
 from engine.errors import EngineError
-from engine.geometry import SIZES, diameter, edges, require_around, require_simple
+from engine.geometry import SIZES, diameter, edge_vectors, require_around, require_simple
 from engine.maps import HarmonicMap, cauchy_coordinates
 
 # Samples of each edge of the outline: for a fit, over its unknowns, and for the look at its error.
@@ -106,7 +110,7 @@ def discrete_harmonic(domain: TriangulatedDomain, positions: npt.ArrayLike) -> C
     if len(inner):
         rows = domain.laplacian()[inner]
         right = np.asarray(rows[:, outer] @ found[outer])
-        found[inner] = solved(factorised(rows[:, inner]), -right)
+        found[inner] = solve_complex(factorise_symmetric(rows[:, inner]), -right)
     return found
 
 
@@ -150,7 +154,7 @@ def _along(
 ) -> tuple[Complexes, Complexes]:
     """Return samples of an outline (s,), denser beside its vertices, and targets (s, q) there."""
     place = (1.0 - np.cos(np.pi * (np.arange(count) + shift) / count)) / 2.0
-    samples = (outline[:, None] + edges(outline)[:, None] * place).ravel()
+    samples = (outline[:, None] + edge_vectors(outline)[:, None] * place).ravel()
     after = np.roll(wanted, -1, axis=1)
     at_samples = wanted[:, :, None] * (1.0 - place) + after[:, :, None] * place
     return samples, at_samples.reshape(len(wanted), -1).T
@@ -159,4 +163,4 @@ def _along(
 def _cut(cage: Complexes, pieces: int) -> Complexes:
     """Return a cage with each edge cut into equal parts."""
     place = np.arange(pieces) / pieces
-    return (cage[:, None] + edges(cage)[:, None] * place).ravel()
+    return (cage[:, None] + edge_vectors(cage)[:, None] * place).ravel()

@@ -10,7 +10,11 @@ from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.baselines.frames import MeshFrame
 from engine.baselines.mesh_keyframes import MeshKeyframe
 from engine.baselines.poisson import PoissonStep
-from engine.baselines.triangulated_domain import TriangulatedDomain, factorised, solved
+from engine.baselines.triangulated_domain import (
+    TriangulatedDomain,
+    factorise_symmetric,
+    solve_complex,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -115,7 +119,9 @@ def _fitted(
     free = np.delete(np.arange(matrix.shape[1]), own)
     unknown, known = columns[:, free], np.asarray(columns[:, own] @ given)
     frames = np.empty(matrix.shape[1], dtype=np.complex128)
-    frames[free] = solved(factorised(unknown.T @ unknown), -np.asarray(unknown.T @ known))
+    frames[free] = solve_complex(
+        factorise_symmetric(unknown.T @ unknown), -np.asarray(unknown.T @ known)
+    )
     frames[own] = given
     by_x, by_y = frames[::2], frames[1::2]
     return (by_x - 1j * by_y) / 2, (by_x + 1j * by_y) / 2

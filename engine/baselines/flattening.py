@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
-from engine.baselines.triangulated_domain import TriangulatedDomain, factorised
+from engine.baselines.triangulated_domain import TriangulatedDomain, factorise_symmetric
 from engine.errors import EngineError
 
 MOST_STEPS = 40
@@ -102,7 +102,7 @@ class Flattening:
         for _ in range(MOST_STEPS):
             if np.abs(defect).max(initial=0.0) <= ENOUGH:
                 break
-            direction = factorised(self._hessian(cotangents)).solve(-defect)
+            direction = factorise_symmetric(self._hessian(cotangents)).solve(-defect)
             slope = float(direction @ defect)
             part = min(1.0, LARGEST_CHANGE / np.abs(direction).max())
             while part > SMALLEST_PART:
@@ -156,7 +156,7 @@ class Flattening:
         edges = lengths.ravel() * np.exp(1j * (np.repeat(direction, 3) + own))
         ways = np.where(self.forward, edges[self.reached], -edges[self.reached])
         ways[self.domain.anchor] = 0.0
-        return self.domain.ways.sums(ways)
+        return self.domain.tree.sums(ways)
 
 
 def edge_lengths(domain: TriangulatedDomain, positions: Complexes) -> Floats:
@@ -200,7 +200,7 @@ def _hinges(domain: TriangulatedDomain) -> Indices:
 
 def _reached(domain: TriangulatedDomain) -> tuple[Indices, Booleans]:
     """Return a half-edge between each vertex and its parent, and whether it leads to the vertex."""
-    corners, parent = domain.corners, domain.ways.parent
+    corners, parent = domain.corners, domain.tree.parent
     start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
     reached = np.zeros(len(parent), dtype=np.intp)
     forward = np.ones(len(parent), dtype=np.bool_)

@@ -8,7 +8,7 @@ import numpy as np
 from engine.arrays import Complexes
 from engine.baselines.frames import MeshFrame
 from engine.baselines.triangulated_domain import TriangulatedDomain
-from engine.deform import Deformer, Way
+from engine.deform import Deformer, StartingPoint
 from engine.errors import EngineError
 from engine.interpolation import Prepared
 from engine.maps import Boundary, HarmonicMap, derivatives_of
@@ -35,7 +35,9 @@ class HandleInbetweens:
         handles = self.deformer.handles
         targets = (1.0 - time) * self.first(handles.points) + time * self.second(handles.points)
         start = self.deformer.resume(self.first if time < 0.5 else self.second)
-        state, _ = self.deformer.settle(start, handles.wish(targets), ways=(Way.HERE,), throw=False)
+        state, _ = self.deformer.settle(
+            start, handles.targets(targets), ways=(StartingPoint.HERE,), throw=False
+        )
         return _frame(self.domain, state.map(self.domain.points))
 
 

@@ -9,7 +9,7 @@ from engine.arrays import Complexes, freeze
 from engine.baselines.frames import MeshFrame
 from engine.baselines.mesh_keyframes import MeshKeyframe
 from engine.baselines.poisson import PoissonStep
-from engine.interpolation import PointSamples, Worst, looseness
+from engine.interpolation import KeyframeExtremes, PointSamples, blend_in_outline_bounds
 from engine.maps import distortion
 
 
@@ -22,7 +22,7 @@ class MeshEtaInbetweens:
     triangles (Section 9.1); of others it need not.
 
     ρ is the least of what the triangles allow, Equations (16) to (18), with the same passage from
-    the worst bounds beside a keyframe as `engine.interpolation.scaling.sharp.SharpScaling`.
+    the worst bounds beside a keyframe as `engine.interpolation.scaling.exact_rho.ExactRho`.
     """
 
     first: MeshKeyframe
@@ -30,7 +30,7 @@ class MeshEtaInbetweens:
     step: PoissonStep
     eta: Complexes  # of both keyframes, (2, m)
     samples: PointSamples  # what ρ depends on, of each triangle
-    worst: Worst  # of all triangles
+    extremes: KeyframeExtremes  # of all triangles
 
     @classmethod
     def of(cls, first: MeshKeyframe, second: MeshKeyframe, step: PoissonStep) -> Self:
@@ -38,23 +38,23 @@ class MeshEtaInbetweens:
         fz, fzbar = np.array([first.fz, second.fz]), np.array([first.fzbar, second.fzbar])
         none = np.empty((0, fz.shape[1]), dtype=np.complex128)
         samples = PointSamples.of(fz, fzbar.conj(), none, none)
-        worst = Worst(
+        worst = KeyframeExtremes(
             k=float(samples.k.max()),
             sigma_a=float(samples.sigma_a.max()),
             sigma_b=float(samples.sigma_b.min()),
         )
         eta = freeze(distortion.eta(fz, fzbar))
-        return cls(first=first, second=second, step=step, eta=eta, samples=samples, worst=worst)
+        return cls(first=first, second=second, step=step, eta=eta, samples=samples, extremes=worst)
 
     def rho(self, time: float) -> float:
         """Return the scaling of η at a time, 1 at keyframes."""
         if not 0.0 < time < 1.0:
             return 1.0
         weights = np.array([1.0 - time, time])[:, None, None]
-        share = float(looseness(np.array([time]))[0])
+        share = float(blend_in_outline_bounds(np.array([time]))[0])
         tight, loose = (
-            min(1.0, float(self.samples.bounded(worst).ratios(weights).min()))
-            for worst in (None, self.worst)
+            min(1.0, float(self.samples.with_bounds(worst).largest_rhos(weights).min()))
+            for worst in (None, self.extremes)
         )
         return float(tight ** (1.0 - share) * loose**share)
 

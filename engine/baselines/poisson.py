@@ -8,7 +8,11 @@ from scipy.sparse.linalg import SuperLU
 
 from engine.arrays import Complexes, Indices
 from engine.baselines.frames import MeshFrame
-from engine.baselines.triangulated_domain import TriangulatedDomain, factorised, solved
+from engine.baselines.triangulated_domain import (
+    TriangulatedDomain,
+    factorise_symmetric,
+    solve_complex,
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -30,14 +34,16 @@ class PoissonStep:
         """Factorise the Laplacian of a domain, once for all frames."""
         free = np.delete(np.arange(len(domain.points)), domain.anchor)
         laplacian = domain.laplacian()
-        return cls(domain=domain, free=free, factors=factorised(2.0 * laplacian[free][:, free]))
+        return cls(
+            domain=domain, free=free, factors=factorise_symmetric(2.0 * laplacian[free][:, free])
+        )
 
     def integrate(self, fz: Complexes, fzbar: Complexes, anchor: complex) -> MeshFrame:
         """Return the map nearest to f_z and f_z̄ (m,), with the anchor at a place."""
         domain = self.domain
         right = domain.sums_at_vertices(fz, fzbar)
         positions = np.zeros(len(domain.points), dtype=np.complex128)
-        positions[self.free] = solved(self.factors, right[self.free])
+        positions[self.free] = solve_complex(self.factors, right[self.free])
         found = domain.derivatives(positions)
         lacking, given = (
             float(domain.areas @ (np.abs(a) ** 2 + np.abs(b) ** 2))

@@ -20,7 +20,7 @@ from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, Handles
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Domain, diameter, require_inside
-from engine.interpolation import Variant, interval_at, prepare, require_keyframes
+from engine.interpolation import Variant, prepare, require_keyframes, segment_at
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.variant import Baseline
 
@@ -42,7 +42,7 @@ class PreparedBaseline:
 
     baseline: Baseline
     domain: TriangulatedDomain
-    intervals: tuple[MeshInbetweens, ...]
+    segments: tuple[MeshInbetweens, ...]
 
     def frame(self, time: float) -> MeshFrame:
         """Return the in-between at a time from 0 to the number of intervals.
@@ -52,8 +52,8 @@ class PreparedBaseline:
         EngineError
             If the time is out of range.
         """
-        interval, moment = interval_at(time, len(self.intervals))
-        return self.intervals[interval].frame(moment)
+        interval, moment = segment_at(time, len(self.segments))
+        return self.segments[interval].frame(moment)
 
 
 def prepare_baseline(
@@ -125,7 +125,7 @@ def prepare_baseline(
         positions = [each(domain.points) if callable(each) else each for each in around]
         keys = mesh_keyframes(domain, positions, turns=turns, principal=principal)
         intervals = _on_mesh(baseline, domain, keys)
-    return PreparedBaseline(baseline=baseline, domain=domain, intervals=tuple(intervals))
+    return PreparedBaseline(baseline=baseline, domain=domain, segments=tuple(intervals))
 
 
 def _on_mesh(

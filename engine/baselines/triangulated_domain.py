@@ -21,7 +21,7 @@ FLAT = 1e-12  # area of a triangle, over the square of its longest edge, that co
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Tour:
+class TriangleTree:
     """A spanning tree of a graph whose nodes (s,) keep their numbers.
 
     Parameters
@@ -38,7 +38,7 @@ class Tour:
     parent: Indices
 
     @classmethod
-    def through(cls, count: int, edges: Indices, root: int) -> Self:
+    def from_edges(cls, count: int, edges: Indices, root: int) -> Self:
         """Reach all nodes from the root by the fewest edges (e, 2)."""
         parent = breadth_first_parents(count, edges, root)
         order = depth_first_numbering(parent, root)
@@ -77,9 +77,9 @@ class TriangulatedDomain:
         Of edges that the border consists of: 1, and one more for each hole.
     anchor : int
         The vertex whose pose is given.
-    ways : Tour
+    ways : TriangleTree
         Through the vertices along edges, from the anchor.
-    crossings : Tour
+    crossings : TriangleTree
         Through the triangles across inner edges, from one at the anchor.
     """
 
@@ -90,8 +90,8 @@ class TriangulatedDomain:
     border: Booleans
     loops: int
     anchor: int
-    ways: Tour
-    crossings: Tour
+    tree: TriangleTree
+    crossings: TriangleTree
 
     @classmethod
     def of(
@@ -133,8 +133,8 @@ class TriangulatedDomain:
             # Euler: V − E + F = 2 − (loops), for a plane mesh without its outside.
             loops=2 - (len(points) - len(edges) + len(corners)),
             anchor=place,
-            ways=Tour.through(len(points), edges, place),
-            crossings=Tour.through(len(corners), pairs, first),
+            tree=TriangleTree.from_edges(len(points), edges, place),
+            crossings=TriangleTree.from_edges(len(corners), pairs, first),
         )
 
     @property
@@ -175,7 +175,7 @@ class TriangulatedDomain:
         return csr_array((self.gradient.conj().T @ weighted).real)
 
 
-def factorised(matrix: csr_array | csc_array) -> SuperLU:
+def factorise_symmetric(matrix: csr_array | csc_array) -> SuperLU:
     """Return the factors of a symmetric positive definite matrix.
 
     The order of elimination is found anew each time, which is a tenth of the cost.
@@ -188,7 +188,7 @@ def factorised(matrix: csr_array | csc_array) -> SuperLU:
     )
 
 
-def solved(factors: SuperLU, right: Complexes) -> Complexes:
+def solve_complex(factors: SuperLU, right: Complexes) -> Complexes:
     """Solve a real system for a complex right-hand side (n,)."""
     both = factors.solve(np.column_stack([right.real, right.imag]))
     return np.asarray(both[:, 0] + 1j * both[:, 1])

@@ -9,10 +9,10 @@ from engine.deform.deformer import Deformer as Deformer
 from engine.deform.handles import (
     MOST_HANDLES as MOST_HANDLES,
     Handles as Handles,
-    Wish as Wish,
+    HandleTargets as HandleTargets,
     require_held as require_held,
 )
-from engine.deform.hands import PULL as PULL, Hand as Hand, Link as Link
+from engine.deform.interior_point import ActiveBound as ActiveBound, StartingPoint as StartingPoint
 from engine.deform.model import (
     Objective as Objective,
     limits_inside as limits_inside,
@@ -20,5 +20,9 @@ from engine.deform.model import (
     newton_direction as newton_direction,
     projected_hessian as projected_hessian,
 )
-from engine.deform.rest import ActiveBound as ActiveBound, Way as Way
+from engine.deform.pulls import (
+    MAX_PULL_FORCE as MAX_PULL_FORCE,
+    BoundedPull as BoundedPull,
+    DistanceConstraint as DistanceConstraint,
+)
 from engine.deform.state import State as State, Statistics as Statistics, Status as Status

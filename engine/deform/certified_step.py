@@ -7,21 +7,21 @@ import numpy as np
 from engine.arrays import Floats, Indices, readonly
 from engine.deform.model import (
     Direction,
-    Jet,
+    Evaluation,
     Objective,
     Preconditioner,
+    interpolate_duals,
     line_search,
     preconditioned_direction,
-    with_samples_between,
 )
-from engine.maps import Boundary, Certificate, HarmonicMap, Limits, certify_segments
+from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds, certify_segments
 
 # No point of the shape moves farther (of L) in one step: removed handles make no jump.
 FARTHEST = 0.05
 # A step whose map is not certified is halved this many times.
 HALVINGS = 5
 # After a step of which less was taken, walls are near, and the Hessian changes much.
-FAR_FROM_WALLS = 0.7
+FAR_FROM_BARRIER = 0.7
 # Added samples are dropped when they outnumber this part of those of the shape itself.
 MOST_ADDED = 0.1
 
@@ -34,7 +34,7 @@ class CertifiedStep:
     ----------
     map : HarmonicMap
     certificate : Certificate
-    jet : Jet
+    jet : Evaluation
         Of the map.
     direction : Direction
     length : float
@@ -47,20 +47,20 @@ class CertifiedStep:
 
     map: HarmonicMap
     certificate: Certificate
-    jet: Jet
+    evaluation: Evaluation
     direction: Direction
     length: float
-    broken: Indices
+    broken_segments: Indices
     preconditioner: Preconditioner | None
 
 
 def take_certified_step(
     objective: Objective,
-    jet: Jet,
+    jet: Evaluation,
     harmonic_map: HarmonicMap,
     certificate: Certificate,
     *,
-    required: Limits,
+    required: LocalBounds,
     preconditioner: Preconditioner | None,
 ) -> CertifiedStep:
     """Step as far along Newton's direction as the map stays certified within `required`.
@@ -70,7 +70,7 @@ def take_certified_step(
     objective : Objective
     jet, harmonic_map, certificate
         Of the map at the start.
-    required : Limits
+    required : LocalBounds
     preconditioner : Preconditioner or None
         Of the step before.
     """
@@ -84,7 +84,7 @@ def take_certified_step(
             break
         tried = harmonic_map.changed(length * direction.phi, length * direction.psi)
         proof, segments, _ = certify_segments(tried, objective.boundary, required)
-        if proof.certified:
+        if proof.is_certified:
             harmonic_map, certificate, jet = tried, proof, reached
             break
         if refusals == 0:
@@ -94,11 +94,11 @@ def take_certified_step(
     return CertifiedStep(
         map=harmonic_map,
         certificate=certificate,
-        jet=jet,
+        evaluation=jet,
         direction=direction,
         length=length if refusals < HALVINGS else 0.0,
-        broken=broken,
-        preconditioner=preconditioner if refusals == 0 and length > FAR_FROM_WALLS else None,
+        broken_segments=broken,
+        preconditioner=preconditioner if refusals == 0 and length > FAR_FROM_BARRIER else None,
     )
 
 
@@ -114,7 +114,7 @@ def add_samples(
         return boundary, readonly(duals)
     if len(boundary.points) + len(segments) > (1 + MOST_ADDED) * len(base.points):
         return base, None
-    between = with_samples_between(duals, segments, boundary.following[segments])
+    between = interpolate_duals(duals, segments, boundary.next_samples[segments])
     return boundary.refined(segments), between
 
 

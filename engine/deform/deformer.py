@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from engine.arrays import Complexes, as_count, require_kind
-from engine.deform.following import follow_hand
-from engine.deform.handles import TARGET_COUNT, Wish
-from engine.deform.held_shape import HeldShape
-from engine.deform.rest import Way
-from engine.deform.settling import begin_searches, search_on
+from engine.deform.constrained_shape import ConstrainedShape
+from engine.deform.handles import TARGET_COUNT, HandleTargets
+from engine.deform.interior_point import StartingPoint
+from engine.deform.minimisation import advance_searches, begin_searches
 from engine.deform.state import State, Status
-from engine.deform.steering import FOLLOW, FULL, LEASH, limits_for, proven_around
+from engine.deform.tracking import take_drag_step
+from engine.deform.trust_region import FOLLOW, FULL, STEP_RADIUS, proven_around, widen_limits
 from engine.errors import EngineError
-from engine.maps import Certificate, HarmonicMap, Limits, certify
+from engine.maps import Certificate, HarmonicMap, LocalBounds, certify
 
 # One row of a recorded path: so many steps, or until the expected gain is below this.
 PATH_STEPS = 10
@@ -36,7 +36,7 @@ UNCERTIFIED_START = (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Deformer(HeldShape):
+class Deformer(ConstrainedShape):
     """Deforms a shape by handles within bounds.
 
     To add, move or remove handles or to change the bounds, make another deformer over the same
@@ -52,10 +52,10 @@ class Deformer(HeldShape):
         EngineError
             If the map is not certified within the bounds.
         """
-        first = self.at_rest if harmonic_map is None else harmonic_map
+        first = self.rest_map if harmonic_map is None else harmonic_map
         require_kind(first, HarmonicMap, "the map")
         certificate = certify(first, self.boundary, self.bounds)
-        if not certificate.certified:
+        if not certificate.is_certified:
             raise EngineError(
                 UNCERTIFIED_START.format(
                     k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
@@ -74,7 +74,7 @@ class Deformer(HeldShape):
             If the map is not proven to be locally injective.
         """
         certificate = certify(harmonic_map, self.boundary, self.bounds)
-        if certificate.certified:
+        if certificate.is_certified:
             return self.start(harmonic_map)
         if not (certificate.k < 1 and certificate.sigma_b > 0):
             raise EngineError(
@@ -90,7 +90,7 @@ class Deformer(HeldShape):
             boundary=self.boundary,
         )
 
-    def allowing(self, harmonic_map: HarmonicMap, room: float) -> "Deformer":
+    def widened_for(self, harmonic_map: HarmonicMap, room: float) -> "Deformer":
         """Return the deformer, with bounds as much wider as a map needs.
 
         Parameters
@@ -100,18 +100,18 @@ class Deformer(HeldShape):
             The part of what is left of distortions that is allowed beyond the map's own.
         """
         certificate = certify(harmonic_map, self.boundary, self.bounds)
-        if certificate.certified:
+        if certificate.is_certified:
             return self
         return replace(self, bounds=self._limits_for(harmonic_map, certificate, room=room))
 
     def _limits_for(
         self, harmonic_map: HarmonicMap, certificate: Certificate, *, room: float = FOLLOW
-    ) -> Limits:
+    ) -> LocalBounds:
         """Return the bounds, widened as a map needs it: where they differ, each by itself."""
         if not np.ndim(self.bounds.k):
-            return limits_for(certificate, self.bounds, room=room)
+            return widen_limits(certificate, self.bounds, room=room)
         proven = proven_around(harmonic_map, certificate, self.boundary)
-        return limits_for(proven, self.bounds, room=room)
+        return widen_limits(proven, self.bounds, room=room)
 
     def positions(self, state: State) -> Complexes:
         """Return where the handles are now, complex128 (h,)."""
@@ -119,7 +119,7 @@ class Deformer(HeldShape):
         phi, psi = state.map.columns
         return coordinates @ phi + (coordinates @ psi).conj()
 
-    def step(self, state: State, wish: Wish) -> State:
+    def step(self, state: State, wish: HandleTargets) -> State:
         """Take one Newton step towards a wish; the new state's map is certified like the old.
 
         Call it once for each picture while the hand moves, that is, with changing wishes: the shape
@@ -130,7 +130,7 @@ class Deformer(HeldShape):
         Parameters
         ----------
         state : State
-        wish : Wish
+        wish : HandleTargets
             From `Handles.wish`.
 
         Notes
@@ -141,62 +141,65 @@ class Deformer(HeldShape):
         """
         self._require_own(wish)
         if len(wish.positions) == 0 and self.allows(state):
-            return replace(state, limits=self.bounds, status=Status.FREE, wish=wish)
-        if not self._goes_on(state, wish):
-            state = replace(state, search=None, outcome=None, ways=())
+            return replace(state, limits=self.bounds, status=Status.FREE, targets=wish)
+        if not self._is_same_request(state, wish):
+            state = replace(state, search=None, outcome=None, starting_points=())
         elif state.status.is_final:
             return state
-        elif state.search is None and self._has_followed(state):
-            state = begin_searches(self, state, wish, tuple(Way))
+        elif state.search is None and self._has_tracked(state):
+            state = begin_searches(self, state, wish, tuple(StartingPoint))
         if state.search is None:
-            return follow_hand(self, state, wish)
-        return search_on(self, state, state.search)
+            return take_drag_step(self, state, wish)
+        return advance_searches(self, state, state.search)
 
-    def release(self, state: State, left: Wish) -> State:
+    def release(self, state: State, left: HandleTargets) -> State:
         """Return the state after all hands let go and the handles have the targets `left`.
 
         A minimum stays final if `left` is the wish that `Wish.let_go` returns: the gradient is the
         same. From any other state further steps search on.
         """
-        wish, is_minimum = state.wish, state.status in (Status.CONVERGED, Status.AT_LIMITS)
+        wish, is_minimum = state.targets, state.status in (Status.CONVERGED, Status.AT_LIMITS)
         if is_minimum and wish is not None:
-            exact = wish.let_go(self.positions(state), self.handles.stiffness)
+            exact = wish.released(self.positions(state), self.handles.stiffness)
             if exact.is_same(left):
-                return replace(state, wish=left)
-        return replace(state, status=Status.MOVING, search=None, outcome=None, ways=())
+                return replace(state, targets=left)
+        return replace(state, status=Status.MOVING, search=None, outcome=None, starting_points=())
 
-    def _require_own(self, wish: Wish) -> None:
+    def _require_own(self, wish: HandleTargets) -> None:
         """Refuse targets of other handles."""
-        require_kind(wish, Wish, "targets")
+        require_kind(wish, HandleTargets, "targets")
         if len(wish.positions) != len(self.handles.points):
             raise EngineError(
                 TARGET_COUNT.format(count=len(self.handles.points), given=len(wish.positions))
             )
 
-    def _goes_on(self, state: State, wish: Wish) -> bool:
+    def _is_same_request(self, state: State, wish: HandleTargets) -> bool:
         """Tell whether the last step was towards this wish, with these handles and bounds."""
         return (
             state.handles is self.handles
-            and wish.is_same(state.wish)
+            and wish.is_same(state.targets)
             and self.bounds.include(state.limits)
             and state.limits.include(self.bounds)
         )
 
-    def _has_followed(self, state: State) -> bool:
+    def _has_tracked(self, state: State) -> bool:
         """Tell whether a drag has come as far as it gets by itself."""
         last = state.statistics
         return (
             last is not None
             and self.allows(state)
-            and (state.schedule.idle >= PATIENCE or (not last.leashed and last.length > FULL))
+            and (
+                state.schedule.idle_steps >= PATIENCE
+                or (not last.has_hit_radius and last.length > FULL)
+            )
         )
 
     def settle(
         self,
         state: State,
-        wish: Wish,
+        wish: HandleTargets,
         *,
-        ways: tuple[Way, ...] = tuple(Way),
+        ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
         at_most: int = 600,
         throw: bool = True,
     ) -> tuple[State, int]:
@@ -219,12 +222,12 @@ class Deformer(HeldShape):
         return state, count
 
     def _settled(
-        self, state: State, wish: Wish, ways: tuple[Way, ...], at_most: int
+        self, state: State, wish: HandleTargets, ways: tuple[StartingPoint, ...], at_most: int
     ) -> tuple[State, int]:
         count = 0
-        if not (self._goes_on(state, wish) and state.status.is_final):
+        if not (self._is_same_request(state, wish) and state.status.is_final):
             while count < at_most and not self.allows(state):
-                state, count = follow_hand(self, state, wish), count + 1
+                state, count = take_drag_step(self, state, wish), count + 1
                 if state.status.is_final:
                     return state, count
             if len(wish.positions) > 0 and count < at_most:
@@ -235,16 +238,16 @@ class Deformer(HeldShape):
                 break
         return state, count
 
-    def follow(self, state: State, wish: Wish) -> tuple[State, int]:
+    def track_path_row(self, state: State, wish: HandleTargets) -> tuple[State, int]:
         """Take the few steps that one row of a recorded path gets; return their number too."""
         self._require_own(wish)
         for count in range(1, PATH_STEPS + 1):
-            state = follow_hand(self, state, wish)
+            state = take_drag_step(self, state, wish)
             done = state.statistics
             if done is None or (
                 done.length > FULL
                 and done.decrement < PATH_REST * done.energy
-                and done.handle_error < LEASH
+                and done.target_error < STEP_RADIUS
             ):
                 return state, count
         return state, PATH_STEPS

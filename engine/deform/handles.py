@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, as_reals, readonly, require_kind
-from engine.deform.hands import Hand, Hands, Link, Links
+from engine.deform.pulls import BoundedPull, BoundedPulls, DistanceConstraint, DistanceConstraints
 from engine.errors import EngineError
 from engine.geometry import Domain, diameter, require_inside
 from engine.maps import Boundary
@@ -16,7 +16,7 @@ from engine.maps import Boundary
 # λ = STIFFNESS / L² for a handle of weight 1.
 STIFFNESS = 1e4
 # A prescribed rotation is as stiff as two handles this far (of L) on either side of the point.
-ARM = 0.02
+LEVER = 0.02
 # Handles nearer than this (of L) are at one place, and cannot be wanted so much farther apart.
 COINCIDENT = 1e-6
 APART = 1e-4
@@ -38,7 +38,7 @@ MOST_CAGE = (
 )
 
 
-class Wish(NamedTuple):
+class HandleTargets(NamedTuple):
     """Where the handles should be.
 
     Parameters
@@ -47,49 +47,52 @@ class Wish(NamedTuple):
     rotations : float64, shape (h,)
         Angle in radians of the closest rotation, arg f_z, at each handle; NaN where it is free.
         Angles that differ by whole turns are the same wish.
-    hands : Hands or None
+    hands : BoundedPulls or None
         Those that pull at some of the handles; all others are held.
-    links : Links or None
+    links : DistanceConstraints or None
         Those that keep handles in reach of each other.
     """
 
     positions: Complexes
     rotations: Floats
-    hands: Hands | None = None
-    links: Links | None = None
+    pulls: BoundedPulls | None = None
+    distance_constraints: DistanceConstraints | None = None
 
-    def is_same(self, other: "Wish | None") -> bool:
+    def is_same(self, other: "HandleTargets | None") -> bool:
         """Tell whether another wish asks for the same."""
         if other is None or other is self:
             return other is self
         ours, theirs = (
-            [*wish[:2], *(wish.hands or ()), *(wish.links or ())] for wish in (self, other)
+            [*wish[:2], *(wish.pulls or ()), *(wish.distance_constraints or ())]
+            for wish in (self, other)
         )
         return len(ours) == len(theirs) and all(
             one is two or np.array_equal(one, two, equal_nan=one is self.rotations)
             for one, two in zip(ours, theirs, strict=True)
         )
 
-    def errors(self, positions: Complexes) -> Complexes:
+    def target_errors(self, positions: Complexes) -> Complexes:
         """Return what handles at some positions lack (h,), but for what hands give in by."""
         errors: Complexes = positions - self.positions
-        if self.hands is not None:
-            errors = errors - self.hands.at_handles(self.hands.given(errors))
+        if self.pulls is not None:
+            errors = errors - self.pulls.spread_to_handles(self.pulls.slack(errors))
         return errors
 
-    def let_go(self, positions: Complexes, stiffness: Floats) -> "Wish":
+    def released(self, positions: Complexes, stiffness: Floats) -> "HandleTargets":
         """Return the wish of hands that let go where they have come to, and of no links.
 
         Each handle (h,), so firmly held, is then wanted a hair beyond its place, in the direction
         of its pull: the same pose, where the hands have brought it to rest, is that of least
         energy.
         """
-        if self.hands is None:
+        if self.pulls is None:
             return self
-        left = self.positions + self.hands.at_handles(self.hands.given(positions - self.positions))
-        if self.links is not None:
-            left = left - self.links.pull(positions) / (2.0 * stiffness)
-        return Wish(left, self.rotations)
+        left = self.positions + self.pulls.spread_to_handles(
+            self.pulls.slack(positions - self.positions)
+        )
+        if self.distance_constraints is not None:
+            left = left - self.distance_constraints.gradient(positions) / (2.0 * stiffness)
+        return HandleTargets(left, self.rotations)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -122,7 +125,7 @@ class Handles:
     points: Complexes
     stiffness: Floats
     around: Floats
-    arm: float
+    lever: float
     coordinates: Complexes
     derivatives: Complexes
     basis_coordinates: Complexes
@@ -164,7 +167,7 @@ class Handles:
             points=points,
             stiffness=readonly(stiffness),
             around=readonly(around),
-            arm=ARM * boundary.size,
+            lever=LEVER * boundary.size,
             coordinates=readonly(coordinates),
             derivatives=readonly(derivatives),
             basis_coordinates=readonly(of_basis),
@@ -181,22 +184,22 @@ class Handles:
             hessian=readonly(factor * self.hessian),
         )
 
-    def wish(
+    def targets(
         self,
         positions: npt.ArrayLike,
         rotations: npt.ArrayLike | None = None,
-        hands: Sequence[Hand] = (),
-        links: Sequence[Link] = (),
-    ) -> Wish:
+        hands: Sequence[BoundedPull] = (),
+        links: Sequence[DistanceConstraint] = (),
+    ) -> HandleTargets:
         """Check what is asked of the handles.
 
         Parameters
         ----------
         positions : complex128, shape (h,)
         rotations : array_like of float, shape (h,), optional
-        hands : sequence of Hand
+        hands : sequence of BoundedPull
             Those that pull at some of the handles, with bounded force.
-        links : sequence of Link
+        links : sequence of DistanceConstraint
             Between handles that keep their distance.
 
         Raises
@@ -208,7 +211,7 @@ class Handles:
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
             raise EngineError(TARGET_COUNT.format(count=len(self.points), given=len(targets)))
-        size = self.arm / ARM
+        size = self.lever / LEVER
         far = np.flatnonzero(np.abs(targets - self.points) > FARTHEST * size)
         if len(far):
             raise EngineError(
@@ -216,11 +219,11 @@ class Handles:
             )
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:
-                raise _told_twice(i, j, "targets")
-        pulling = Hands.of(hands, self.stiffness, self.around, size)
-        linked = Links.of(links, self.around * STIFFNESS / size**2)
+                raise _conflict_at_one_point(i, j, "targets")
+        pulling = BoundedPulls.of(hands, self.stiffness, self.around, size)
+        linked = DistanceConstraints.of(links, self.around * STIFFNESS / size**2)
         if rotations is None:
-            return Wish(targets, np.full(len(targets), np.nan), pulling, linked)
+            return HandleTargets(targets, np.full(len(targets), np.nan), pulling, linked)
         angles = as_reals(rotations, "rotations")
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
@@ -229,11 +232,11 @@ class Handles:
             )
         for i, j in self.coincident:
             if abs(np.exp(1j * angles[i]) - np.exp(1j * angles[j])) > APART:
-                raise _told_twice(i, j, "rotations")
-        return Wish(targets, angles, pulling, linked)
+                raise _conflict_at_one_point(i, j, "rotations")
+        return HandleTargets(targets, angles, pulling, linked)
 
 
-def _told_twice(i: int, j: int, what: str) -> EngineError:
+def _conflict_at_one_point(i: int, j: int, what: str) -> EngineError:
     return EngineError(
         f"Handles {i} and {j} are at the same point of the shape but have different {what}; remove "
         "one of them."
@@ -271,12 +274,12 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
 
 
 def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> Floats:
-    hessian = squared_places(boundary, np.sqrt(2.0 * stiffness)[:, None] * coordinates)
+    hessian = position_gram_matrix(boundary, np.sqrt(2.0 * stiffness)[:, None] * coordinates)
     hold_constants(boundary, hessian)
     return hessian
 
 
-def squared_places(boundary: Boundary, rows: Complexes) -> Floats:
+def position_gram_matrix(boundary: Boundary, rows: Complexes) -> Floats:
     """Return the Gram matrix (u, u), in the order of `Objective`, of how places are moved.
 
     Parameters

@@ -4,11 +4,11 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from engine.arrays import Floats
-from engine.deform.handles import Handles, Wish
-from engine.deform.model import Jet, Preconditioner
-from engine.deform.rest import ActiveBound, Search, Way
-from engine.deform.steering import Schedule
-from engine.maps import Boundary, Certificate, HarmonicMap, Limits
+from engine.deform.handles import Handles, HandleTargets
+from engine.deform.interior_point import ActiveBound, Search, StartingPoint
+from engine.deform.model import Evaluation, Preconditioner
+from engine.deform.trust_region import BarrierSchedule
+from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds
 
 
 class Status(Enum):
@@ -67,10 +67,10 @@ class Statistics:
 
     energy: float
     objective: float
-    handle_error: float
+    target_error: float
     decrement: float
     length: float
-    leashed: bool
+    has_hit_radius: bool
     optimality: float
     active: tuple[ActiveBound, ...]
 
@@ -86,27 +86,27 @@ class State:
     map : HarmonicMap
     certificate : Certificate
         Of the map, for its limits.
-    limits : Limits
+    limits : LocalBounds
         What the map is held to: the bounds, or looser ones on the way into tightened bounds.
     status : Status
     statistics : Statistics or None
         None before the first step.
     boundary : Boundary
         With the samples that were added.
-    schedule : Schedule
+    schedule : BarrierSchedule
     duals : float64, shape (3, m), or None
         Of the barrier.
-    wish : Wish or None
+    wish : HandleTargets or None
         Of the last step.
     handles : Handles or None
         Of the last step.
     preconditioner : Preconditioner or None
         For the next step.
-    jet : Jet or None
+    jet : Evaluation or None
         Of the map, as the last step measured it for its boundary and handles.
     search : Search or None
         For the minimum, once the drag has come as far as it gets.
-    ways : tuple of Way
+    ways : tuple of StartingPoint
         Of this search and of those that are still to come.
     outcome : Search or None
         The best of the searches that are over.
@@ -118,18 +118,18 @@ class State:
 
     map: HarmonicMap
     certificate: Certificate
-    limits: Limits
+    limits: LocalBounds
     status: Status = Status.MOVING
     statistics: Statistics | None = None
     boundary: Boundary
-    schedule: Schedule = field(default_factory=Schedule)
+    schedule: BarrierSchedule = field(default_factory=BarrierSchedule)
     duals: Floats | None = None
-    wish: Wish | None = None
+    targets: HandleTargets | None = None
     handles: Handles | None = None
     preconditioner: Preconditioner | None = None
-    jet: Jet | None = None
+    evaluation: Evaluation | None = None
     search: Search | None = None
-    ways: tuple[Way, ...] = ()
+    starting_points: tuple[StartingPoint, ...] = ()
     outcome: Search | None = None
     steps: int = 0
-    tried: int = 0
+    search_steps: int = 0

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from engine.arrays import Complexes, Floats, Indices, ragged
+from engine.arrays import Complexes, Floats, Indices, ragged_indices
 from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, near_distance, panel_weights
 from engine.geometry import as_xy
@@ -106,7 +106,7 @@ class BoundaryOperator:
         place[rows] = np.arange(len(rows))
         for near, into in zip((self.near_by_column, self.near), found, strict=True):
             starts = near.indptr[columns]
-            column, entry = ragged(near.indptr[columns + 1] - starts)
+            column, entry = ragged_indices(near.indptr[columns + 1] - starts)
             entry += starts[column]
             row = place[near.indices[entry]]
             there = row >= 0
@@ -131,7 +131,9 @@ def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices
     if power != 1:
         # Across a corner both panels start there, and nodes as close to it as 1e-10 of a panel keep
         # all their digits only if the corner is never added and subtracted.
-        across = np.where(panels.forward[panel], panels.before[panel], panels.following[panel])
+        across = np.where(
+            panels.forward[panel], panels.previous_panels[panel], panels.next_panels[panel]
+        )
         beside = node // NODES == across
         arcs = panels.arcs().ravel()[node[beside]]
         w[beside] = arcs * (panels.span[across[beside]] / panels.span[panel[beside]])

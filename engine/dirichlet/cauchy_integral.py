@@ -14,9 +14,9 @@ from typing import Self
 import numpy as np
 from scipy.sparse import bsr_array
 
-from engine.arrays import Complexes, Floats, Indices, freeze, ragged
+from engine.arrays import Complexes, Floats, Indices, freeze, ragged_indices
 from engine.dirichlet.expansions import TERMS, AnyComplexes, Expansions, powers
-from engine.dirichlet.interactions import interactions
+from engine.dirichlet.interactions import find_interactions
 from engine.dirichlet.near_field import near_matrices, near_matrix
 from engine.dirichlet.panels import Panels
 
@@ -58,12 +58,12 @@ class CauchyIntegral:
         precision what is not close to a point errs by 2e-7 of the largest density, and takes half
         the memory.
         """
-        acting = interactions(panels, points)
+        acting = find_interactions(panels, points)
         squares, near = acting.squares, acting.near
         counts = squares.ends[squares.leaves] - squares.starts[squares.leaves]
         ascending = np.argsort(counts, kind="stable")
         leaves, counts = squares.leaves[ascending], counts[ascending]
-        number, place = ragged(counts)
+        number, place = ragged_indices(counts)
         leaf = leaves[number]
         order = squares.order[squares.starts[leaf] + place]
         z = points[order]
@@ -74,12 +74,12 @@ class CauchyIntegral:
         alone = np.array(
             [
                 ~np.isin(near.squares * count + beside[near.clusters], keys)
-                for beside in (panels.before, panels.following)
+                for beside in (panels.previous_panels, panels.next_panels)
             ]
         )
         # The near pairs of a leaf belong to each of its points.
         first = np.searchsorted(near.squares, leaf)
-        rows, place = ragged(np.searchsorted(near.squares, leaf, side="right") - first)
+        rows, place = ragged_indices(np.searchsorted(near.squares, leaf, side="right") - first)
         own = first[rows] + place
         pairs = panels, z, rows, near.clusters[own], alone[:, own]
         offsets = (z - squares.centre[leaf]) / squares.radius[leaf]

@@ -53,7 +53,7 @@ class Translation(NamedTuple):
         into[self.targets] += self.matrices @ sources
 
 
-class Conversion(NamedTuple):
+class MomentToLocal(NamedTuple):
     """From the moments of clusters to the polynomials of squares that are far from them.
 
     1 / (ζ − z) = Σ binom(i + k, k) (z − c_T)^i (c_S − ζ)^k / (c_S − c_T)^(i + k + 1), so that the
@@ -102,7 +102,7 @@ class Expansions:
         From the densities on panels to their moments Σ m ((c − ζ) / r)^k / r.
     joined : tuple of Translation
         From the moments of clusters to those of the next level's, level by level.
-    far : tuple of Conversion
+    far : tuple of MomentToLocal
         From moments to polynomials.
     direct : tuple of Translation
         From densities on panels to polynomials.
@@ -110,9 +110,9 @@ class Expansions:
 
     squares: Squares
     panels: AnyComplexes
-    joined: tuple[Translation, ...]
-    far: tuple[Conversion, ...]
-    direct: tuple[Translation, ...]
+    m2m: tuple[Translation, ...]
+    m2l: tuple[MomentToLocal, ...]
+    p2l: tuple[Translation, ...]
 
     @classmethod
     def of(cls, panels: Panels, acting: Interactions, *, single: bool) -> Self:
@@ -124,9 +124,9 @@ class Expansions:
         return cls(
             squares=acting.squares,
             panels=_kept(to_moments.transpose(1, 0, 2), single=single),
-            joined=tuple(_joined(clusters, single=single)),
-            far=tuple(_converted(acting, single=single)),
-            direct=tuple(_direct(panels, acting, single=single)),
+            m2m=tuple(_m2m(clusters, single=single)),
+            m2l=tuple(_m2l(acting, single=single)),
+            p2l=tuple(_p2l(panels, acting, single=single)),
         )
 
     def __call__(self, densities: Floats) -> AnyComplexes:
@@ -134,18 +134,18 @@ class Expansions:
         squares, columns = self.squares, densities.shape[1]
         precision = self.panels.dtype
         given = densities.reshape(-1, NODES, columns).astype(self.panels.real.dtype, copy=False)
-        count = len(given) + sum(len(each.targets) for each in self.joined)
+        count = len(given) + sum(len(each.targets) for each in self.m2m)
         moments = np.zeros((count, TERMS, columns), dtype=precision)
         moments[: len(given)] = self.panels @ given
-        for level in self.joined:
+        for level in self.m2m:
             level.add(moments, moments)
         taylor = np.zeros((len(squares.centre), TERMS, columns), dtype=precision)
-        for conversion in self.far:
+        for conversion in self.m2l:
             conversion.add(moments, taylor)
-        for translation in self.direct:
+        for translation in self.p2l:
             translation.add(given, taylor)
         for below in squares.levels[1:]:
-            to_quarters = _to_quarters().astype(precision)[squares.quadrant[below]]
+            to_quarters = _l2l().astype(precision)[squares.quadrant[below]]
             taylor[below] += to_quarters @ taylor[squares.parent[below]]
         return taylor
 
@@ -167,7 +167,7 @@ def _kept(matrices: AnyComplexes, *, single: bool) -> AnyComplexes:
     return freeze(kept)
 
 
-def _joined(clusters: Clusters, *, single: bool) -> Iterator[Translation]:
+def _m2m(clusters: Clusters, *, single: bool) -> Iterator[Translation]:
     """Yield the translations from each level of clusters to the next."""
     ranks = np.arange(TERMS)
     raised = np.maximum(ranks[:, None] - ranks, 0)
@@ -189,7 +189,7 @@ def _joined(clusters: Clusters, *, single: bool) -> Iterator[Translation]:
         yield Translation(parents, children, _kept(joined, single=single))
 
 
-def _converted(acting: Interactions, *, single: bool) -> Iterator[Conversion]:
+def _m2l(acting: Interactions, *, single: bool) -> Iterator[MomentToLocal]:
     """Yield the conversions of far pairs, in blocks."""
     squares, clusters = acting.squares, acting.clusters
     targets, starts = np.unique(acting.far.squares, return_index=True)
@@ -202,7 +202,7 @@ def _converted(acting: Interactions, *, single: bool) -> Iterator[Conversion]:
         given = clusters.radius[source] * inverse
         ones = np.ones(len(source), dtype=np.float32 if single else np.float64)
         own = ends[head : tail + 1] - ends[head]
-        yield Conversion(
+        yield MomentToLocal(
             targets=freeze(targets[head:tail]),
             sources=freeze(source),
             columns=_kept((powers(given) * given).T, single=single),
@@ -211,7 +211,7 @@ def _converted(acting: Interactions, *, single: bool) -> Iterator[Conversion]:
         )
 
 
-def _direct(panels: Panels, acting: Interactions, *, single: bool) -> Iterator[Translation]:
+def _p2l(panels: Panels, acting: Interactions, *, single: bool) -> Iterator[Translation]:
     """Yield the translations of panels, those to squares of as many panels together."""
     squares, pairs = acting.squares, acting.direct
     nodes, differentials = panels.nodes, panels.differentials() / (2j * np.pi)
@@ -236,7 +236,7 @@ def _binomials() -> Floats:
 
 
 @cache
-def _to_quarters() -> Complexes:
+def _l2l() -> Complexes:
     """Return the matrices (4, TERMS, TERMS) from the polynomial of a square to its quarters'."""
     ranks = np.arange(TERMS)
     raised = np.maximum(ranks - ranks[:, None], 0)

@@ -23,7 +23,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from engine.arrays import Complexes, Floats, as_points, held_bytes
+from engine.arrays import Complexes, Floats, as_points, nbytes_of
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.panels import Panels
@@ -38,9 +38,9 @@ from engine.geometry import (
     distance_to_boundary,
     loop_ends,
     next_on_loop,
-    region,
     require_around,
     require_simple,
+    shapely_region,
 )
 
 OUTSIDE = (
@@ -131,7 +131,7 @@ class HilbertTransform:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return held_bytes(self.solver)
+        return nbytes_of(self.solver)
 
     @property
     def nodes(self) -> Complexes:
@@ -186,7 +186,7 @@ class Extension:
     @property
     def nbytes(self) -> int:
         """Memory beyond the transform's own, in bytes."""
-        return held_bytes(self.integral)
+        return nbytes_of(self.integral)
 
     def extend(self, real_parts: Floats) -> Extended:
         """Return holomorphic functions with given real parts on the boundary.
@@ -215,7 +215,7 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes, rounding: fl
     outline, *holes = loops
     size = diameter(outline)
     # Nearly all points are inside a region that is a little smaller.
-    area = region(outline, holes)
+    area = shapely_region(outline, holes)
     room = area.buffer(-2 * EDGE_DEPTH * size, join_style="mitre")
     shapely.prepare(room)
     doubtful = np.flatnonzero(~shapely.intersects_xy(room, points.real, points.imag))

@@ -13,7 +13,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, ragged
+from engine.arrays import Booleans, Complexes, Floats, Indices, ragged_indices
 from engine.dirichlet.panels import Panels
 from engine.dirichlet.product_integration import near_distance
 from engine.dirichlet.quadtree import DEEPEST, Grid, Level, Squares
@@ -101,7 +101,7 @@ class Interactions(NamedTuple):
     near: Pairs
 
 
-def interactions(panels: Panels, points: Complexes) -> Interactions:
+def find_interactions(panels: Panels, points: Complexes) -> Interactions:
     """Sort points (t,), at least one, into squares, and find what acts on each."""
     clusters = Clusters.of(panels)
     search = _Search(panels, clusters)
@@ -221,7 +221,7 @@ def _handed_down(waiting: Pairs, level: Level, quarters: Level) -> Pairs:
     parent = quarters.parent - level.first
     counts = np.bincount(waiting.squares, minlength=len(level.starts))
     order = np.argsort(waiting.squares, kind="stable")
-    quarter, place = ragged(counts[parent])
+    quarter, place = ragged_indices(counts[parent])
     own = order[(np.cumsum(counts) - counts)[parent[quarter]] + place]
     return Pairs(quarter, waiting.clusters[own])
 

@@ -6,8 +6,15 @@ from typing import Self
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, freeze, ragged
-from engine.geometry import Domain, Pieces, bisect, distance_to_segments, loop_ends, next_on_loop
+from engine.arrays import Booleans, Complexes, Floats, Indices, freeze, ragged_indices
+from engine.geometry import (
+    Domain,
+    Pieces,
+    bisect_segments,
+    distance_to_segments,
+    loop_ends,
+    next_on_loop,
+)
 
 NODES = 12  # Gauss-Legendre nodes of a panel
 POWER = 3  # grading at corners: arc length is the third power of the parameter
@@ -64,7 +71,7 @@ class Panels:
             fine: Booleans = (pieces.lengths <= room) | (pieces.width <= FINEST)
             return fine
 
-        pieces = bisect(halves, is_fine)
+        pieces = bisect_segments(halves, is_fine)
         forward = pieces.place + pieces.width < 1.0
         corner = (pieces.place == 0.0) | ~forward
         span = pieces.width * pieces.span[pieces.segment]
@@ -88,7 +95,7 @@ class Panels:
 
     def halved(self, chosen: Booleans) -> Self:
         """Return panels of which the chosen ones (p,) are cut in the middle."""
-        panel, place = ragged(1 + chosen.astype(np.intp))
+        panel, place = ragged_indices(1 + chosen.astype(np.intp))
         at_origin = ~chosen[panel] | ((place == 0) == self.forward[panel])
         span = np.where(chosen[panel], self.span[panel] / 2, self.span[panel])
         firsts = np.cumsum([0, *(1 + chosen)])
@@ -115,14 +122,14 @@ class Panels:
         return len(self.origin)
 
     @property
-    def following(self) -> Indices:
+    def next_panels(self) -> Indices:
         """The next panel of each on its loop, intp (p,)."""
         return next_on_loop(self.starts, len(self))
 
     @property
-    def before(self) -> Indices:
+    def previous_panels(self) -> Indices:
         """The panel before each on its loop, intp (p,)."""
-        return np.argsort(self.following)
+        return np.argsort(self.next_panels)
 
     @property
     def middles(self) -> Complexes:

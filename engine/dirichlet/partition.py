@@ -16,7 +16,7 @@ DIRECTIONS = 8  # of the lines
 SMALLEST = 0.35  # part of the panels in either half
 
 
-def partition(panels: Panels, depth: int) -> list[Indices]:
+def partition_panels(panels: Panels, depth: int) -> list[Indices]:
     """Return 2^depth boxes of panels, at most as many as these; halves follow each other."""
     middles, own = panels.middles - panels.middles.mean(), np.arange(len(panels))
     turns = np.exp(1j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
@@ -31,7 +31,7 @@ def partition(panels: Panels, depth: int) -> list[Indices]:
     gaps = np.abs(np.diff(middles[facing])[:, 0])
     # The farther apart, the fewer functions they act by; neighbours on a loop meet.
     prices = np.minimum(1.0, np.abs(panels.span)[facing].min(axis=1) / gaps)
-    pairs = np.concatenate([facing, np.column_stack([own, panels.following])])
+    pairs = np.concatenate([facing, np.column_stack([own, panels.next_panels])])
     return _parts(keys, pairs, np.append(prices, np.ones(len(panels))), depth)
 
 

@@ -17,10 +17,10 @@ import numpy as np
 import scipy.linalg
 from scipy.sparse import csc_array
 
-from engine.arrays import Floats, Indices, freeze, held_bytes
+from engine.arrays import Floats, Indices, freeze, nbytes_of
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.panels import NODES
-from engine.dirichlet.partition import partition
+from engine.dirichlet.partition import partition_panels
 
 LEAF = 6 * NODES  # nodes of a box of the lowest level, about
 SMALL = 600  # nodes that are solved for directly
@@ -84,7 +84,7 @@ class SkeletonSolver:
         count = len(operator.panels)
         depth = max(0, round(np.log2(count * NODES / LEAF)))
         panels = np.arange(count * NODES).reshape(count, NODES)
-        leaves = [panels[part].ravel() for part in partition(operator.panels, depth)]
+        leaves = [panels[part].ravel() for part in partition_panels(operator.panels, depth)]
         active = [_Active(nodes, operator.entries(nodes, nodes)[0]) for nodes in leaves]
         boxes = []
         while len(active) > 1:
@@ -105,7 +105,7 @@ class SkeletonSolver:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return held_bytes(self)
+        return nbytes_of(self)
 
     def __call__(self, right: Floats) -> Floats:
         """Return the solutions for right-hand sides (N, j)."""

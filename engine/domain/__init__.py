@@ -6,6 +6,12 @@ Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels
 Imports: `engine.geometry`.
 """
 
+from engine.domain.anatomy import (
+    SuggestedHandle as SuggestedHandle,
+    guess_kind as guess_kind,
+    suggest_handles as suggest_handles,
+    suggest_joints as suggest_joints,
+)
 from engine.domain.build import (
     MOST_TRIANGLES as MOST_TRIANGLES,
     MeshedDomain as MeshedDomain,
@@ -16,27 +22,21 @@ from engine.domain.build import (
     texture as texture,
     texture_coordinates as texture_coordinates,
 )
-from engine.domain.limbs import (
-    SuggestedHandle as SuggestedHandle,
-    guessed_kind as guessed_kind,
-    suggest_handles as suggest_handles,
-    suggested_joints as suggested_joints,
-)
+from engine.domain.closed_cuts import ClosedCuts as ClosedCuts, find_closed_cuts as find_closed_cuts
 from engine.domain.outline import (
-    SLIT_WIDTH as SLIT_WIDTH,
+    CUT_WIDTH as CUT_WIDTH,
     HoleMap as HoleMap,
     find_holes as find_holes,
 )
 from engine.domain.picture import (
     MOST_STROKE_POINTS as MOST_STROKE_POINTS,
+    CutLine as CutLine,
     CutOut as CutOut,
     Mask as Mask,
-    Slit as Slit,
     Stroke as Stroke,
     Subject as Subject,
     subject_mask as subject_mask,
 )
-from engine.domain.seam import Seam as Seam, find_seam as find_seam
 from engine.domain.validity import (
     MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
     require_domain as require_domain,

@@ -8,17 +8,17 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Bytes, Complexes, Floats, as_count, as_number, as_points, as_tuple
-from engine.domain.meshing import Mesh, triangulate, with_limbs_on_top
-from engine.domain.outline import MARGINS, Detail, enclose, hole_in, offset_cage
-from engine.domain.picture import CutOut, Subject, matted, subject_mask
+from engine.domain.meshing import Mesh, order_branches_on_top, triangulate
+from engine.domain.outline import MARGINS, Detail, enclose_subject, make_hole, offset_cage
+from engine.domain.picture import CutOut, Subject, matte_picture, subject_mask
 from engine.errors import EngineError
 from engine.geometry import (
     Domain,
     Pieces,
-    bisect,
+    bisect_segments,
     deepest_point,
     diameter,
-    edges,
+    edge_vectors,
     require_holes,
     require_simple,
     signed_area,
@@ -125,12 +125,12 @@ def build_domain(
         raise EngineError(NO_PICTURE.format(dtype=rgba.dtype, shape=rgba.shape))
     cut_out = cut_out or CutOut()
     subject = subject_mask(rgba, cut_out)
-    enclosure = enclose(
+    enclosure = enclose_subject(
         subject.mask,
         detail=detail,
         holes=cut_out.holes,
-        swapped=subject.swapped,
-        slits=[slit.points for slit in cut_out.slits],
+        swapped=subject.toggled_holes,
+        slits=[slit.points for slit in cut_out.cut_lines],
     )
     domain = Domain(enclosure.outline, enclosure.cage, enclosure.holes)
     meshed = MeshedDomain.of(domain, triangles, enclosure.closed)
@@ -173,15 +173,15 @@ def domain_of_polygon(
     offset = MARGINS["normal"] * size
     around, *inner = (_with_short_edges(ring, LONGEST_EDGE * size) for ring in (around, *inner))
     cage = offset_cage(around, offset)
-    domain = Domain(around, cage, tuple(hole_in(hole, offset) for hole in inner))
+    domain = Domain(around, cage, tuple(make_hole(hole, offset) for hole in inner))
     return MeshedDomain.of(domain, triangles)
 
 
 def _with_short_edges(ring: Complexes, longest: float) -> Complexes:
     """Return a polygon with edges in halves, quarters and so on, none longer than that."""
-    longest = min(longest, float(np.abs(edges(ring)).sum()) / FEWEST_EDGES)
+    longest = min(longest, float(np.abs(edge_vectors(ring)).sum()) / FEWEST_EDGES)
     pieces = Pieces.whole(ring, np.roll(ring, -1))
-    return bisect(pieces, lambda each: np.asarray(each.lengths <= longest)).starts
+    return bisect_segments(pieces, lambda each: np.asarray(each.lengths <= longest)).starts
 
 
 def _require_triangles(count: int) -> None:
@@ -209,7 +209,7 @@ def mesh_inside(domain: Domain, *, triangles: int) -> Mesh:
     """Triangulate a domain, in an order that paints limbs over the body."""
     holes = domain.loops[1:]
     mesh = triangulate(domain.outline, triangles, holes=holes)
-    return with_limbs_on_top(mesh, deepest_point(domain.outline, holes))
+    return order_branches_on_top(mesh, deepest_point(domain.outline, holes))
 
 
 def texture(rgba: Bytes, subject: Subject) -> Bytes:
@@ -218,7 +218,7 @@ def texture(rgba: Bytes, subject: Subject) -> Bytes:
     That is the picture itself, with its own transparency; but what was taken out of it is
     transparent, and edges are free of its colour.
     """
-    return matted(rgba, subject.mask) if subject.cut else rgba
+    return matte_picture(rgba, subject.mask) if subject.cut else rgba
 
 
 def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:

@@ -6,7 +6,7 @@ domain = engine.domain_of_polygon([0, 6, 6 + 1j, 1j], triangles=1_000)
 boundary = engine.Boundary.sample(domain)
 grips = [0.5 + 0.5j, 5.5 + 0.5j]
 handles = engine.Handles.place(boundary, grips)
-targets = handles.wish([grips[0], 12 + 0.5j])  # more than twice as long
+targets = handles.targets([grips[0], 12 + 0.5j])  # more than twice as long
 
 for sigma_a in (3.0, 1.5, 1.2):
     bounds = engine.Bounds(k=0.8, sigma_a=sigma_a, sigma_b=0.3)
@@ -23,4 +23,4 @@ try:
 except engine.EngineError as error:
     print(error)
 unfinished, _ = deformer.settle(deformer.start(), targets, at_most=3, throw=False)
-print(f"{unfinished.status.value}, yet certified: {unfinished.certificate.certified}")
+print(f"{unfinished.status.value}, yet certified: {unfinished.certificate.is_certified}")

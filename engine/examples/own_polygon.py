@@ -12,7 +12,7 @@ handles = engine.Handles.place(boundary, grips)
 bounds = engine.Bounds(k=0.6, sigma_a=2.5, sigma_b=0.4)
 deformer = engine.Deformer(boundary=boundary, handles=handles, bounds=bounds)
 rest = deformer.start()
-bent, steps = deformer.settle(rest, handles.wish([grips[0], grips[1], 3.5 + 3.5j]))
+bent, steps = deformer.settle(rest, handles.targets([grips[0], grips[1], 3.5 + 3.5j]))
 print(f"{bent.status.value} after {steps} steps, k up to {bent.certificate.k:.3f}")
 
 # The rest is the key at time 0, the bent shape that at time 1.
@@ -21,5 +21,5 @@ prepared = engine.prepare([rest.map, bent.map], boundary, vertices, triangles=tr
 frame = prepared.frame(0.5)
 print(f"half-way: k up to {frame.k.max():.3f}, tau up to {frame.tau.max():.3f}")
 
-proof = engine.prove(prepared.intervals[0])
-print(f"at all times: k up to {proof.k:.3f}, folds nowhere: {proof.never_folds}")
+proof = engine.prove(prepared.segments[0])
+print(f"at all times: k up to {proof.k:.3f}, folds nowhere: {proof.is_locally_injective}")

@@ -13,7 +13,7 @@ prepared = engine.prepare(
 )
 
 # The generator works in small steps, so that a window can stay awake; `finish` takes all of them.
-channels = engine.Positions.of(prepared.intervals[0], prepared.sites)
+channels = engine.Positions.of(prepared.segments[0], prepared.sampled_domain)
 series = engine.finish(engine.build_series(channels))
 rows = [len(piece.rows) for piece in series.pieces]
 print(f"{series.size} numbers a frame, blended of {rows} rows, at most {series.error:.1e} off")

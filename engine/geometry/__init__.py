@@ -5,7 +5,7 @@ Out: samples, pieces, triangles, distances, areas, and whether something is insi
 Imports: `engine.arrays`, `engine.errors`.
 """
 
-from engine.geometry.best_rigid import best_rigid as best_rigid
+from engine.geometry.best_rigid import fit_rigid as fit_rigid
 from engine.geometry.domain import Domain as Domain
 from engine.geometry.hole import Hole as Hole, require_cages_in_holes as require_cages_in_holes
 from engine.geometry.polygon import (
@@ -19,26 +19,26 @@ from engine.geometry.polygon import (
     deepest_point as deepest_point,
     diameter as diameter,
     distance_to_boundary as distance_to_boundary,
-    edges as edges,
+    edge_vectors as edge_vectors,
     lies_within as lies_within,
     loop_ends as loop_ends,
     next_on_loop as next_on_loop,
-    region as region,
     require_around as require_around,
     require_holes as require_holes,
     require_inside as require_inside,
     require_simple as require_simple,
     sample_graded as sample_graded,
+    shapely_region as shapely_region,
     signed_area as signed_area,
-    winding as winding,
+    winding_number as winding_number,
 )
 from engine.geometry.rigid import (
-    HERE as HERE,
+    IDENTITY_MOTION as IDENTITY_MOTION,
     RigidMotion as RigidMotion,
     Similarity as Similarity,
 )
 from engine.geometry.segments import (
     Pieces as Pieces,
-    bisect as bisect,
+    bisect_segments as bisect_segments,
     distance_to_segments as distance_to_segments,
 )

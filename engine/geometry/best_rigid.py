@@ -4,13 +4,13 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, as_points, as_reals
 from engine.errors import EngineError
-from engine.geometry.rigid import HERE, RigidMotion
+from engine.geometry.rigid import IDENTITY_MOTION, RigidMotion
 
 NEGATIVE_WEIGHTS = "weights must be finite and not negative, not {weights}."
 TOWARDS_REST = 1e-6  # how strongly all points together pull towards no motion
 
 
-def best_rigid(
+def fit_rigid(
     places: Complexes, offsets: Complexes, weights: Floats, pivot: complex | None = None
 ) -> RigidMotion:
     """Return argmin over R of Σ w |R p − p − o|² + (ε / h) Σ |R p − p|².
@@ -31,7 +31,7 @@ def best_rigid(
     if not (np.isfinite(weights) & (weights >= 0)).all():
         raise EngineError(NEGATIVE_WEIGHTS.format(weights=weights))
     if not len(places) or not weights.any():
-        return HERE
+        return IDENTITY_MOTION
     total = weights + TOWARDS_REST / len(places)
     wanted = places + offsets * weights / total
     if pivot is None:

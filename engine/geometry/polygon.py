@@ -11,7 +11,7 @@ import shapely
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
-from engine.geometry.segments import Pieces, bisect, distance_to_segments
+from engine.geometry.segments import Pieces, bisect_segments, distance_to_segments
 
 # Distance, over the size of a shape, at which a point counts as on its outline: so far may rounding
 # move it off.
@@ -36,7 +36,7 @@ FEW_DIGITS = (
 )
 
 
-def edges(polygon: Complexes) -> Complexes:
+def edge_vectors(polygon: Complexes) -> Complexes:
     """Return the edge vectors (n,): entry j leads from vertex j to vertex j + 1."""
     return np.roll(polygon, -1) - polygon
 
@@ -87,7 +87,7 @@ def diameter(polygon: Complexes) -> float:
 
 def corners_of(polygon: Complexes) -> Complexes:
     """Return the vertices at which a polygon turns, without those on the way of straight edges."""
-    before, after = polygon - np.roll(polygon, 1), edges(polygon)
+    before, after = polygon - np.roll(polygon, 1), edge_vectors(polygon)
     off = np.abs((before.conj() * after).imag)  # times the chord's length, from the chord
     turns = off > ON_OUTLINE * diameter(polygon) * np.abs(before + after)
     return polygon[turns | ((before.conj() * after).real < 0)]
@@ -107,7 +107,7 @@ def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) ->
     """Raise `EngineError` unless the polygon is simple, has an area and runs the right way."""
     if len(polygon) < 3:
         raise EngineError(FEW_VERTICES.format(name=name, count=len(polygon)))
-    if np.any(edges(polygon) == 0):
+    if np.any(edge_vectors(polygon) == 0):
         raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
     size = diameter(polygon)
     if not SIZES[0] < size < SIZES[1] or np.abs(polygon).max() > FARTHEST * size:
@@ -131,10 +131,10 @@ def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
 
 def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes] = ()) -> bool:
     """Tell whether the inside of one polygon lies in that of another, clear of its boundary."""
-    return bool(shapely.contains_properly(region(polygon, holes), region(inner)))
+    return bool(shapely.contains_properly(shapely_region(polygon, holes), shapely_region(inner)))
 
 
-def region(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
+def shapely_region(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
     """Return the inside of a polygon, without that of its holes, as Shapely has it."""
     return shapely.Polygon(as_xy(polygon), [as_xy(hole) for hole in holes])
 
@@ -152,7 +152,7 @@ def distance_to_boundary(
 def deepest_point(polygon: Complexes, holes: Sequence[Complexes] = ()) -> complex:
     """Return the point inside that is farthest from the boundary, to 1e-4 of the diameter."""
     radius = shapely.maximum_inscribed_circle(
-        region(polygon, holes), tolerance=1e-4 * diameter(polygon)
+        shapely_region(polygon, holes), tolerance=1e-4 * diameter(polygon)
     )
     x, y = shapely.get_coordinates(radius)[0]
     return complex(x, y)
@@ -169,7 +169,7 @@ def contains(
 
     The inside of the `holes`, polygons too, does not belong to the region.
     """
-    area = region(polygon, holes)
+    area = shapely_region(polygon, holes)
     shapely.prepare(area)
     inside = np.asarray(shapely.intersects_xy(area, points.real, points.imag), dtype=np.bool_)
     if tolerance > 0 and not inside.all():
@@ -203,17 +203,17 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
     Only that: published cages are known that cross themselves elsewhere.
     """
     size = diameter(outline)
-    if np.abs(edges(cage)).min() <= SHORTEST_EDGE * size:
+    if np.abs(edge_vectors(cage)).min() <= SHORTEST_EDGE * size:
         raise EngineError(CAGE_REPEATS)
     if np.abs(cage - outline[0]).max() > FARTHEST_CAGE * size:
         raise EngineError(CAGE_FAR)
     if shapely.intersects(shapely.LinearRing(as_xy(cage)), shapely.Polygon(as_xy(outline))):
         raise EngineError(CAGE_TOUCHES)
-    if winding(cage, complex(outline[0])) != 1:
+    if winding_number(cage, complex(outline[0])) != 1:
         raise EngineError(CAGE_ORDER)
 
 
-def winding(polygon: Complexes, point: complex) -> int:
+def winding_number(polygon: Complexes, point: complex) -> int:
     """Return how often a polygon runs counter-clockwise around a point that is not on it."""
     spokes = polygon - point
     return round(float(np.angle(np.roll(spokes, -1) / spokes).sum() / (2 * np.pi)))
@@ -233,7 +233,9 @@ def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) ->
     for loop in (polygon, *holes):
         if not is_simple(loop):
             raise EngineError(SELF_TOUCHING.format(name="polygon"))
-    parts = shapely.get_parts(shapely.constrained_delaunay_triangles(region(polygon, holes)))
+    parts = shapely.get_parts(
+        shapely.constrained_delaunay_triangles(shapely_region(polygon, holes))
+    )
     corners = shapely.get_coordinates(parts).reshape(-1, 4, 2)[:, :3] @ [1, 1j]
     vertices = np.concatenate([polygon, *holes])
     by_place = np.argsort(vertices)
@@ -265,4 +267,4 @@ def sample_graded(
             raise EngineError("A cage vertex lies on the outline; the cage must keep a distance.")
         return np.asarray(pieces.lengths <= np.minimum(ratio * distance, longest))
 
-    return bisect(Pieces.whole(polygon, np.roll(polygon, -1)), is_fine).starts
+    return bisect_segments(Pieces.whole(polygon, np.roll(polygon, -1)), is_fine).starts

@@ -11,17 +11,17 @@ class RigidMotion(NamedTuple):
     factor: complex = 1.0 + 0j
     shift: complex = 0j
 
-    def on(self, places: Complexes) -> Complexes:
+    def apply(self, places: Complexes) -> Complexes:
         """Return where places come to."""
-        if self == HERE:
+        if self == IDENTITY_MOTION:
             return places
         return self.factor * places + self.shift
 
-    def back(self, place: complex) -> complex:
+    def apply_inverse(self, place: complex) -> complex:
         """Return which place comes to a place."""
         return (place - self.shift) * self.factor.conjugate()
 
-    def after(self, other: "RigidMotion") -> "RigidMotion":
+    def compose(self, other: "RigidMotion") -> "RigidMotion":
         """Return the motion that is the other one and then this one."""
         return RigidMotion(self.factor * other.factor, self.factor * other.shift + self.shift)
 
@@ -37,13 +37,13 @@ class Similarity(NamedTuple):
     factor: complex = 1.0 + 0j
     shift: complex = 0j
 
-    def on(self, places: Complexes) -> Complexes:
+    def apply(self, places: Complexes) -> Complexes:
         """Return where places come to."""
         return self.factor * places + self.shift
 
-    def back(self, place: complex) -> complex:
+    def apply_inverse(self, place: complex) -> complex:
         """Return which place comes to a place."""
         return (place - self.shift) / self.factor
 
 
-HERE = RigidMotion()
+IDENTITY_MOTION = RigidMotion()

@@ -76,7 +76,7 @@ class Pieces:
         return replace(self, segment=self.segment[parent], place=place, width=width)
 
 
-def bisect(pieces: Pieces, is_fine: Callable[[Pieces], Booleans]) -> Pieces:
+def bisect_segments(pieces: Pieces, is_fine: Callable[[Pieces], Booleans]) -> Pieces:
     """Halve pieces until each of them is fine.
 
     `is_fine` tells for each of some pieces (c,) whether it may stay as it is; every piece is asked

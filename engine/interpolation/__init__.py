@@ -7,39 +7,32 @@ Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
 from engine.interpolation.added.pins import (
-    BaseAt as BaseAt,
+    CorrectionBase as CorrectionBase,
     CorrectionSeries as CorrectionSeries,
     SegmentPins as SegmentPins,
     SpanBasis as SpanBasis,
 )
 from engine.interpolation.blends import BLENDS as BLENDS
-from engine.interpolation.courses import (
-    Course as Course,
-    End as End,
-    Joint as Joint,
-    Tangent as Tangent,
-    windows_of as windows_of,
-)
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
-from engine.interpolation.one_interval import (
-    base_at as base_at,
+from engine.interpolation.keyframe_blend import (
+    KeyframeBlend as KeyframeBlend,
+    KeyframeSamples as KeyframeSamples,
+    KeyframeSegment as KeyframeSegment,
+    sample_keyframes as sample_keyframes,
+)
+from engine.interpolation.one_segment import (
+    evaluate_base as evaluate_base,
     frame_at as frame_at,
     prepare_inbetweens as prepare_inbetweens,
     solve_pins as solve_pins,
     value_points_for_corrections as value_points_for_corrections,
 )
-from engine.interpolation.passage import (
-    Interval as Interval,
-    KeyframeSamples as KeyframeSamples,
-    Passage as Passage,
-    sample_keyframes as sample_keyframes,
-)
 from engine.interpolation.preparation import (
     TWO_KEYFRAMES as TWO_KEYFRAMES,
     Prepared as Prepared,
-    interval_at as interval_at,
     prepare as prepare,
     require_keyframes as require_keyframes,
+    segment_at as segment_at,
 )
 from engine.interpolation.proof import (
     FrameCorrection as FrameCorrection,
@@ -47,12 +40,22 @@ from engine.interpolation.proof import (
     correct_frame as correct_frame,
     prove as prove,
 )
+from engine.interpolation.sampled_domain import (
+    SampledDomain as SampledDomain,
+    sample_domain as sample_domain,
+)
 from engine.interpolation.scaling import (
+    KeyframeExtremes as KeyframeExtremes,
     PointSamples as PointSamples,
-    Scaling as Scaling,
-    Worst as Worst,
-    looseness as looseness,
+    SmoothedRho as SmoothedRho,
+    blend_in_outline_bounds as blend_in_outline_bounds,
 )
 from engine.interpolation.series import chebyshev as chebyshev, finish as finish
-from engine.interpolation.sites import Sites as Sites, prepare_sites as prepare_sites
+from engine.interpolation.time_weights import (
+    EndCondition as EndCondition,
+    InteriorKnot as InteriorKnot,
+    Tangent as Tangent,
+    TimeWeights as TimeWeights,
+    support_of as support_of,
+)
 from engine.variant import Variant as Variant

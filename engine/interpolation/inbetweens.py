@@ -6,14 +6,14 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, Indices, held_bytes
+from engine.arrays import Complexes, Floats, Indices, nbytes_of
 from engine.interpolation.added import Closing
-from engine.interpolation.added.pins import CorrectionSeries, FoldedCorrection, Mixing, SpanBasis
+from engine.interpolation.added.pins import CorrectionSeries, EvaluatedCorrection, Mixing, SpanBasis
 from engine.interpolation.blends import Blend
-from engine.interpolation.passage import Derivatives, Passage, weighted
-from engine.interpolation.scaling import Scaling
+from engine.interpolation.keyframe_blend import Derivatives, KeyframeBlend, weighted_sum
+from engine.interpolation.sampled_domain import SampledDomain
+from engine.interpolation.scaling import SmoothedRho
 from engine.interpolation.series import Residual
-from engine.interpolation.sites import Sites
 from engine.maps import Boundary, Bounds, distortion
 
 
@@ -82,35 +82,35 @@ class Inbetweens:
 
     Parameters
     ----------
-    sites : Sites
+    sites : SampledDomain
     blend : Blend
-    scale : Scaling or None
+    scale : SmoothedRho or None
         ρ; None where Ψ is not scaled.
     closing : Closing or None
         Of h, which closes the periods around holes.
     conformal_closing : Closing or None
         Around holes, where Ψ is scaled: of d, which leads on to closed periods without any Ψ
         (`engine.interpolation.scaling.pointwise`).
-    corrections : tuple of FoldedCorrection
+    corrections : tuple of EvaluatedCorrection
         Of handles that stay, then of tracks; each corrects what the one before leaves.
     """
 
-    sites: Sites
+    sampled_domain: SampledDomain
     blend: Blend
-    scale: Scaling | None = None
+    scale: SmoothedRho | None = None
     closing: Closing | None = None
     conformal_closing: Closing | None = None
-    corrections: tuple[FoldedCorrection, ...] = ()
+    corrections: tuple[EvaluatedCorrection, ...] = ()
 
     @property
-    def passage(self) -> Passage:
+    def keyframe_blend(self) -> KeyframeBlend:
         """What is blended, with which weights."""
-        return self.blend.passage
+        return self.blend.keyframe_blend
 
     @property
     def boundary(self) -> Boundary:
         """The boundary of the domain."""
-        return self.sites.boundary
+        return self.sampled_domain.boundary
 
     @property
     def bounds(self) -> Bounds:
@@ -130,16 +130,16 @@ class Inbetweens:
     @property
     def nbytes(self) -> int:
         """Memory beyond the sites' and the keyframes' own, in bytes."""
-        return held_bytes(self, but=(self.sites, self.passage.keyframes))
+        return nbytes_of(self, but=(self.sampled_domain, self.keyframe_blend.keyframes))
 
     def rho(self, time: float) -> float:
         """Return ρ; 1 where Ψ is not scaled."""
         return 1.0 if self.scale is None else self.scale(time)
 
-    def corrected(self, known: CorrectionSeries, basis: SpanBasis | None = None) -> Self:
+    def with_correction(self, known: CorrectionSeries, basis: SpanBasis | None = None) -> Self:
         """Return the same with one more correction; a basis at the nodes saves time."""
-        sites = self.sites
-        more = FoldedCorrection.of(known, sites.boundary.span, sites.paths.nodes, basis)
+        sites = self.sampled_domain
+        more = EvaluatedCorrection.of(known, sites.boundary.span, sites.paths.nodes, basis)
         return replace(self, corrections=(*self.corrections, more))
 
     @property
@@ -153,12 +153,12 @@ class Inbetweens:
 
     def anchor_positions(self, times: Floats) -> Complexes:
         """Return the same at times (t,)."""
-        positions = self.passage.anchor_positions(times)
+        positions = self.keyframe_blend.anchor_positions(times)
         return sum((each.known.shift(times) for each in self.corrections), positions)
 
     def derivatives_at(self, which: Indices) -> Callable[[Floats], tuple[Complexes, Complexes]]:
         """Return f_z and f_z̄ of some of the points (p,) as functions of times (t,), (t, p) each."""
-        values = self._values_at(self.sites.paths.places[which])
+        values = self._values_at(self.sampled_domain.paths.places[which])
 
         def derivatives(times: Floats) -> tuple[Complexes, Complexes]:
             fz, g, _ = values(times)
@@ -168,11 +168,11 @@ class Inbetweens:
 
     def values_at(self, times: Floats) -> PointValues:
         """Return the values at the sites' value points and times (t,), (t, v) each."""
-        return self._values_at(self.sites.paths.beside)(times)
+        return self._values_at(self.sampled_domain.paths.beside)(times)
 
     def frame_with_values(self, time: float) -> tuple[Frame, PointValues]:
         """Return a frame, and the values at the sites' value points for little more."""
-        (blended, mixing), beside = self._mixed(time), self.sites.paths.beside
+        (blended, mixing), beside = self._mixed(time), self.sampled_domain.paths.beside
         values = PointValues(blended.fz[beside], blended.g[beside], mixing.k[beside])
         return self._frame(blended, time), values
 
@@ -188,7 +188,7 @@ class Inbetweens:
                 g *= rho
                 if conformal is not None:
                     fz *= rho + (1.0 - rho) * np.exp(conformal.at_times(times))
-            k = self._factor(blend.passage.plain_log_fz_at(times), fz)
+            k = self._factor(blend.keyframe_blend.log_fz_without_residuals_at(times), fz)
             for each in corrections:
                 fz, g, k = each.changed_values(fz, g, k, self.sign, times)
             return PointValues(fz, g, k)
@@ -204,7 +204,7 @@ class Inbetweens:
         return self._frame(self._blended(time), time)
 
     def _frame(self, blended: Derivatives, time: float) -> Frame:
-        places = self.sites.paths.places
+        places = self.sampled_domain.paths.places
         return Frame(
             positions=self.anchor_position(time) + self._offsets(blended, time),
             fz=blended.fz[places],
@@ -222,7 +222,7 @@ class Inbetweens:
     def _mixed(self, time: float) -> tuple[Derivatives, Mixing]:
         """Return the derivatives of a frame after all corrections, and K."""
         blended = self._uncorrected(time)
-        log_l, log_k_z = self.passage.plain_log_fz(time)
+        log_l, log_k_z = self.keyframe_blend.log_fz_without_residuals(time)
         if self.blend.sign:
             log_k_z = 2.0 * log_k_z - blended.fzz / blended.fz
         mixing = Mixing(self._factor(log_l, blended.fz), log_k_z)
@@ -257,16 +257,16 @@ class Inbetweens:
 
     def _offsets(self, blended: Derivatives, time: float) -> Complexes:
         """Return Φ + conj(Ψ), both 0 at the anchor; one sum along the paths serves both."""
-        keyframes, weights = self.passage.keyframes, self.passage.course(time)
-        paths = self.sites.paths
+        keyframes, weights = self.keyframe_blend.keyframes, self.keyframe_blend.time_weights(time)
+        paths = self.sampled_domain.paths
         steps = paths.step_integrals(blended.fz, blended.fzz)
         conj_psi = paths.step_integrals(blended.g, blended.gz)
         steps += np.conj(conj_psi, out=conj_psi)
         # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
         # come out exactly, without a jump in time.
-        errors = weighted([key.psi_error for key in keyframes], weights)
+        errors = weighted_sum([key.psi_error for key in keyframes], weights)
         np.conj(errors, out=errors)
         errors *= self.rho(time)
-        errors += weighted([key.phi_error for key in keyframes], weights)
+        errors += weighted_sum([key.phi_error for key in keyframes], weights)
         errors += paths.integrals(steps)
         return errors

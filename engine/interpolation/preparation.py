@@ -6,15 +6,20 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import as_number, as_tuple, held_bytes, require_kind
+from engine.arrays import as_number, as_tuple, nbytes_of, require_kind
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.interpolation.blends import BLENDS
-from engine.interpolation.courses import Course, Joint, Tangent
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.one_interval import prepare_inbetweens
-from engine.interpolation.passage import Interval, KeyframeSamples, Passage, sample_keyframes
-from engine.interpolation.sites import Sites, prepare_sites
+from engine.interpolation.keyframe_blend import (
+    KeyframeBlend,
+    KeyframeSamples,
+    KeyframeSegment,
+    sample_keyframes,
+)
+from engine.interpolation.one_segment import prepare_inbetweens
+from engine.interpolation.sampled_domain import SampledDomain, sample_domain
+from engine.interpolation.time_weights import InteriorKnot, Tangent, TimeWeights
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 from engine.variant import Variant
@@ -38,7 +43,7 @@ class Prepared:
     Parameters
     ----------
     variant : Variant
-    sites : Sites
+    sites : SampledDomain
     keyframes : tuple of KeyframeSamples, length q
     intervals : tuple of Inbetweens, length q − 1 or q
         One for each pair of neighbouring keyframes; in a loop one more, from the last to the first.
@@ -48,15 +53,15 @@ class Prepared:
     """
 
     variant: Variant
-    sites: Sites
+    sampled_domain: SampledDomain
     keyframes: tuple[KeyframeSamples, ...]
-    intervals: tuple[Inbetweens, ...]
+    segments: tuple[Inbetweens, ...]
     tangents: tuple[float, ...]
 
     @property
     def nbytes(self) -> int:
         """Memory that all of it takes, in bytes."""
-        return held_bytes(self)
+        return nbytes_of(self)
 
     def frame(self, time: float) -> Frame:
         """Return the in-between at a time from 0 to the number of intervals.
@@ -66,11 +71,11 @@ class Prepared:
         EngineError
             If the time is out of range.
         """
-        interval, moment = interval_at(time, len(self.intervals))
-        return self.intervals[interval].frame(moment)
+        interval, moment = segment_at(time, len(self.segments))
+        return self.segments[interval].frame(moment)
 
 
-def interval_at(time: float, count: int) -> tuple[int, float]:
+def segment_at(time: float, count: int) -> tuple[int, float]:
     """Return in which of `count` intervals a time is, and when in it, from 0 to 1.
 
     Raises
@@ -139,7 +144,7 @@ def prepare(
     require_kind(boundary, Boundary, "boundary")
     if not boundary.span.equals(maps[0].span):
         raise EngineError(OTHER_BOUNDARY)
-    sites = prepare_sites(boundary, points, triangles=triangles, anchor=anchor)
+    sites = sample_domain(boundary, points, triangles=triangles, anchor=anchor)
     samples = sample_keyframes(maps, sites)
     around = (*samples, samples[0]) if loop else samples
     sheets = root_sheets(np.array([key.anchor_fz for key in around]), turns)
@@ -148,7 +153,7 @@ def prepare(
         transform = transform or HilbertTransform.on(boundary.domain, progress=progress)
         sites.require_boundary(transform.loops)
         extension = transform.at(sites.paths.nodes)
-    joint = Joint(1.0, 1.0)  # keyframes are at whole times
+    joint = InteriorKnot(1.0, 1.0)  # keyframes are at whole times
     tangents: list[Tangent | None] = [
         BLENDS[variant].tangent(three, joint, bounds, sites.boundary) if through and three else None
         for three in _neighbourhoods(maps, loop=loop)
@@ -156,22 +161,22 @@ def prepare(
     intervals = []
     for i in range(len(around) - 1):
         ends = tangents[i], tangents[(i + 1) % len(maps)]
-        course = Course.between(*(1.0 if end is None else end for end in ends))
+        course = TimeWeights.between(*(1.0 if end is None else end for end in ends))
         window = np.arange(course.count) + i - course.first
         rounds, places = np.divmod(window, len(maps))
-        passage = Passage.of(
+        passage = KeyframeBlend.of(
             [samples[place] for place in places],
             sheets[places] + rounds.astype(np.int32) * (sheets[-1] - sheets[0]),
             course,
         )
-        interval = Interval(sites, passage, bounds, extension)
+        interval = KeyframeSegment(sites, passage, bounds, extension)
         intervals.append(prepare_inbetweens(variant, interval))
     return Prepared(
         variant=variant,
-        sites=sites,
+        sampled_domain=sites,
         keyframes=samples,
-        intervals=tuple(intervals),
-        tangents=tuple(1.0 if tangent is None else tangent.kept for tangent in tangents),
+        segments=tuple(intervals),
+        tangents=tuple(1.0 if tangent is None else tangent.velocity_share for tangent in tangents),
     )
 
 

@@ -7,7 +7,7 @@ Imports: `engine.geometry`.
 
 from engine.maps import distortion as distortion
 from engine.maps.boundary import Boundary as Boundary
-from engine.maps.bounds import Bounds as Bounds, Limits as Limits
+from engine.maps.bounds import Bounds as Bounds, LocalBounds as LocalBounds
 from engine.maps.cauchy import (
     cauchy_coordinates as cauchy_coordinates,
     cauchy_derivatives as cauchy_derivatives,
@@ -26,6 +26,6 @@ from engine.maps.span import Span as Span
 from engine.maps.stiffness import (
     SOFTEST as SOFTEST,
     STIFFEST as STIFFEST,
-    along_loops as along_loops,
     require_stiffness as require_stiffness,
+    stiffness_along_loops as stiffness_along_loops,
 )

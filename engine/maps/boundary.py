@@ -19,7 +19,7 @@ from engine.geometry import (
     sample_graded,
 )
 from engine.maps.span import Span
-from engine.maps.stiffness import along_loops, require_stiffness
+from engine.maps.stiffness import require_stiffness, stiffness_along_loops
 
 # Longest segments of the outline, over their distance to the nearest cage vertex, and over the
 # diameter of the outline. Measured: the extremes on the samples are then within a few thousandths
@@ -76,11 +76,11 @@ class Boundary:
     points: Complexes
     starts: Indices
     weights: Floats
-    shares: Floats
+    barrier_weights: Floats
     stiffness: Floats
     half_lengths: Floats
     derivatives: Complexes
-    bending_kernel: Floats
+    third_derivative_kernel: Floats
     vertex_coordinates: Complexes
     basis: Complexes
     basis_derivatives: Complexes
@@ -125,11 +125,11 @@ class Boundary:
             points=readonly(points),
             starts=readonly(starts),
             weights=lengths,
-            shares=lengths,
+            barrier_weights=lengths,
             stiffness=freeze(np.ones(len(points))),
             half_lengths=readonly(half),
             derivatives=derivatives,
-            bending_kernel=readonly(span.bending_kernel(points, ends)),
+            third_derivative_kernel=readonly(span.third_derivative_kernel(points, ends)),
             vertex_coordinates=vertex_coordinates,
             basis=readonly(basis),
             basis_derivatives=readonly(derivatives @ basis),
@@ -156,12 +156,12 @@ class Boundary:
         return self.domain.loops
 
     @cached_property
-    def following(self) -> Indices:
+    def next_samples(self) -> Indices:
         """The sample at which each segment ends, intp (m,)."""
         return readonly(next_on_loop(self.starts, len(self.points)))
 
     @cached_property
-    def own_samples(self) -> tuple[Indices, list[int]]:
+    def original_samples(self) -> tuple[Indices, list[int]]:
         """The samples that were not added, and where those of each loop begin and end in them."""
         own = np.flatnonzero(self.weights)
         return own, np.searchsorted(own, [*self.starts, len(self.points)]).tolist()
@@ -193,12 +193,16 @@ class Boundary:
         """
         loops = self.loops
         at_vertices = require_stiffness(stiffness, sum(map(len, loops)))
-        at_samples = along_loops(at_vertices, loops, np.split(self.points, self.starts[1:]))
+        at_samples = stiffness_along_loops(
+            at_vertices, loops, np.split(self.points, self.starts[1:])
+        )
         return self.stiffened_at_samples(at_samples)
 
     def stiffened_at_samples(self, stiffness: Floats) -> Self:
         """Return the same with the stiffness at each sample, float64 (m,)."""
-        return replace(self, weights=freeze(self.shares * stiffness), stiffness=readonly(stiffness))
+        return replace(
+            self, weights=freeze(self.barrier_weights * stiffness), stiffness=readonly(stiffness)
+        )
 
     def stiffness_around(self, points: Complexes) -> tuple[Floats, Floats]:
         """Return the mean and the quadratic mean of the stiffness around points, (h,) each.
@@ -209,7 +213,7 @@ class Boundary:
         if np.all(self.stiffness == 1.0):
             return np.ones(len(points)), np.ones(len(points))
         squares = np.abs(points[:, None] - self.points) ** 2
-        kernel = self.shares / np.maximum(squares, self.half_lengths**2)
+        kernel = self.barrier_weights / np.maximum(squares, self.half_lengths**2)
         kernel /= kernel.sum(axis=1, keepdims=True)
         return kernel @ self.stiffness, np.sqrt(kernel @ self.stiffness**2)
 
@@ -217,30 +221,30 @@ class Boundary:
         """Return the boundary with one more sample in the middle of each given segment (s,)."""
         segments = np.unique(segments)
         starts = self.points[segments]
-        ends = self.points[self.following[segments]]
+        ends = self.points[self.next_samples[segments]]
         middles = (starts + ends) / 2
         points = np.insert(self.points, segments + 1, middles)
         loops = self.starts + np.searchsorted(segments, self.starts)
         half = np.insert(self.half_lengths, segments + 1, 0.0)
-        kernel = np.insert(self.bending_kernel, segments + 1, 0.0, axis=0)
+        kernel = np.insert(self.third_derivative_kernel, segments + 1, 0.0, axis=0)
         first = segments + np.arange(len(segments))
         half[first] = half[first + 1] = self.half_lengths[segments] / 2
-        kernel[first] = self.span.bending_kernel(starts, middles)
-        kernel[first + 1] = self.span.bending_kernel(middles, ends)
+        kernel[first] = self.span.third_derivative_kernel(starts, middles)
+        kernel[first + 1] = self.span.third_derivative_kernel(middles, ends)
         rows = self.span.derivatives(middles)
         of_basis = np.insert(self.basis_derivatives, segments + 1, rows @ self.basis, axis=0)
         share = 1.0 / np.count_nonzero(self.weights)
-        between = np.sqrt(self.stiffness[segments] * self.stiffness[self.following[segments]])
+        between = np.sqrt(self.stiffness[segments] * self.stiffness[self.next_samples[segments]])
         return replace(
             self,
             points=freeze(points),
             starts=freeze(loops),
             weights=freeze(np.insert(self.weights, segments + 1, 0.0)),
-            shares=freeze(np.insert(self.shares, segments + 1, share)),
+            barrier_weights=freeze(np.insert(self.barrier_weights, segments + 1, share)),
             stiffness=freeze(np.insert(self.stiffness, segments + 1, between)),
             half_lengths=freeze(half),
             derivatives=freeze(np.insert(self.derivatives, segments + 1, rows, axis=0)),
-            bending_kernel=freeze(kernel),
+            third_derivative_kernel=freeze(kernel),
             basis_derivatives=freeze(of_basis),
         )
 

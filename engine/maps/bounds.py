@@ -14,7 +14,7 @@ IMPOSSIBLE_BOUND = "The bound on {name} must be {allowed}, not {value:g}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
+class LocalBounds:
     """Limits that hold at every point of a shape: k ≤ `k`, σ_a ≤ `sigma_a`, σ_b ≥ `sigma_b`.
 
     Any numbers, or arrays (s,) of one for each of a shape's own samples: a segment between two of
@@ -34,35 +34,35 @@ class Limits:
             and np.all(sigma_b >= self.sigma_b)
         )
 
-    def include(self, limits: "Limits") -> bool:
+    def include(self, limits: "LocalBounds") -> bool:
         """Tell whether what keeps to other limits keeps to these."""
         return self.allow(k=limits.k, sigma_a=limits.sigma_a, sigma_b=limits.sigma_b)
 
-    def at(self, boundary: Boundary) -> "Limits":
+    def at(self, boundary: Boundary) -> "LocalBounds":
         """Return the limits at all samples of a boundary, those that were added included."""
         if not any(map(np.ndim, (self.k, self.sigma_a, self.sigma_b))):
             return self
-        own, ends = boundary.own_samples
+        own, ends = boundary.original_samples
         first = np.searchsorted(own, np.arange(len(boundary.points)), side="right") - 1
         is_own = boundary.weights > 0
         second = np.where(is_own, first, next_on_loop(np.array(ends[:-1]), len(own))[first])
         k, sigma_a, sigma_b = (
             np.broadcast_to(limit, len(own)) for limit in (self.k, self.sigma_a, self.sigma_b)
         )
-        return Limits(
+        return LocalBounds(
             k=np.maximum(k[first], k[second]),
             sigma_a=np.maximum(sigma_a[first], sigma_a[second]),
             sigma_b=np.minimum(sigma_b[first], sigma_b[second]),
         )
 
-    def where_stiff(self, boundary: Boundary) -> "Limits":
+    def scaled_by_stiffness(self, boundary: Boundary) -> "LocalBounds":
         """Return the limits of a shape, tighter where it is stiff.
 
         Where its stiffness s is above 1, ln σ_a, ln σ_b and k are those of the shape over √s. Each
         segment is held to what its stiffer end allows, which all of it then keeps: a sample takes
         the tightest limits of its neighbours.
         """
-        own, ends = boundary.own_samples
+        own, ends = boundary.original_samples
         stiffness = np.maximum(boundary.stiffness[own], 1.0)
         if np.all(stiffness == 1.0):
             return self
@@ -70,21 +70,21 @@ class Limits:
         before = np.empty_like(stiffness)
         before[following] = stiffness
         stiffest = np.maximum(np.maximum(stiffness, stiffness[following]), before)
-        return self.stiffened(stiffest)
+        return self.scaled_by(stiffest)
 
-    def stiffened(self, stiffness: Floats) -> "Limits":
+    def scaled_by(self, stiffness: Floats) -> "LocalBounds":
         """Return the limits of parts of such a stiffness (s,), at least 1."""
         root = np.sqrt(stiffness)
-        return Limits(
+        return LocalBounds(
             k=self.k / root,
             sigma_a=np.exp(np.log(self.sigma_a) / root),
             sigma_b=np.exp(np.log(self.sigma_b) / root),
         )
 
-    def towards_identity(self, fraction: float) -> "Limits":
+    def towards_identity(self, fraction: float) -> "LocalBounds":
         """Return the limits moved by a fraction of what lies between them and the identity."""
         rest = 1.0 - fraction
-        return Limits(
+        return LocalBounds(
             k=rest * self.k,
             sigma_a=1.0 + rest * (self.sigma_a - 1.0),
             sigma_b=1.0 + rest * (self.sigma_b - 1.0),
@@ -92,7 +92,7 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds(Limits):
+class Bounds(LocalBounds):
     """Limits that a person sets; the identity, where every drag starts, lies strictly within them.
 
     Parameters

@@ -21,7 +21,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.errors import EngineError
-from engine.geometry import edges, signed_area
+from engine.geometry import edge_vectors, signed_area
 
 TWO_PI_I = 2j * np.pi
 # Entries of one block of points × cage vertices: 8 bytes each, so that a few blocks stay in cache.
@@ -62,7 +62,7 @@ def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
 
     They sum to 1 and reproduce z. Cost: m·n logarithms.
     """
-    lengths = edges(cage)
+    lengths = edge_vectors(cage)
     coordinates = np.empty((len(points), len(cage)), dtype=np.complex128)
     for block in _blocks(len(points), len(cage)):
         logarithms = edge_logarithms(cage, points[block]) / TWO_PI_I
@@ -75,7 +75,7 @@ def cauchy_coordinates(cage: Complexes, points: Complexes) -> Complexes:
 
 def cauchy_derivatives(cage: Complexes, points: Complexes) -> Complexes:
     """Return D_j(z) = C_j'(z), complex128 (m, n); log-singular at cage vertices."""
-    lengths = TWO_PI_I * edges(cage)
+    lengths = TWO_PI_I * edge_vectors(cage)
     derivatives = np.empty((len(points), len(cage)), dtype=np.complex128)
     for block in _blocks(len(points), len(cage)):
         per_length = edge_logarithms(cage, points[block]) / lengths

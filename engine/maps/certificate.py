@@ -29,7 +29,7 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Floats, Indices, ratio, require_kind
 from engine.errors import EngineError
 from engine.maps.boundary import Boundary
-from engine.maps.bounds import Limits
+from engine.maps.bounds import LocalBounds
 from engine.maps.harmonic_map import HarmonicMap
 from engine.maps.span import Span
 
@@ -62,7 +62,7 @@ class Certificate:
         vanishes, or nearly, on the boundary, or if it winds around holes.
     certified : bool
         The map is locally injective and keeps to the limits that it was tested for.
-    limits : Limits or None
+    limits : LocalBounds or None
         Those limits; None of the identity, which keeps all bounds.
     """
 
@@ -70,11 +70,11 @@ class Certificate:
     sigma_a: float
     sigma_b: float
     winding: int | None
-    certified: bool
-    limits: Limits | None = None
+    is_certified: bool
+    limits: LocalBounds | None = None
 
 
-def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits) -> Certificate:
+def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: LocalBounds) -> Certificate:
     """Bound the distortion of a map in the whole domain, and test it against `limits`.
 
     Raises
@@ -94,7 +94,7 @@ def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits) -> Ce
 
 
 def certify_segments(
-    harmonic_map: HarmonicMap, boundary: Boundary, limits: Limits
+    harmonic_map: HarmonicMap, boundary: Boundary, limits: LocalBounds
 ) -> tuple[Certificate, Indices, "Enclosures"]:
     """Certify a map like `certify`, and tell what is so of its segments.
 
@@ -140,9 +140,9 @@ def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> "_Segments":
     starts = np.empty((3, len(boundary.points)), np.complex128)
     starts[0] = boundary.points
     starts[1:] = (boundary.derivatives @ span.without_constant(coefficients)).T
-    bending = boundary.bending_kernel @ span.bending(coefficients)
+    bending = boundary.third_derivative_kernel @ span.singularity_strengths(coefficients)
     return _Segments(
-        nodes=np.stack([starts, starts[:, boundary.following]], axis=1),
+        nodes=np.stack([starts, starts[:, boundary.next_samples]], axis=1),
         errors=bending.T * (boundary.half_lengths**2 / 2),
         origins=np.arange(len(boundary.points)),
         span=span,
@@ -189,13 +189,13 @@ class _Segments:
 
 
 def _bisect(
-    boundary: Boundary, segments: "_Segments", limits: Limits
+    boundary: Boundary, segments: "_Segments", limits: LocalBounds
 ) -> tuple[Certificate, Indices, Enclosures]:
     # Where it is the same for all samples one column will do, at less cost.
     at = limits.at(boundary)
     limit = np.atleast_2d(np.array([at.k, at.sigma_a, np.negative(at.sigma_b)]).T).T
     if limit.shape[1] > 1:
-        limit = np.maximum(limit, limit[:, boundary.following])
+        limit = np.maximum(limit, limit[:, boundary.next_samples])
     attained, proven = np.full((2, 3), -inf)
     kept = np.ones(3, dtype=bool)
     turned, bisected, shorter = np.zeros(len(boundary.points)), 0, 1
@@ -258,7 +258,7 @@ def _enclose(segments: "_Segments") -> tuple[Floats, Booleans, Floats]:
     return of_ends.max(axis=1), least.min(axis=0) > 0, delta
 
 
-def _conclude(proven: Floats, turns: Floats, limits: Limits, *, keeps: bool) -> Certificate:
+def _conclude(proven: Floats, turns: Floats, limits: LocalBounds, *, keeps: bool) -> Certificate:
     winding = None
     if np.isfinite(turns).all():
         windings = np.round(turns / (2 * pi)).astype(int)
@@ -277,6 +277,6 @@ def _conclude(proven: Floats, turns: Floats, limits: Limits, *, keeps: bool) -> 
         sigma_a=sigma_a,
         sigma_b=sigma_b,
         winding=winding,
-        certified=injective and keeps,
+        is_certified=injective and keeps,
         limits=limits,
     )

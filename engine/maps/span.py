@@ -154,7 +154,7 @@ class Span:
         )
         return basis
 
-    def bending(self, coefficients: Complexes) -> Floats:
+    def singularity_strengths(self, coefficients: Complexes) -> Floats:
         """Return by how much each singularity bends combinations (n, q) of the functions, (n, q).
 
         That is the jump of Δφ/Δz at a cage vertex, and the coefficient of a logarithm.
@@ -165,7 +165,7 @@ class Span:
         ]
         return np.concatenate([*jumps, np.abs(coefficients[len(self) - len(self.holes) :])])
 
-    def bending_kernel(self, starts: Complexes, ends: Complexes) -> Floats:
+    def third_derivative_kernel(self, starts: Complexes, ends: Complexes) -> Floats:
         """Return the matrix (s, n) from `bending` to a bound on |Φ'''| along segments (s,).
 
         1 / (2π d²) for a cage vertex at the distance d from the segment, 2 / d³ for a logarithm.

@@ -50,7 +50,7 @@ def require_stiffness(stiffness: npt.ArrayLike, count: int) -> Floats:
     return values
 
 
-def along_loops(
+def stiffness_along_loops(
     stiffness: Floats, loops: Sequence[Complexes], points: Sequence[Complexes]
 ) -> Floats:
     """Return the stiffness at points of the boundary.

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Indices, freeze
-from engine.geometry import Pieces, as_xy, bisect, diameter
+from engine.geometry import Pieces, as_xy, bisect_segments, diameter
 from engine.paths.path_network import Network
 from engine.paths.spanning_tree import SpanningTree, depth_first_numbering
 
@@ -113,7 +113,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
         longest = np.where(is_integrated[steps.segment], longest, PLAIN_STEP_PER_SIZE)
         return np.asarray(lengths <= scale * longest)
 
-    nodes, parents = _chain(network, children, bisect(legs, is_fine))
+    nodes, parents = _chain(network, children, bisect_segments(legs, is_fine))
     numbering = depth_first_numbering(parents, 0)
     new = np.empty(len(nodes), dtype=np.intp)
     new[numbering] = np.arange(len(numbering))

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from engine.arrays import Booleans, Complexes, Indices, freeze
-from engine.geometry import Pieces, as_xy, bisect, distance_to_segments
+from engine.geometry import Pieces, as_xy, bisect_segments, distance_to_segments
 
 NODES = 10  # Gauss-Legendre nodes of a piece
 # Longest piece, over its distance to the nearest singularity: quadrature then errs by some 1e-12.
@@ -53,7 +53,7 @@ class Loops:
             corners = shapely.get_coordinates(wider)[:-1] @ [1, 1j]
             if wider.is_ccw:
                 corners = corners[::-1]
-            pieces = bisect(Pieces.whole(corners, np.roll(corners, -1)), is_fine)
+            pieces = bisect_segments(Pieces.whole(corners, np.roll(corners, -1)), is_fine)
             spans = (pieces.ends - pieces.starts)[:, None]
             nodes.append((pieces.starts[:, None] + spans * (1 + x) / 2).ravel())
             differentials.append((spans * weights / 2).ravel())

@@ -13,7 +13,7 @@ import shapely
 from scipy import ndimage
 from scipy.sparse import csr_array
 
-from engine.arrays import Booleans, Complexes, Indices, Integers, ragged
+from engine.arrays import Booleans, Complexes, Indices, Integers, ragged_indices
 from engine.domain.meshing import Mesh, sides_of
 from engine.errors import EngineError
 from engine.geometry import (
@@ -21,9 +21,9 @@ from engine.geometry import (
     as_xy,
     constrained_delaunay,
     diameter,
-    edges,
+    edge_vectors,
     loop_ends,
-    region,
+    shapely_region,
 )
 from engine.paths.loops import Loops
 from engine.paths.spanning_tree import breadth_first_parents, shortest_parents
@@ -254,7 +254,7 @@ def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes)
     sides = shapely.linestrings(np.stack([as_xy(corners), as_xy(loop_ends(loops))], axis=1))
     touching, _ = shapely.STRtree(sides).query(segments, predicate="dwithin", distance=tolerance)
     touching = np.unique(touching)
-    area = region(loops[0], loops[1:])
+    area = shapely_region(loops[0], loops[1:])
     room = area.buffer(tolerance, join_style="mitre")
     shapely.prepare(room)
     crosses = np.zeros(len(starts), dtype=np.bool_)
@@ -288,9 +288,9 @@ def _near_boundary(loops: Sequence[Complexes], starts: Complexes, ends: Complexe
 
 def _dense(loop: Complexes, spacing: float) -> Complexes:
     """Return points along a closed polygon, no farther apart than `spacing`."""
-    sides = edges(loop)
+    sides = edge_vectors(loop)
     counts = np.ceil(np.abs(sides) / spacing).astype(np.intp) + 1
-    side, place = ragged(counts)
+    side, place = ragged_indices(counts)
     return loop[side] + sides[side] * (place / counts[side])
 
 

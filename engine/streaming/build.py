@@ -6,10 +6,10 @@ from math import inf
 import numpy as np
 
 from engine.arrays import Floats
-from engine.streaming.channels import Channels
-from engine.streaming.cutting import OF_PIECES, SampledMotion, cut
+from engine.streaming.components import MotionComponents
 from engine.streaming.functions import TimeFunctions
 from engine.streaming.series import Series
+from engine.streaming.splitting import OF_PIECES, PiecewiseReducedModel, split_motion
 
 # Shares of the tolerance; the rest is for rounding to float32. What is found at some points may be
 # exceeded at others: then it is tried again with less.
@@ -21,7 +21,7 @@ GAPS = 3  # between the samples, the widest, in the middle of which the series i
 TIGHTER, ROUNDS = 1 / 4, 3
 
 
-def build_series(channels: Channels) -> Generator[None, None, Series]:
+def build_series(channels: MotionComponents) -> Generator[None, None, Series]:
     """Build the series of an interval, a small part at each step.
 
     A step is about one evaluation of the direct path or less. The generator may be left at any
@@ -51,8 +51,8 @@ def build_series(channels: Channels) -> Generator[None, None, Series]:
                 yield
         inner = np.array(sorted(set(values) - {0.0, 1.0}))
         known = np.array([values[time] for time in (0.0, 1.0, *inner.tolist())])
-        motion = SampledMotion.through(functions, inner, known)
-        pieces = yield from cut(motion, tolerance)
+        motion = PiecewiseReducedModel.through(functions, inner, known)
+        pieces = yield from split_motion(motion, tolerance)
         found = Series(pieces=pieces, error=0.0)
         error = 0.0
         for time in _between(inner):

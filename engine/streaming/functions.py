@@ -52,7 +52,7 @@ class TimeFunctions:
             return (probe(times) - np.column_stack([1.0 - times, times]) @ ends).T
 
         polynomials = OF_POLYNOMIALS * tolerance
-        pieces = yield from chebyshev.resolve(
+        pieces = yield from chebyshev.resolve_series(
             added, tolerance=polynomials, degrees=DEGREES, most=MOST_ATTEMPTS
         )
         # What jumps by less than the tolerance within no time is none of the motion.
@@ -61,12 +61,12 @@ class TimeFunctions:
             for p in pieces
         ]
         yield
-        _, found = chebyshev.in_few_forms(pieces, tolerance - polynomials, least=0)
+        _, found = chebyshev.compress_series(pieces, tolerance - polynomials, least=0)
         resolved = np.array([piece.missing <= tolerance for piece in pieces])
         series = _bridged(found, resolved)
         yield
         starts, lengths = series.breaks[:-1], np.diff(series.breaks)
-        within = (1.0 + chebyshev.nodes(DEGREES[-1])) / 2
+        within = (1.0 + chebyshev.chebyshev_nodes(DEGREES[-1])) / 2
         times = np.unique((starts[:, None] + lengths[:, None] * within)[resolved])
         _, _, pivots = qr(series.at(times), mode="economic", pivoting=True)
         return cls(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Floats, Singles, as_number, held_bytes
+from engine.arrays import Floats, Singles, as_number, nbytes_of
 from engine.errors import EngineError
 from engine.interpolation import chebyshev
 
@@ -39,7 +39,7 @@ class SeriesPiece:
             return keyframe
         x = (2 * time - self.start - self.end) / (self.end - self.start)
         # Twice as fast as the operator @.
-        weights: Floats = np.dot(chebyshev.basis(x, len(self.functions)), self.functions)
+        weights: Floats = np.dot(chebyshev.chebyshev_basis(x, len(self.functions)), self.functions)
         return weights.astype(np.float32)
 
 
@@ -67,7 +67,7 @@ class Series:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return held_bytes(self)
+        return nbytes_of(self)
 
     @property
     def is_whole(self) -> bool:

@@ -78,7 +78,7 @@ def test_a_project_keeps_holes_and_maps_bit_for_bit(tmp_path):
     for one, two in zip(before.poses, after.poses, strict=True):
         for name in ("phi", "psi", "logs"):
             assert_array_equal(getattr(one, name), getattr(two, name))
-        assert two.certificate.certified
+        assert two.certificate.is_certified
 
 
 def test_a_handle_or_anchor_in_a_hole_is_refused():
@@ -107,7 +107,7 @@ def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, c
     save_project(path, from_key_to_key)
     clip = clip_of(from_key_to_key, layer.id)
     report = certify_clip(clip)
-    assert all(own.certified for _, own in report.keys)
+    assert all(own.is_certified for _, own in report.keys)
     for interval in report.segments:
         assert interval.correction > 1e-4
         assert interval.reached.k <= 1.05 * interval.keys.k

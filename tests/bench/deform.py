@@ -13,9 +13,9 @@ from engine.arrays import Complexes
 from engine.deform import (
     Deformer,
     Handles,
+    HandleTargets,
     Objective,
     State,
-    Wish,
     certified_step,
     line_search,
     newton_direction,
@@ -69,16 +69,16 @@ def _drag(boundary: Boundary) -> Table:
     points = np.append(tips, 0.0)
     handles = Handles.place(boundary, points)
     deformer = Deformer(boundary=boundary, handles=handles, bounds=Bounds())
-    wish = handles.wish(points + 0.4 * np.exp(2j * np.arange(6)))
+    wish = handles.targets(points + 0.4 * np.exp(2j * np.arange(6)))
     # The same distance, while the hand draws an arc.
     share = np.arange(1, MOVING_STEPS + 1)[:, None] / MOVING_STEPS
     arc = points + 0.4 * share * np.exp(2j * np.arange(6) + 1j * share)
-    moving = _steps(deformer, [handles.wish(targets) for targets in arc])
+    moving = _steps(deformer, [handles.targets(targets) for targets in arc])
     resting = _steps(deformer, [wish] * DRAG_STEPS)
     state = resting[DRAG_STEPS // 2].start
-    objective = Objective(boundary=boundary, handles=handles, wish=wish)
-    jet = objective.jet(*state.map.columns)
-    radial = objective.radial(jet)
+    objective = Objective(boundary=boundary, handles=handles, targets=wish)
+    jet = objective.evaluate(*state.map.columns)
+    radial = objective.radial_derivatives(jet)
     rows = (
         *_split(deformer, moving),
         Row(
@@ -109,11 +109,11 @@ class _Step(NamedTuple):
     """A step of a drag, towards a wish."""
 
     start: State
-    wish: Wish
+    wish: HandleTargets
     end: State
 
 
-def _steps(deformer: Deformer, wishes: Sequence[Wish]) -> list[_Step]:
+def _steps(deformer: Deformer, wishes: Sequence[HandleTargets]) -> list[_Step]:
     """Follow wishes with a step each."""
     steps, state = [], deformer.start()
     for wish in wishes:
@@ -159,11 +159,11 @@ def _split(deformer: Deformer, steps: list[_Step]) -> Iterator[Row]:
     yield Row(name="  the rest of it", seconds=(whole - sum(spent.values())) / count)
 
 
-def _newton_steps(boundary: Boundary, handles: Handles, wish: Wish) -> int:
-    objective = Objective(boundary=boundary, handles=handles, wish=wish)
+def _newton_steps(boundary: Boundary, handles: Handles, wish: HandleTargets) -> int:
+    objective = Objective(boundary=boundary, handles=handles, targets=wish)
     phi, psi = boundary.cage, np.zeros_like(boundary.cage)
     for steps in range(MOST_STEPS):
-        jet = objective.jet(phi, psi)
+        jet = objective.evaluate(phi, psi)
         value = objective.value(jet)
         direction = newton_direction(objective, jet)
         if -direction.derivative < 1e-8 * value:

@@ -9,8 +9,8 @@ import numpy as np
 from app.storage import decode_picture, sample_images
 from engine.domain import build_domain
 from engine.domain.meshing import triangulate
-from engine.domain.outline import enclose
-from engine.domain.picture import matted, subject_mask
+from engine.domain.outline import enclose_subject
+from engine.domain.picture import matte_picture, subject_mask
 from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
 from tests.bench.memory import most_held
 from tests.bench.table import Row, Table, measure
@@ -57,14 +57,14 @@ def _samples(pictures: dict[str, bytes], triangles: int) -> Table:
 def _stages(data: bytes, sizes: tuple[int, ...]) -> Table:
     rgba = decode_picture(data, "").rgba
     subject = subject_mask(rgba)
-    outline = enclose(subject.mask, detail="normal").outline
+    outline = enclose_subject(subject.mask, detail="normal").outline
     rows = [
         Row(name="decode", seconds=measure(lambda: decode_picture(data, ""))),
         Row(name="mask", seconds=measure(lambda: subject_mask(rgba))),
-        Row(name="matte", seconds=measure(lambda: matted(rgba, subject.mask))),
+        Row(name="matte", seconds=measure(lambda: matte_picture(rgba, subject.mask))),
         Row(
             name="outline and cage",
-            seconds=measure(lambda: enclose(subject.mask, detail="normal")),
+            seconds=measure(lambda: enclose_subject(subject.mask, detail="normal")),
         ),
     ]
     for count in sizes:

@@ -14,13 +14,13 @@ from engine.domain import CutOut, MeshedDomain, build_domain
 from engine.domain.meshing import Mesh, triangulate
 from engine.interpolation import (
     Inbetweens,
-    Interval,
+    KeyframeBlend,
     KeyframeSamples,
-    Passage,
-    Sites,
+    KeyframeSegment,
+    SampledDomain,
     Variant,
     prepare_inbetweens,
-    prepare_sites,
+    sample_domain,
     sample_keyframes,
 )
 from engine.maps import Boundary, Bounds, HarmonicMap, Span
@@ -50,7 +50,7 @@ class KeyframePair:
 
     maps: tuple[HarmonicMap, HarmonicMap]
     mesh: Mesh
-    sites: Sites
+    sites: SampledDomain
     keyframes: tuple[KeyframeSamples, ...]
     sheets: Integers
     transform: HilbertTransform
@@ -80,8 +80,8 @@ class KeyframePair:
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""
-        passage = Passage.of(self.keyframes, self.sheets)
-        interval = Interval(self.sites, passage, Bounds(), transform=self.extension)
+        passage = KeyframeBlend.of(self.keyframes, self.sheets)
+        interval = KeyframeSegment(self.sites, passage, Bounds(), transform=self.extension)
         return prepare_inbetweens(variant, interval)
 
 
@@ -92,9 +92,9 @@ def bent(cage: Complexes) -> HarmonicMap:
     return HarmonicMap(cage=cage, phi=phi, psi=0.2 * phi)
 
 
-def sites_of(domain: MeshedDomain, mesh: Mesh) -> Sites:
+def sites_of(domain: MeshedDomain, mesh: Mesh) -> SampledDomain:
     """Lay the paths along the edges of a mesh."""
-    return prepare_sites(Boundary.sample(domain), mesh.vertices, triangles=mesh.triangles)
+    return sample_domain(Boundary.sample(domain), mesh.vertices, triangles=mesh.triangles)
 
 
 def tables(extent: Extent) -> Iterator[Table]:
@@ -216,7 +216,7 @@ class _HoledPair:
     """The ring at rest and bent, as if it had no hole."""
 
     maps: tuple[HarmonicMap, HarmonicMap]
-    sites: Sites
+    sites: SampledDomain
     extension: Extension
 
     @classmethod
@@ -242,8 +242,8 @@ class _HoledPair:
 
         def prepared() -> Series:
             sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-            passage = Passage.of(keyframes, sheets)
-            interval = Interval(self.sites, passage, Bounds(), self.extension)
+            passage = KeyframeBlend.of(keyframes, sheets)
+            interval = KeyframeSegment(self.sites, passage, Bounds(), self.extension)
             inbetweens = prepare_inbetweens(variant, interval)
             return finish(build_series(Positions.of(inbetweens, self.sites)))
 

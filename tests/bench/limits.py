@@ -84,7 +84,7 @@ def _hard_requests(requests: list[_Request]) -> Table:
     optimal = certified = 0
     for number, request in enumerate(requests):
         deformer = request.deformer()
-        wish = deformer.handles.wish(request.targets)
+        wish = deformer.handles.targets(request.targets)
         begun = time.process_time()
         state, total = deformer.settle(deformer.start(), wish, throw=False)
         seconds.append(time.process_time() - begun)
@@ -94,7 +94,7 @@ def _hard_requests(requests: list[_Request]) -> Table:
             continue
         steps.append(found.steps)
         optimal += state.status in (Status.CONVERGED, Status.AT_LIMITS)
-        certified += certify(state.map, request.boundary, request.bounds).certified
+        certified += certify(state.map, request.boundary, request.bounds).is_certified
         again, _ = deformer.settle(deformer.start(state.map), wish, throw=False)
         resumed.append(1.0 - _energy(again) / last.objective)
         if number % COMPARED == 0:
@@ -126,7 +126,7 @@ def _rows_of_bounds(requests: dict[str, _Request]) -> Table:
         energies = []
         for bounds in ROW_OF_BOUNDS:
             deformer = replace(request, bounds=bounds).deformer()
-            wish = deformer.handles.wish(request.targets)
+            wish = deformer.handles.targets(request.targets)
             energies.append(_energy(deformer.settle(deformer.start(), wish, throw=False)[0]))
         rise = max(after / before - 1.0 for before, after in pairwise(energies))
         rows.append(_fact(f"largest rise of the energy, {name}", f"{max(rise, 0.0):.1e}"))
@@ -230,8 +230,8 @@ def _along_path(request: _Request) -> State:
     state = deformer.start()
     for share in np.arange(1, PATH_ROWS + 1) / PATH_ROWS:
         row = request.points + share * (request.targets - request.points)
-        state, _ = deformer.follow(state, deformer.handles.wish(row))
-    return deformer.settle(state, deformer.handles.wish(request.targets), throw=False)[0]
+        state, _ = deformer.track_path_row(state, deformer.handles.targets(row))
+    return deformer.settle(state, deformer.handles.targets(request.targets), throw=False)[0]
 
 
 def _rest_after_release(request: _Request) -> float:
@@ -240,8 +240,8 @@ def _rest_after_release(request: _Request) -> float:
     state = deformer.start()
     for share in np.arange(1, DRAG_STEPS + 1) / DRAG_STEPS:
         row = request.points + share * (request.targets - request.points)
-        state = deformer.step(state, deformer.handles.wish(row))
-    wish = deformer.handles.wish(request.targets)
+        state = deformer.step(state, deformer.handles.targets(row))
+    wish = deformer.handles.targets(request.targets)
     begun = time.process_time()
     seen = [(0.0, state)]
     while not state.status.is_final:

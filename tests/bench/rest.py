@@ -8,10 +8,10 @@ from statistics import mean
 import numpy as np
 
 from app.document import Layer, Target
-from app.editor.work import Start
+from app.editor.work import DragStart
 from app.solving import DragSolver, Rig
 from app.storage import load_project, sample_images
-from engine.deform import Hand
+from engine.deform import BoundedPull
 from tests.bench.table import Row, Table, measure
 
 PER_MOVE = 2  # steps
@@ -59,14 +59,14 @@ class _Pull:
     """A hand at a handle, and the drag that begins with the layer's first pose."""
 
     begun: DragSolver
-    start: Start
-    hands: tuple[Hand, ...]
+    start: DragStart
+    hands: tuple[BoundedPull, ...]
 
     @classmethod
     def of(cls, layer: Layer, rig: Rig, handle: int) -> "_Pull":
         pose = layer.keys[0].pose
-        hands = (Hand(frozenset([handle])),)
-        return cls(begun=DragSolver.begin(rig, pose), start=Start.of(layer, pose), hands=hands)
+        hands = (BoundedPull(frozenset([handle])),)
+        return cls(begun=DragSolver.begin(rig, pose), start=DragStart.of(layer, pose), hands=hands)
 
     def moved(self, reach: float, moves: int) -> tuple[DragSolver, Mapping[int, Target]]:
         """Return the drag after moves of the pointer on an arc, and the last targets."""

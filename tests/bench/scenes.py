@@ -14,7 +14,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from app.document import Document, Layer, Meshing, PictureFile, Pose, Variant, clip_of
-from app.editor import Puppet
+from app.editor import LayerRuntime
 from app.editor.actions import files
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
 from engine.arrays import Complexes
@@ -58,7 +58,7 @@ def _opening(folder: Path, extent: Extent) -> Table:
     begun = time.perf_counter()
     opened = open_layered(path, Meshing())
     read = time.perf_counter() - begun
-    files.with_puppets(opened)
+    files.with_layer_runtimes(opened)
     shown = time.perf_counter() - begun
     return Table(
         title=f"Opening an .ora of {extent.layers} layers of {extent.side:,} pixels, on all cores",
@@ -110,10 +110,12 @@ def _beside_one(folder: Path, extent: Extent) -> Table:
     ):
         document, picture = _giraffes(count, triangles)
         puppets = {
-            each.id: Puppet.of(clip_of(document, each.id), picture, among=count)
+            each.id: LayerRuntime.of(clip_of(document, each.id), picture, among=count)
             for each in document.layers
         }
-        files.show(stage.session, folder / SAMPLE, files.Opened(document, puppets, ()))
+        files.install_opened_file(
+            stage.session, folder / SAMPLE, files.OpenedFile(document, puppets, ())
+        )
         stage.settle()
         what = f"{count} of {triangles:,} triangles"
         runs = {
@@ -192,7 +194,7 @@ def _memory(extent: Extent) -> Table:
         kept = []
         for layer in document.layers:
             clip = clip_of(document, layer.id)
-            puppet = Puppet.of(clip, picture)
+            puppet = LayerRuntime.of(clip, picture)
             store = puppet.store
             store.set_needed_clips([clip], [], 0)
             store.add(store.segments_job(clip, store.missing_segments(clip, 0))())

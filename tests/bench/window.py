@@ -12,7 +12,7 @@ import numpy as np
 
 from app.cli.process import set_switch_interval
 from app.document import Meshing, Target, Variant, clip_of
-from app.editor import Project, Puppet
+from app.editor import LayerRuntime, Project
 from app.editor.actions import files, playback
 from app.storage import decode_picture, load_project, sample_images
 from app.ui.window import limit_arenas
@@ -77,7 +77,7 @@ def tables(extent: Extent) -> Iterator[Table]:
         stage = Driver(Path(folder), extent.size)
         yield _opening(stage, extent)
         stage.settle()
-        files.show(stage.session, Path(folder) / extent.sample, _sample(extent))
+        files.install_opened_file(stage.session, Path(folder) / extent.sample, _sample(extent))
         stage.settle()
         yield from _frames(stage, extent)
         yield _latency(stage, extent)
@@ -107,7 +107,9 @@ def _open_and_drag(stage: Driver, path: Path, reach: float) -> tuple[float, floa
     stage.settle()
     begun = time.perf_counter()
     stage.ask(files.open_file, path)
-    stage.until(lambda: session.project is not None and session.project.puppet.shown is not None)
+    stage.until(
+        lambda: session.project is not None and session.project.layer_runtime.shown is not None
+    )
     # What is drawn from now on takes the pointer.
     stage.refresh()
     shown = time.perf_counter() - begun
@@ -127,7 +129,7 @@ def _open_and_drag(stage: Driver, path: Path, reach: float) -> tuple[float, floa
     return shown, followed
 
 
-def _sample(extent: Extent) -> files.Opened:
+def _sample(extent: Extent) -> files.OpenedFile:
     """Return the animated sample on a finer mesh."""
     document = load_project(sample_images() / extent.sample)
     layer = document.layers[0]
@@ -136,8 +138,8 @@ def _sample(extent: Extent) -> files.Opened:
     layer = replace(layer, domain=domain, variant=extent.variant)
     document = document.with_layer(layer)
     picture = decode_picture(layer.picture.data, extent.sample)
-    puppet = Puppet.of(clip_of(document, layer.id), picture)
-    return files.Opened(document, {layer.id: puppet}, ())
+    puppet = LayerRuntime.of(clip_of(document, layer.id), picture)
+    return files.OpenedFile(document, {layer.id: puppet}, ())
 
 
 def _frames(stage: Driver, extent: Extent) -> Iterator[Table]:
@@ -238,7 +240,7 @@ def _leave(stage: Driver, reach: float, number: int, wait: int) -> tuple[float, 
 
 def _shows(project: Project, frame: int, *, exactly: bool = False) -> bool:
     """Tell whether a frame of the document as it is now is shown."""
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     if shown is None or shown.frame != frame or shown.clip != project.clip:
         return False
     return shown.is_current or not exactly
@@ -249,11 +251,11 @@ def _rests(project: Project) -> bool:
 
 
 def _is_exact(project: Project) -> bool:
-    return project.puppet.store.has(project.clip)
+    return project.layer_runtime.store.has(project.clip)
 
 
 def _is_fine(project: Project) -> bool:
-    store, fine = project.puppet.store, project.puppet.fine
+    store, fine = project.layer_runtime.store, project.layer_runtime.fine
     if store.mesh.domain is project.layer.domain:
         return _is_exact(project)
     return fine is not None and fine.has(project.clip)

@@ -196,14 +196,14 @@ def _edit_on(tell: Callable[[int, float], None], folder: Path, document: Documen
         name="a",
         history=History(document, saved=True),
         path=None,
-        puppets={},
+        layer_runtimes={},
         active=document.layers[-1].id,
     )
     number = 0
     session.project.history.do(scene_commands.add_marker(0, "0"))
     while True:
         tell(number, clock())
-        saving.maintain(session)
+        saving.write_due_files(session)
         session.jobs.deliver()
         time.sleep(0.004)
         number += 1

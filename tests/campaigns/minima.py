@@ -14,9 +14,9 @@ from PIL import Image, ImageDraw
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes
 from engine.deform import Deformer, Handles, Objective, Status
+from engine.deform.interior_point import StartingPoint, advance_search, begin_search
 from engine.deform.model import MARGIN
-from engine.deform.rest import Way, advance, begin_search
-from engine.deform.steering import rigidly_aligned
+from engine.deform.trust_region import align_rigidly
 from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, certify
@@ -49,10 +49,10 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Solve so many requests, hard and easy in turns, and yield what was found of each sort."""
     found: dict[str, list[tuple[float, int, int]]] = {}
     for number, request in enumerate(timed(requests(seed, amount))):
-        deformer, wish = request.deformer, request.deformer.handles.wish(request.targets)
+        deformer, wish = request.deformer, request.deformer.handles.targets(request.targets)
         state, tried = deformer.settle(deformer.start(), wish, throw=False)
         assert state.status in (Status.CONVERGED, Status.AT_LIMITS, Status.UNFINISHED)
-        assert certify(state.map, deformer.boundary, deformer.bounds).certified
+        assert certify(state.map, deformer.boundary, deformer.bounds).is_certified
         assert state.steps <= MOST_STEPS
         assert tried <= MOST_IN_ALL
         energy = state.statistics.objective
@@ -81,14 +81,14 @@ def layers(results: list[tuple[float, int, int]]) -> dict[str, float]:
 def best_known(request: Request) -> float:
     """Return the least energy that searches from every side find."""
     deformer = request.deformer
-    wish = deformer.handles.wish(request.targets)
-    objective = Objective(boundary=deformer.boundary, handles=deformer.handles, wish=wish)
+    wish = deformer.handles.targets(request.targets)
+    objective = Objective(boundary=deformer.boundary, handles=deformer.handles, targets=wish)
     rest = deformer.start().map
     least = np.inf
     for angle in ANGLES:
-        first = rigidly_aligned(deformer.handles, wish, rest, angle)
+        first = align_rigidly(deformer.handles, wish, rest, angle)
         proven = certify(first, deformer.boundary, deformer.bounds)
-        for way in (Way.REST, Way.WIDENING):
+        for way in (StartingPoint.REST, StartingPoint.WIDENING):
             search = begin_search(
                 objective,
                 first,
@@ -98,7 +98,7 @@ def best_known(request: Request) -> float:
                 way=way,
             )
             for _ in range(MOST_STEPS):
-                search = advance(search)
+                search = advance_search(search)
                 if search.is_over:
                     break
             least = min(least, search.energy)

@@ -105,7 +105,7 @@ def stress(
     state, shown, maps = deformer.start(), 0, []
     for _ in range(keys):
         to = inside + 0.4 * size * rng.normal(size=len(inside)) * np.exp(1j * rng.uniform(0, 6.3))
-        wish = deformer.handles.wish(to)
+        wish = deformer.handles.targets(to)
         for _ in range(STEPS if keys < 50 else 1):
             state = deformer.step(state, wish)
             check_state(deformer, state, bounds)
@@ -119,7 +119,7 @@ def stress(
 def check_state(deformer: Deformer, state: object, bounds: Bounds) -> None:
     """Hold the certificate of a state against samples of its map on the outline."""
     certificate = state.certificate
-    assert certificate.certified
+    assert certificate.is_certified
     assert bounds.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
     outline = deformer.boundary.outline
     each = max(2, SAMPLES // len(outline))

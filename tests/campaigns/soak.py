@@ -21,7 +21,7 @@ from PIL import Image
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, FrameRange, Meshing
 from app.editor.actions import editing, exporting, playback, posing, saving, viewing
-from app.editor.layering import choose, hang
+from app.editor.layering import attach_layer, set_active_layer
 from app.export_formats import EXPORT_FORMATS, MeshOptions
 from app.render.gpu import finish_drawing
 from app.storage.assets import sample_images
@@ -118,20 +118,20 @@ def make_scene(window: Harness, folder: Path) -> Path:
     project = window.open(drawing)
     arm, body = (layer.id for layer in reversed(project.document.layers[1:]))
     for layer, places in ((body, (50 + 20j, 50 + 95j)), (arm, (70 + 67j, 140 + 67j))):
-        window.act(choose, layer)
+        window.act(set_active_layer, layer)
         for place in places:
             window.act(posing.add_handle, place)
             window.settle()
-    hang(window.session, arm, body)
+    attach_layer(window.session, arm, body)
     window.settle()
     for frame in (12, 24):
         playback.seek(window.session, frame)
         window.settle()
         handle = project.layer.handles[-1]
         target = Target(position=handle.position + 20j * (frame / 12 - 1.5))
-        posing.wish(window.session, {handle.id: target})
+        posing.set_targets(window.session, {handle.id: target})
         window.settle()
-    saving.write(window.session, folder / "scene.lissom", None)
+    saving.write_project(window.session, folder / "scene.lissom", None)
     window.settle()
     return folder / "scene.lissom"
 
@@ -152,7 +152,7 @@ def use(
     while project.document is not before:
         editing.undo(session)
         window.frames()
-    saving.write(session, folder / "used.lissom", None)
+    saving.write_project(session, folder / "used.lissom", None)
     window.settle()
     return seconds
 
@@ -162,13 +162,13 @@ def change_view(window: Harness, number: int) -> None:
     session = window.session
     match number % WAYS:
         case 0:
-            viewing.toggle(session, "onion")
+            viewing.toggle_overlay(session, "onion")
             viewing.toggle_theme(session)
         case 1:
             viewing.toggle_heat_map(session)
-            viewing.toggle(session, "wireframe")
+            viewing.toggle_overlay(session, "wireframe")
         case 2:
-            viewing.toggle_split(session)
+            viewing.toggle_comparison(session)
         case 3:
             window.resize(LARGER if imgui.get_io().display_size.x == SIZE[0] else SIZE)
     window.settle()
@@ -184,9 +184,9 @@ def drag(window: Harness, rng: np.random.Generator) -> None:
     way = complex(*(8 * rng.normal(size=2)))
     for step in range(round(DRAG * RATE)):
         place = handle.position + way * np.sin(step / 9)
-        posing.pull(session, {handle.id: Target(position=place)}, gesture=gesture)
+        posing.drag_handles(session, {handle.id: Target(position=place)}, gesture=gesture)
         window.frames()
-    posing.let_go(session)
+    posing.release_drag(session)
     window.settle()
 
 
@@ -197,7 +197,7 @@ def play(window: Harness) -> float:
     begun = time.process_time()
     window.frames(frames)
     seconds = (time.process_time() - begun) / frames
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
     return seconds
 
 
@@ -212,11 +212,11 @@ def export(window: Harness, folder: Path, name: str) -> None:
         frames=FrameRange(0, 5),
         shapes=MeshOptions(triangles=200),
     )
-    exporting.set_export(session, settings)
+    exporting.set_export_settings(session, settings)
     suffixes = EXPORT_FORMATS[name].suffixes
-    exporting.start(session, place / f"a{suffixes[0]}" if suffixes else place)
+    exporting.start_export(session, place / f"a{suffixes[0]}" if suffixes else place)
     while session.export is not None or session.jobs.kinds:
-        session.jobs.settle()
+        session.jobs.wait_until_idle()
         window.frames()
     assert list(place.iterdir()), f"{name} exports nothing"
     shutil.rmtree(place)

@@ -18,7 +18,7 @@ from engine.arrays import (
     as_points,
     as_reals,
     freeze,
-    held_bytes,
+    nbytes_of,
     readonly,
     require_word,
 )
@@ -90,10 +90,10 @@ def test_memory_is_counted_once_and_not_what_others_hold():
     sparse = csr_array(np.eye(5))
     in_sparse = sparse.data.nbytes + sparse.indices.nbytes + sparse.indptr.nbytes
     thing = Thing(whole, (whole[::2], Thing(other), "name", None, sparse))
-    assert held_bytes(thing) == 800 + 56 + in_sparse
+    assert nbytes_of(thing) == 800 + 56 + in_sparse
     # A view keeps all of what it looks at.
-    assert held_bytes(whole[:1]) == held_bytes(whole, thing, but=(other, sparse)) == 800
-    assert held_bytes(thing, but=(thing,)) == held_bytes() == 0
+    assert nbytes_of(whole[:1]) == nbytes_of(whole, thing, but=(other, sparse)) == 800
+    assert nbytes_of(thing, but=(thing,)) == nbytes_of() == 0
 
 
 @pytest.mark.parametrize("value", ["1", None, 1j, np.nan, np.inf, -1, 0, 5.5, np.ones(2), [1]])

@@ -16,7 +16,7 @@ EXAMPLES = {path.stem: path for path in sorted((ROOT / "engine" / "examples").gl
 README = ROOT / "engine" / "README.md"
 # What each example shows, by the names that it leaves.
 SHOWN = {
-    "own_polygon": lambda left: left["proof"].never_folds and left["frame"].k.max() < 0.6,
+    "own_polygon": lambda left: left["proof"].is_locally_injective and left["frame"].k.max() < 0.6,
     "hole": lambda left: 0 < left["correction"] < 0.1 and left["frame"].sigma_b.min() > 0,
     "limits": lambda left: (
         left["state"].status is engine.Status.AT_LIMITS and not left["unfinished"].status.is_final
@@ -69,7 +69,7 @@ MISUSES = {
     "start": lambda bar: bar.start([1]),
     "settle": lambda bar: bar.settle(bar.start(), [1]),
     "settle others": lambda bar: bar.settle(
-        bar.start(), engine.Handles.place(bar.boundary, [1 + 0.5j, 2 + 0.5j]).wish([1, 2])
+        bar.start(), engine.Handles.place(bar.boundary, [1 + 0.5j, 2 + 0.5j]).targets([1, 2])
     ),
     "steps": lambda bar: bar.settle(bar.start(), bar.handles.wish([1]), at_most="3"),
     "certify": lambda bar: engine.certify([1], bar.boundary, bar.bounds),

@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 from shapes import regular_polygon
 
-from engine.deform import Deformer, Hand, Handles, Link
+from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles
 from engine.dirichlet import HilbertTransform
 from engine.domain import CutOut, build_domain, find_holes, mesh_inside, rectangle_domain
-from engine.domain.material import brushed, carried_stiffness, limb_around
+from engine.domain.material import brush_weights, copy_nearest_stiffness, limb_weights
 from engine.domain.meshing import triangulate
-from engine.domain.outline import enclose
+from engine.domain.outline import enclose_subject
 from engine.errors import EngineError
-from engine.geometry import Domain, best_rigid, constrained_delaunay
-from engine.geometry.kinematics import fit_keys, swing
+from engine.geometry import Domain, constrained_delaunay, fit_rigid
+from engine.geometry.kinematics import fit_keys, simulate_spring
 from engine.geometry.kinematics.recordings import MOST_FRAMES
-from engine.geometry.motions import MOTIONS, Body, Parameters, facing_of, kind_named
-from engine.interpolation import Course, Joint, prepare, prepare_sites, sample_keyframes
+from engine.geometry.motions import MOTIONS, Body, Parameters, find_kind, guess_facing
+from engine.interpolation import InteriorKnot, TimeWeights, prepare, sample_domain, sample_keyframes
 from engine.maps import Boundary, Bounds, HarmonicMap, derivatives_of
-from engine.streaming import build_targets
+from engine.streaming import build_morph_targets
 
 NAN = float("nan")
 OUTLINE, CAGE = regular_polygon(8), regular_polygon(8, 1.2)
@@ -61,11 +61,11 @@ def in_between(time):
 
 
 def body(box=(0j, 100 + 200j), **joints):
-    return Body(kind=kind_named("biped-side"), joints=STANDING | joints, box=box)
+    return Body(kind=find_kind("biped-side"), joints=STANDING | joints, box=box)
 
 
 def targets(times, tolerance=0.1):
-    return next(build_targets(lambda _: OUTLINE, OUTLINE, times, tolerance=tolerance))
+    return next(build_morph_targets(lambda _: OUTLINE, OUTLINE, times, tolerance=tolerance))
 
 
 REFUSED = {
@@ -74,9 +74,9 @@ REFUSED = {
     "half a triangle": lambda: built(triangles=2000.5),
     "picture as a list": lambda: built(rgba=PICTURE.tolist()),
     "background as a list": lambda: CutOut(background=[255, 0, 0]),
-    "swapped nowhere": lambda: CutOut(swapped=(complex(NAN, NAN),)),
-    "holes maybe": lambda: enclose(MASK, detail="fine", holes="maybe"),
-    "an empty mask": lambda: enclose(~MASK & MASK, detail="fine"),
+    "swapped nowhere": lambda: CutOut(toggled_holes=(complex(NAN, NAN),)),
+    "holes maybe": lambda: enclose_subject(MASK, detail="fine", holes="maybe"),
+    "an empty mask": lambda: enclose_subject(~MASK & MASK, detail="fine"),
     "holes of an empty mask": lambda: find_holes(~MASK & MASK),
     "no triangles": lambda: triangulate(OUTLINE, 0),
     "fewer than no triangles": lambda: mesh_inside(DOMAIN, triangles=-5),
@@ -84,18 +84,20 @@ REFUSED = {
     "a bound as text": lambda: Bounds(k="x"),
     "weights as text": lambda: Handles.place(boundary(), np.array([0j]), ["x"]),
     "rotations as text": lambda: handles().wish([0j, 1], ["a", "b"]),
-    "half a handle in a hand": lambda: handles().wish([0j, 1], None, [Hand([0.5])]),
-    "half a handle in a link": lambda: handles().wish([0j, 1], None, (), [Link(0.5, 1, 0, 2)]),
+    "half a handle in a hand": lambda: handles().wish([0j, 1], None, [BoundedPull([0.5])]),
+    "half a handle in a link": lambda: handles().wish(
+        [0j, 1], None, (), [DistanceConstraint(0.5, 1, 0, 2)]
+    ),
     "keyframes as arrays": lambda: prepare([CAGE, CAGE], boundary(), [0j]),
     "a time as text": lambda: in_between("0.5"),
     "a time that is no number": lambda: in_between(NAN),
     "an endless time": lambda: in_between(np.inf),
     "several times": lambda: in_between(np.array([0.2, 0.3])),
-    "no keyframes": lambda: sample_keyframes([], prepare_sites(boundary(), [0j])),
+    "no keyframes": lambda: sample_keyframes([], sample_domain(boundary(), [0j])),
     "no maps": lambda: derivatives_of([], np.array([0j])),
-    "an interval of no length": lambda: Joint(0.0, 1.0),
-    "a pace of none": lambda: Joint(1.0, 1.0, 0.0, 1.0),
-    "an end that is no number": lambda: Course.between(NAN, 1.0),
+    "an interval of no length": lambda: InteriorKnot(0.0, 1.0),
+    "a pace of none": lambda: InteriorKnot(1.0, 1.0, 0.0, 1.0),
+    "an end that is no number": lambda: TimeWeights.between(NAN, 1.0),
     "an outline that runs clockwise": lambda: HilbertTransform.on(Domain(OUTLINE[::-1], CAGE)),
     "a cage inside": lambda: HilbertTransform.on(Domain(OUTLINE, 0.5 * CAGE)),
     "an extension outside": lambda: transform().at(np.array([0j, 30 + 30j])),
@@ -104,26 +106,28 @@ REFUSED = {
     "targets at no time": lambda: targets([]),
     "targets back in time": lambda: targets([1, 0]),
     "a tolerance below 0": lambda: targets([0, 1], tolerance=-1),
-    "a brush without radius": lambda: brushed([OUTLINE], np.array([0j]), 0.0, 0.5),
-    "a brush nowhere": lambda: brushed([OUTLINE], np.array([complex(NAN, 0)]), 1.0, 0.5),
-    "no stiffness": lambda: carried_stiffness([OUTLINE], np.zeros(len(OUTLINE)), OUTLINE),
-    "a rigid motion to nowhere": lambda: best_rigid(
+    "a brush without radius": lambda: brush_weights([OUTLINE], np.array([0j]), 0.0, 0.5),
+    "a brush nowhere": lambda: brush_weights([OUTLINE], np.array([complex(NAN, 0)]), 1.0, 0.5),
+    "no stiffness": lambda: copy_nearest_stiffness([OUTLINE], np.zeros(len(OUTLINE)), OUTLINE),
+    "a rigid motion to nowhere": lambda: fit_rigid(
         np.array([0j, 1]), np.array([NAN, 0j]), np.ones(2)
     ),
-    "a rigid motion of no weight": lambda: best_rigid(
+    "a rigid motion of no weight": lambda: fit_rigid(
         np.array([0j, 1]), np.array([1, 0j]), np.array([1.0, -1.0])
     ),
     "a polygon that crosses itself": lambda: constrained_delaunay(np.array([0, 1 + 1j, 1, 1j])),
     "a knee on the hips": lambda: body(**{"knee.L": STANDING["hips"]}),
     "a foot nowhere": lambda: body(**{"foot.L": complex(NAN, NAN)}),
-    "a flat box": lambda: Body(kind=kind_named("anything"), joints={}, box=(0j, 100 + 0j)),
+    "a flat box": lambda: Body(kind=find_kind("anything"), joints={}, box=(0j, 100 + 0j)),
     "a limb that is not there": lambda: body().limb("hand.L"),
     "a length that is not there": lambda: body().length(["hips", "nose"]),
-    "a share that is no number": lambda: MOTIONS["walk"].moments(body(), Parameters(), [NAN]),
+    "a share that is no number": lambda: MOTIONS["walk"].poses_at(body(), Parameters(), [NAN]),
     "no frames a second": lambda: MOTIONS["walk"].frames(Parameters(), NAN),
-    "no outline": lambda: facing_of(kind_named("biped-side"), STANDING, np.empty(0, complex)),
-    "places too far for a spring": lambda: swing([0j, 1e308, 0], 24, frequency=2, damping=0.2),
-    "a speed as text": lambda: swing([0j, 1], "x", frequency=2, damping=0.2),
+    "no outline": lambda: guess_facing(find_kind("biped-side"), STANDING, np.empty(0, complex)),
+    "places too far for a spring": lambda: simulate_spring(
+        [0j, 1e308, 0], 24, frequency=2, damping=0.2
+    ),
+    "a speed as text": lambda: simulate_spring([0j, 1], "x", frequency=2, damping=0.2),
     "places too far to record": lambda: fit_keys([0, 1, 2], [0j, 1e308, 0], 1),
     "a recording that is too long": lambda: fit_keys([0, MOST_FRAMES + 1], [0j, 1], 1),
     "a recording that is too late": lambda: fit_keys([1e18, 1e18 + 1000], [0j, 1], 1),
@@ -140,7 +144,7 @@ def test_input_is_refused_by_the_engine_when_it_is_no_input(case):
 
 def test_bone_from_nowhere_is_refused_as_such():
     with pytest.raises(EngineError, match="ends of a bone"):
-        limb_around([OUTLINE], complex(NAN, 0), 1 + 0j, OUTLINE)
+        limb_weights([OUTLINE], complex(NAN, 0), 1 + 0j, OUTLINE)
 
 
 def test_extension_takes_points_of_the_boundary():
@@ -149,6 +153,6 @@ def test_extension_takes_points_of_the_boundary():
 
 
 def test_handles_are_held_by_whole_numbers_of_any_type():
-    wish = handles().wish([0j, 1], None, [Hand(np.array([0]))])
+    wish = handles().wish([0j, 1], None, [BoundedPull(np.array([0]))])
     assert wish.hands is not None
     assert Deformer(boundary=boundary(), handles=handles(), bounds=Bounds()).start() is not None

@@ -129,7 +129,7 @@ class Film(Harness):
         super()._frame(painted=painted or is_shot)
         if self._shots is not None or self._is_down:
             # As on a fast machine, the drawing follows at once.
-            self.session.jobs.settle(PATIENCE)
+            self.session.jobs.wait_until_idle(PATIENCE)
         if self._shots is not None and is_shot:
             self._shots.append(self._marked(self._screen.picture()))
 

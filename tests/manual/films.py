@@ -10,12 +10,12 @@ from PIL import Image, ImageDraw
 
 from app.document.settings import Meshing
 from app.editor.actions import (
-    cutting,
+    cut_out_editing,
     editing,
     keys,
-    material,
     playback,
     posing,
+    stiffness_editing,
     tracks,
     viewing,
 )
@@ -56,14 +56,14 @@ def _first_minute(window: Film, path: Path) -> None:
             window.settle()
         window.go(window.point(-60 + 300j))
         play(window, 3.0)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
 
 
 def _pose(window: Film, path: Path) -> None:
     """A giraffe looks up, between two keys: that makes a third."""
     project = open_sample(window, "giraffe", frame=0)
     window.show_tab("Handle")
-    window.act(editing.select, frozenset({handle_named(project, "nose")}))
+    window.act(editing.select_handles, frozenset({handle_named(project, "nose")}))
     come_to_rest(window)
     window.put(window.point(-150 + 700j))
     with window.filmed(path):
@@ -105,7 +105,7 @@ def _cut_out(window: Film, path: Path) -> None:
             window.stay(30)
             window.click(window.item("//Cut-out/**/###remove tool"))
             with window.cut():
-                window.act(cutting.set_brush, 60.0)
+                window.act(cut_out_editing.set_brush_radius, 60.0)
                 window.settle()
             stroke = (MAGNET - 45 + 20j, MAGNET + 50 - 15j)
             window.drag(*map(window.point, stroke), frames=24)
@@ -118,7 +118,7 @@ def _cut_out(window: Film, path: Path) -> None:
 def _tail_wag(window: Film, path: Path) -> None:
     """A track of the dragon's tail tip, beside its other keys."""
     project = open_calm_dragon(window)
-    window.act(editing.select, frozenset({handle_named(project, "tail tip")}))
+    window.act(editing.select_handles, frozenset({handle_named(project, "tail tip")}))
     come_to_rest(window)
     window.put(window.point(-60 + 300j))
     with window.filmed(path):
@@ -133,18 +133,18 @@ def _tail_wag(window: Film, path: Path) -> None:
             window.act(playback.seek, 24)
             window.settle()
             track = project.layer.tracks[0]
-            window.act(tracks.put, track.handles[0], 0j, 0.0)
+            window.act(tracks.set_handle_value, track.handles[0], 0j, 0.0)
             window.settle()
         window.stay(20)
         window.go(window.point(-60 + 300j))
         play(window, 4.0)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
 
 
 def _record(window: Film, path: Path) -> None:
     """The dragon's tail is dragged while time goes on."""
     project = open_calm_dragon(window)
-    window.act(editing.select, frozenset({handle_named(project, "tail tip")}))
+    window.act(editing.select_handles, frozenset({handle_named(project, "tail tip")}))
     come_to_rest(window)
     window.put(window.point(-60 + 300j))
     start = place_of(window, "tail tip")
@@ -166,7 +166,7 @@ def _ears(window: Film, path: Path) -> None:
     ear = project.layer.handles[-1]
     window.act(editing.edit_layer, editing.handle_commands.rename_handle, ear.id, "ear")
     window.show_tab("Handle")
-    window.act(editing.select, frozenset({ear.id}))
+    window.act(editing.select_handles, frozenset({ear.id}))
     come_to_rest(window)
     scroll_to(window, "//Handle/**/###ear")
     window.put(window.point(-150 + 700j))
@@ -176,7 +176,7 @@ def _ears(window: Film, path: Path) -> None:
         window.settle()
         window.go(window.point(-150 + 700j))
         play(window, 3.4)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
 
 
 def _walking(window: Film, path: Path) -> None:
@@ -192,18 +192,18 @@ def _walking(window: Film, path: Path) -> None:
         window.stay(60)
         window.click(window.item("//Motion/**/###give"))
         with window.cut():
-            window.until(lambda: project_of(window).errand is None)
+            window.until(lambda: project_of(window).motion_job is None)
             window.settle()
         window.go(window.point(-150 + 700j))
         window.stay(240)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
 
 
 def _move(window: Film, path: Path) -> None:
     """The octopus goes through the picture as it is."""
     open_sample(window, "octopus", frame=0)
     window.show_tab("Handle")
-    window.act(viewing.look_from, None)
+    window.act(viewing.set_view, None)
     come_to_rest(window)
     window.put(window.point(-60 + 300j))
     with window.filmed(path):
@@ -221,9 +221,9 @@ def _stiff(window: Film, path: Path) -> None:
     project = open_sample(window, "character", frame=22)
     window.show_tab("Material")
     ends = (handle_named(project, "right elbow"), handle_named(project, "right hand"))
-    window.act(material.add_bone, ends)
-    window.act(material.take_up, "stiff")
-    window.act(cutting.set_brush, 130.0)
+    window.act(stiffness_editing.add_bone, ends)
+    window.act(stiffness_editing.toggle_stiffness_tool, "stiff")
+    window.act(cut_out_editing.set_brush_radius, 130.0)
     window.settle()
     come_to_rest(window)
     window.put(window.point(-60 + 300j))

@@ -151,7 +151,7 @@ def _subparser(parser: argparse.ArgumentParser, command: str) -> argparse.Argume
 def _is_known(part: str) -> bool:
     tables: set[str] = {binding.label for binding in BINDINGS.values()} | set(PAGES) | set(MENUS)
     tables |= {format_.label for format_ in EXPORT_FORMATS.values()} | {
-        sample.name for sample in files.samples()
+        sample.name for sample in files.sample_files()
     }
     tables |= {format_.group for format_ in EXPORT_FORMATS.values()}
     words = [

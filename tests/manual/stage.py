@@ -13,7 +13,7 @@ from app.editor.actions import (
     posing,
 )
 from app.editor.project import Project
-from app.editor.timeline_view import Strip
+from app.editor.timeline_view import TimeRangeView
 from tests.manual.film import Film
 from tests.readme.window import handle_named, open_sample
 
@@ -28,9 +28,9 @@ def save(picture: Image.Image, path: Path) -> None:
 def at(window: Film, frame: float) -> ImVec2:
     """Return where a frame is on the timeline's ruler."""
     low, high = window.room_of("###Timeline/**/ruler")
-    timing, frames = project_of(window).timing, project_of(window).document.frames
+    timing, frames = project_of(window).timeline, project_of(window).document.frames
     em = window.text_height()
-    strip = timing.strip or Strip.fitting(frames, (high.x - low.x) / em)
+    strip = timing.time_range or TimeRangeView.fitting(frames, (high.x - low.x) / em)
     return ImVec2(low.x + strip.place(frame) * em, (low.y + high.y) / 2)
 
 
@@ -43,7 +43,7 @@ def project_of(window: Film) -> Project:
 def place_of(window: Film, name: str) -> complex:
     """Return where a handle is in what is shown, in the drawing's plane."""
     project = project_of(window)
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     assert shown is not None
     identities = [handle.id for handle in project.layer.handles]
     return complex(shown.handle_positions[identities.index(handle_named(project, name))])
@@ -84,16 +84,16 @@ def open_calm_dragon(window: Film) -> Project:
     """Open a dragon whose head nods within 48 frames, while nothing else moves."""
     project = open_sample(window, "dragon", frame=0)
     for frame in (24, 48):
-        window.act(editing.choose_keys, frozenset({frame}))
-        window.act(editing.delete)
+        window.act(editing.select_keys, frozenset({frame}))
+        window.act(editing.delete_selection)
     window.settle()
     window.act(playback.seek, 36)
     window.settle()
     snout = Target(position=110 + 520j)
-    window.act(posing.wish, {handle_named(project, "snout"): snout})
+    window.act(posing.set_targets, {handle_named(project, "snout"): snout})
     window.settle()
     window.act(playback.seek, 0)
-    window.act(editing.choose_keys, frozenset())
+    window.act(editing.select_keys, frozenset())
     window.settle()
     window.show_tab("Handle")
     return project

@@ -10,11 +10,11 @@ from app.document import Target
 from app.editor import layering
 from app.editor.actions import (
     cycles,
-    drafting,
     editing,
     keys,
     playback,
     posing,
+    preset_setup,
     viewing,
 )
 from app.editor.poses import copying, library, pasting
@@ -56,11 +56,11 @@ def _overview(window: Film, path: Path) -> None:
     project = open_sample(window, "dragon", frame=36)
     wishes = {"snout": 90 + 740j, "brow": 270 + 810j}
     window.act(
-        posing.wish,
+        posing.set_targets,
         {handle_named(project, name): Target(position=at) for name, at in wishes.items()},
     )
     window.settle()
-    window.act(editing.select, frozenset({handle_named(project, "snout")}))
+    window.act(editing.select_handles, frozenset({handle_named(project, "snout")}))
     window.show_tab("Handle")
     _still(window, path)
 
@@ -84,8 +84,8 @@ def _feet(window: Film, path: Path) -> None:
     """Hooves that stay, with the line below each that tells of it."""
     project = open_sample(window, "giraffe", frame=15)
     window.show_tab("Handle")
-    window.act(editing.select, frozenset({handle_named(project, "near front hoof")}))
-    window.act(viewing.fit_pose)
+    window.act(editing.select_handles, frozenset({handle_named(project, "near front hoof")}))
+    window.act(viewing.zoom_to_pose)
     come_to_rest(window)
     scroll_to(window, "**/Free between keys")
     _still(window, path)
@@ -94,8 +94,8 @@ def _feet(window: Film, path: Path) -> None:
 def _walk(window: Film, path: Path) -> None:
     """A giraffe's walk repeats: one stretch of five keys, and its hatched repeats."""
     project = open_sample(window, "giraffe", frame=0)
-    window.act(editing.choose_keys, frozenset({30, 38, 72}))
-    window.act(editing.delete)
+    window.act(editing.select_keys, frozenset({30, 38, 72}))
+    window.act(editing.delete_selection)
     rests = {handle.name: handle.position for handle in project.layer.handles}
     for number, frame in enumerate((0, 6, 12, 18)):
         window.act(playback.seek, frame)
@@ -104,22 +104,22 @@ def _walk(window: Film, path: Path) -> None:
             handle_named(project, name): Target(position=rests[name] + ways[number])
             for name, ways in WALK.items()
         }
-        window.act(posing.wish, wishes)
+        window.act(posing.set_targets, wishes)
         window.settle()
     window.act(playback.seek, 0)
-    window.act(copying.copy)
+    window.act(copying.copy_pose_or_keys)
     window.act(playback.seek, 24)
-    window.act(pasting.paste)
+    window.act(pasting.paste_copied)
     window.settle()
     window.session.toasts.clear()  # what copying told
     window.act(keys.toggle_loop)
     window.act(keys.set_last_frame, 96)
-    window.act(editing.choose_keys, frozenset({0, 6, 12, 18, 24}))
-    window.act(cycles.repeat)
+    window.act(editing.select_keys, frozenset({0, 6, 12, 18, 24}))
+    window.act(cycles.create_cycle)
     window.settle()
     window.act(playback.seek, 48)
     window.show_tab("Handle")
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     _still(window, path)
 
 
@@ -129,11 +129,11 @@ def _poses(window: Film, path: Path) -> None:
     for frame, name in {0: "calm", 24: "tail up", 48: "tail back"}.items():
         window.act(playback.seek, frame)
         window.settle()
-        window.act(library.keep)
+        window.act(library.save_pose_to_library)
         window.settle()
-        window.act(library.rename, project.layer.library[-1].name, name)
+        window.act(library.rename_library_pose, project.layer.library[-1].name, name)
     window.act(playback.seek, 37)
-    window.act(viewing.toggle, "onion")
+    window.act(viewing.toggle_overlay, "onion")
     window.resize(HIGHER)
     window.show_tab("Poses")
     _still(window, path)
@@ -143,16 +143,16 @@ def _ready_motions(window: Film, path: Path) -> None:
     """A giraffe that is about to walk: where its joints are."""
     window.open(sample_images() / "giraffe.png")
     window.resize((1000, 804))
-    window.act(drafting.begin)
+    window.act(preset_setup.begin_motion_setup)
     window.frames(6)
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     _still(window, path)
 
 
 def _front(window: Film, path: Path) -> None:
     """Two arms of an octopus cross; one of them is painted in front."""
     project = open_sample(window, "octopus", frame=16)
-    window.act(editing.select, frozenset({handle_named(project, "left 4")}))
+    window.act(editing.select_handles, frozenset({handle_named(project, "left 4")}))
     window.resize((1000, 696))
     window.show_tab("Handle")
     come_to_rest(window)
@@ -165,7 +165,7 @@ def _stretch(window: Film, path: Path) -> None:
     open_sample(window, "giraffe", frame=30)
     window.resize(HIGHER)
     window.show_tab("Deform")
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     come_to_rest(window)
     window.run(lambda robot: robot.item_open("**/Details"))
     _still(window, path)
@@ -174,7 +174,7 @@ def _stretch(window: Film, path: Path) -> None:
 def _distortion(window: Film, path: Path) -> None:
     """How far a giraffe is squeezed where it bends to the ground."""
     open_sample(window, "giraffe", frame=30)
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     window.act(viewing.show_heat_map, "sigma_b")
     window.show_tab("Distortion")
     _still(window, path)
@@ -184,7 +184,7 @@ def _mesh(window: Film, path: Path) -> None:
     """The triangles and the cage of a dragon."""
     window.open(sample_images() / "dragon.png")
     window.resize(HIGHER)
-    window.act(viewing.toggle, "wireframe")
+    window.act(viewing.toggle_overlay, "wireframe")
     window.show_tab("Mesh")
     _still(window, path)
 
@@ -193,8 +193,8 @@ def _layers(window: Film, path: Path) -> None:
     """A child of many layers; the arm hangs on the body."""
     project = open_sample(window, "friend", frame=14)
     arm = next(layer.id for layer in project.document.layers if layer.name == "right arm")
-    window.act(layering.choose, arm)
-    window.act(editing.select, frozenset({handle_named(project, "hand")}))
+    window.act(layering.set_active_layer, arm)
+    window.act(editing.select_handles, frozenset({handle_named(project, "hand")}))
     window.resize(LAYERED)
     window.show_tab("Layers")
     heighten_timeline(window, CHOICE)
@@ -208,11 +208,12 @@ def _mouths(window: Film, path: Path) -> None:
     window.resize(LAYERED)
     window.show_tab("Layers")
     window.act(
-        layering.toggle, next(row.toggle for row in project.tree if row.switch_group is not None)
+        layering.toggle_tree_row,
+        next(row.toggle for row in project.tree if row.switch_group is not None),
     )
     head = next(layer.id for layer in project.document.layers if layer.name == "head")
     heighten_timeline(window, CHOICE)
-    window.act(layering.choose, head)
+    window.act(layering.set_active_layer, head)
     _still(window, path)
     heighten_timeline(window, -CHOICE)
 
@@ -221,15 +222,15 @@ def _camera(window: Film, path: Path) -> None:
     """The frame of a camera around a child's head, and its keys below the ruler."""
     open_sample(window, "friend", frame=0)
     window.show_tab("Layers")
-    window.act(viewing.look_from, None)
+    window.act(viewing.set_view, None)
     window.act(layering.key_camera)
     window.act(playback.seek, 48)
     window.settle()
     whole = project_of(window).view(window.session.screen)
-    window.act(viewing.look_from, replace(whole, centre=HEAD, scale=1.9 * whole.scale))
+    window.act(viewing.set_view, replace(whole, centre=HEAD, scale=1.9 * whole.scale))
     window.act(layering.key_camera)
     window.settle()
-    window.act(viewing.look_from, None)
+    window.act(viewing.set_view, None)
     window.act(playback.seek, 30)
     _still(window, path)
 
@@ -237,7 +238,7 @@ def _camera(window: Film, path: Path) -> None:
 def _export(window: Film, path: Path) -> None:
     """What will be exported of an octopus."""
     open_sample(window, "octopus", frame=28)
-    window.act(viewing.toggle, "handles")
+    window.act(viewing.toggle_overlay, "handles")
     window.resize((1000, 810))
     window.show_tab("Export")
     _still(window, path)
@@ -268,7 +269,7 @@ def _limit(window: Film, path: Path) -> None:
     window.settle()
     window.drag(window.point(NOSE), window.point(NOSE - 800 - 300j))
     window.settle()
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     window.frames(20)
     save(window.picture(), path)
 

@@ -32,7 +32,7 @@ def draw(names: Sequence[str], folder: Path) -> None:
         window.resize(SIZE)
         DRAWN[name](window, folder / name)
         # What another drawing is open for is not to be asked.
-        saving.put_project(window.session, None)
+        saving.set_project(window.session, None)
         drawn = json.loads(DRAWN_OF.read_text()) if DRAWN_OF.exists() else {}
         kept = {each: of for each, of in drawn.items() if each in DRAWN} | {name: digest}
         DRAWN_OF.write_text(json.dumps(kept, indent=2, sort_keys=True) + "\n")

@@ -53,9 +53,9 @@ def _posing(window: Harness) -> None:
     """A dragon that looks up, drawn by handles; where it was an in-between, there is a key now."""
     project = open_sample(window, "dragon", frame=36)
     wishes = {handle_named(project, name): Target(position=at) for name, at in LOOK_UP.items()}
-    window.act(posing.wish, wishes)
+    window.act(posing.set_targets, wishes)
     window.settle()
-    window.act(editing.select, frozenset({handle_named(project, "snout")}))
+    window.act(editing.select_handles, frozenset({handle_named(project, "snout")}))
     window.show_tab("Handle")
 
 
@@ -65,11 +65,11 @@ def _onion_skin(window: Harness) -> None:
     for frame, name in {0: "calm", 24: "tail up", 48: "tail back"}.items():
         window.act(playback.seek, frame)
         window.settle()
-        window.act(library.keep)
+        window.act(library.save_pose_to_library)
         window.settle()
-        window.act(library.rename, project.figure.library[-1].name, name)
+        window.act(library.rename_library_pose, project.figure.library[-1].name, name)
     window.act(playback.seek, 37)
-    window.act(viewing.toggle, "onion")
+    window.act(viewing.toggle_overlay, "onion")
     window.show_tab("Poses")
 
 
@@ -77,15 +77,15 @@ def _layers(window: Harness) -> None:
     """A child of many layers waves: the arms hang on the body, and mouths are seen in turns."""
     project = open_sample(window, "friend", frame=14)
     arm = next(figure.id for figure in project.document.figures if figure.name == "left arm")
-    window.act(layering.choose, arm)
-    window.act(editing.select, frozenset({handle_named(project, "hand")}))
+    window.act(layering.set_active_layer, arm)
+    window.act(editing.select_handles, frozenset({handle_named(project, "hand")}))
     window.show_tab("Layers")
 
 
 def _heat_map(window: Harness) -> None:
     """How far a giraffe is squeezed where it bends to the ground."""
     open_sample(window, "giraffe", frame=30)
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     window.act(viewing.show_heat_map, "sigma_b")
     window.show_tab("Distortion")
 
@@ -93,18 +93,18 @@ def _heat_map(window: Harness) -> None:
 def _export(window: Harness) -> None:
     """What will be exported of an octopus."""
     open_sample(window, "octopus", frame=28, theme="light")
-    window.act(viewing.toggle, "handles")
+    window.act(viewing.toggle_overlay, "handles")
     window.show_tab("Export")
 
 
 def _split_view(window: Harness) -> None:
     """A giraffe by two methods, side by side."""
     open_sample(window, "giraffe", frame=15)
-    window.act(viewing.toggle, "handles")
-    window.act(viewing.toggle_split)
-    viewing.lay_beside(window.session, beside=True)
+    window.act(viewing.toggle_overlay, "handles")
+    window.act(viewing.toggle_comparison)
+    viewing.set_side_by_side(window.session, beside=True)
     window.settle()
-    window.act(viewing.fit_pose)
+    window.act(viewing.zoom_to_pose)
     window.show_tab("Distortion")
 
 
@@ -113,7 +113,7 @@ def open_sample(window: Harness, sample: str, *, frame: int, theme: ThemeName = 
     project = window.again(Harness.open, sample_images() / f"{sample}.lissom")
     if window.session.preferences.theme != theme:
         window.act(viewing.toggle_theme)
-    window.act(playback.halt)
+    window.act(playback.stop_playback)
     window.act(playback.seek, frame)
     window.settle()
     return project

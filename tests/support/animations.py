@@ -17,13 +17,13 @@ from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
 from engine.domain.build import MeshedDomain, build_domain
 from engine.domain.meshing import triangulate
-from engine.domain.picture.cut_out import CutOut, Slit
+from engine.domain.picture.cut_out import CutLine, CutOut
 
 BLOB = soft_blob()  # 120 × 90 pixels, soft edges, bright colours hidden where it is transparent
 LONGEST, OFFSET = 30.0, 4.0  # of edges of simple outlines, and of the cages around them
 
 # A knife's line from below into its middle.
-PARTED = CutOut(slits=(Slit(points=np.array([60.0, 61 + 50j])),))
+PARTED = CutOut(cut_lines=(CutLine(points=np.array([60.0, 61 + 50j])),))
 
 
 def still_document(

@@ -15,7 +15,7 @@ from app.document.model import Document
 from app.document.settings import FrameRange
 from app.editor.actions import playback, posing
 from app.editor.project import Project
-from app.editor.work.puppet import Puppet
+from app.editor.work.layer_runtime import LayerRuntime
 from app.storage.assets import sample_images
 from engine.domain.build import MeshedDomain
 from engine.domain.meshing import triangulate
@@ -58,8 +58,8 @@ def take_few_corners(project: Project) -> None:
     layer = replace(new_layer(layer.picture, domain, layer.meshing), id=layer.id, name=layer.name)
     document = project.document.with_layer(layer)
     project.history = History(document, saved=history.is_saved)
-    picture = project.puppet.picture
-    project.puppets[layer.id] = Puppet.of(clip_of(document, layer.id), picture)
+    picture = project.layer_runtime.picture
+    project.layer_runtimes[layer.id] = LayerRuntime.of(clip_of(document, layer.id), picture)
 
 
 def bend_bar(
@@ -88,8 +88,10 @@ def bend_bar(
         bar = window.again(open_bar)
         playback.seek(window.session, BENT)
         window.settle()
-        width, height = bar.puppet.picture.size
-        posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
+        width, height = bar.layer_runtime.picture.size
+        posing.set_targets(
+            window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))}
+        )
     window.settle()
     return bar
 
@@ -98,14 +100,14 @@ def drag_bar(window: Harness, bar: Project) -> complex:
     """Drag a handle of the bent bar, let it go at once, and return where it was wished last."""
     playback.scrub(window.session, BENT)
     window.frames(2)
-    shown, gesture = bar.puppet.shown, object()
+    shown, gesture = bar.layer_runtime.shown, object()
     assert shown is not None
     place = complex(shown.handle_positions[1])
     for share in (0.25, 0.5, 0.75, 1.0):
         window.frames()
         wish = {1: Target(position=place + share * WAY)}
-        posing.pull(window.session, wish, gesture=gesture)
-    posing.let_go(window.session)
+        posing.drag_handles(window.session, wish, gesture=gesture)
+    posing.release_drag(window.session)
     return place + WAY
 
 

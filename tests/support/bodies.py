@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from PIL import Image, ImageDraw
 
-from engine.geometry.motions import Body, facing_of, kind_named
+from engine.geometry.motions import Body, find_kind, guess_facing
 
 # Places in a picture of this size, y up.
 SIZE = 320, 320
@@ -70,8 +70,8 @@ def body(kind: str) -> Body:
     places = np.array(list(joints.values()))
     low = complex(places.real.min(), places.imag.min())
     high = complex(places.real.max(), places.imag.max())
-    known = kind_named(kind)
-    facing = facing_of(known, joints, places)
+    known = find_kind(kind)
+    facing = guess_facing(known, joints, places)
     return Body(kind=known, joints=joints, box=(low, high), facing=facing)
 
 

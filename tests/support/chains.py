@@ -69,4 +69,4 @@ def among(clip):
 def seen(document, layer, frame, joints=None):
     """Where some points of a layer are in the scene; by its joints where they are known."""
     own = among(clip_of(document, layer)).positions(frame)
-    return (joints or ParentTransforms(document)).placement(layer, frame).on(own)
+    return (joints or ParentTransforms(document)).placement(layer, frame).apply(own)

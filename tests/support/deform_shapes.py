@@ -6,8 +6,8 @@ import numpy as np
 from interpolation_shapes import around, subdivided
 
 from engine.deform import Deformer, Handles, Objective, State
+from engine.deform.interior_point import Search, StartingPoint, advance_search, begin_search
 from engine.deform.model import MARGIN
-from engine.deform.rest import Search, Way, advance, begin_search
 from engine.geometry import Domain
 from engine.maps import Boundary, Bounds
 
@@ -48,7 +48,7 @@ TWISTED = STAR_POINTS * np.exp(1j * np.array([0, 0.7, -0.5, 0.6, -0.8, 0.4]))
 
 def settle(deformer: Deformer, targets) -> State:
     """Return the pose of least energy for targets, from the shape at rest."""
-    return deformer.settle(deformer.start(), deformer.handles.wish(targets))[0]
+    return deformer.settle(deformer.start(), deformer.handles.targets(targets))[0]
 
 
 @cache
@@ -63,7 +63,9 @@ def arched_bar() -> State:
     return settle(bar(), ARCHED)
 
 
-def search_from_rest(steps: int, way: Way = Way.REST, bounds: Bounds = TIGHT) -> Search:
+def search_from_rest(
+    steps: int, way: StartingPoint = StartingPoint.REST, bounds: Bounds = TIGHT
+) -> Search:
     """Return the search for a twisted star within bounds after some steps."""
     deformer = star(bounds)
     first = deformer.start()
@@ -71,7 +73,7 @@ def search_from_rest(steps: int, way: Way = Way.REST, bounds: Bounds = TIGHT) ->
         Objective(
             boundary=deformer.boundary,
             handles=deformer.handles,
-            wish=deformer.handles.wish(TWISTED),
+            targets=deformer.handles.targets(TWISTED),
         ),
         first.map,
         first.certificate,
@@ -80,7 +82,7 @@ def search_from_rest(steps: int, way: Way = Way.REST, bounds: Bounds = TIGHT) ->
         way=way,
     )
     for _ in range(steps):
-        search = advance(search)
+        search = advance_search(search)
     return search
 
 
@@ -102,7 +104,7 @@ def extremes(harmonic_map, points):
 def assert_sound(state, bounds):
     """Hold a state's map against 30,000 samples of the outline and some inside."""
     boundary, certificate = state.boundary, state.certificate
-    assert certificate.certified
+    assert certificate.is_certified
     assert certificate.winding == 0
     assert bounds.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
     outline = dense_outline(boundary)

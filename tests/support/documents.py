@@ -12,7 +12,6 @@ from shapes import regular_polygon
 
 from app.document.commands import (
     Command,
-    choice_commands,
     filming_commands,
     handle_commands,
     key_commands,
@@ -21,6 +20,7 @@ from app.document.commands import (
     scene_commands,
     shape_commands,
     stiffness_commands,
+    switch_group_commands,
     track_commands,
 )
 from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, TangentMode, Target
@@ -98,7 +98,7 @@ def random_pose(
             sigma_a=1 + rng.random(),
             sigma_b=float(rng.choice([rng.random(), -inf])),
             winding=rng.choice([0, 1, None]),
-            certified=bool(rng.integers(2)),
+            is_certified=bool(rng.integers(2)),
         ),
     )
 
@@ -171,17 +171,17 @@ def _random_choice_command(rng: np.random.Generator, document: Document) -> Comm
     name = choice.name if choice else "none"
     turn = choice.keys[0].frame if choice and choice.keys else frame
     commands = [
-        choice_commands.create_switch_group(
+        switch_group_commands.create_switch_group(
             f"choice {rng.integers(3)}", ids[: 2 + int(rng.integers(2))]
         ),
-        choice_commands.create_switch_group("two", rng.permutation(ids)[:2].tolist()),
-        choice_commands.choose_at(identity, frame),
-        choice_commands.unchoose_at(name, turn),
-        choice_commands.move_turn(name, turn, to),
-        choice_commands.rename_switch_group(name, f"choice {rng.integers(3)}"),
-        choice_commands.add_to_switch_group(name, [identity]),
-        choice_commands.remove_from_switch_group(identity),
-        choice_commands.delete_switch_group(name),
+        switch_group_commands.create_switch_group("two", rng.permutation(ids)[:2].tolist()),
+        switch_group_commands.choose_at(identity, frame),
+        switch_group_commands.unchoose_at(name, turn),
+        switch_group_commands.move_turn(name, turn, to),
+        switch_group_commands.rename_switch_group(name, f"choice {rng.integers(3)}"),
+        switch_group_commands.add_to_switch_group(name, [identity]),
+        switch_group_commands.remove_from_switch_group(identity),
+        switch_group_commands.delete_switch_group(name),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -437,7 +437,7 @@ def hand_made_cut_out() -> CutOut:
             Stroke(points=np.array([-5.0 + 199j]), radius=40.0, keeps=False),
         ),
         holes="keep",
-        swapped=(100 + 1 / 3j, 3j),
+        toggled_holes=(100 + 1 / 3j, 3j),
     )
 
 
@@ -466,13 +466,13 @@ def full_document() -> Document:
         targets=targets,
         phi=cage * np.exp(0.3j) + 1 / 3,
         psi=0.01 * cage.conj(),
-        certificate=Certificate(k=0.25, sigma_a=1.5, sigma_b=0.75, winding=0, certified=True),
+        certificate=Certificate(k=0.25, sigma_a=1.5, sigma_b=0.75, winding=0, is_certified=True),
     )
     folded = Pose(
         targets=targets,
         phi=bent.psi,
         psi=bent.phi,
-        certificate=Certificate(k=inf, sigma_a=2.0, sigma_b=-inf, winding=None, certified=False),
+        certificate=Certificate(k=inf, sigma_a=2.0, sigma_b=-inf, winding=None, is_certified=False),
     )
     layer = dataclasses.replace(
         empty.layers[0],

@@ -92,12 +92,12 @@ class Harness:
         """Go back to the welcome view of a person who opens Lissom for the first time."""
         self.paints = False
         jobs = self.session.jobs
-        if not jobs.settle(PATIENCE):
+        if not jobs.wait_until_idle(PATIENCE):
             # A test that failed has left a worker behind: the next ones are not to wait for it.
             jobs = Jobs()
         jobs.deliver()
         fresh = Session(clock=self.clock, jobs=jobs, folder=self.folder)
-        saving.put_project(self.session, None)
+        saving.set_project(self.session, None)
         for field in fields(Session):
             if field.name not in {"screen", "full_detail", "graphics"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
@@ -114,7 +114,7 @@ class Harness:
 
         What is open is given up.
         """
-        saving.put_project(self.session, None)
+        saving.set_project(self.session, None)
         files.open_file(self.session, path)
         self.settle()
         assert self.session.project is not None, [toast.text for toast in self.session.toasts]
@@ -139,7 +139,7 @@ class Harness:
         project.moved_at += self.clock.now - made_at
         # What was kept of it went away with the test for which it was made.
         project.autosaved, project.autosaved_at, project.changed_at = None, self.clock.now, None
-        saving.put_project(self.session, project)
+        saving.set_project(self.session, project)
         self.frames()
         if prepares_ahead:
             self.settle()
@@ -198,7 +198,7 @@ class Harness:
             pulls = project.pulls if project else []
             if not self.session.jobs.kinds and all(pull.is_settled for pull in pulls):
                 break
-            assert self.session.jobs.settle(PATIENCE), self.session.jobs.kinds
+            assert self.session.jobs.wait_until_idle(PATIENCE), self.session.jobs.kinds
         self.frames()
 
     def until(self, is_so: Callable[[], bool]) -> None:
@@ -209,7 +209,7 @@ class Harness:
             assert time.monotonic() < end, (self.session.jobs.kinds, told)
             self.frames()
             # Meanwhile the workers have the interpreter for themselves.
-            self.session.jobs.settle(FRAME)
+            self.session.jobs.wait_until_idle(FRAME)
 
     def run(self, play: Callable[[Robot], None]) -> None:
         """Let the test engine's robot do something with the window, as a person would."""

@@ -171,5 +171,5 @@ def pulled(name: str) -> State:
     else:
         boundary, points, targets = boundary_of("plate", 3), ON_PLATE, PLATE_DRAGS[name]
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds())
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets))
     return state

@@ -9,15 +9,15 @@ import shapely
 from engine.arrays import Complexes
 from engine.dirichlet import Extension, HilbertTransform
 from engine.geometry import Domain
-from engine.geometry.polygon import as_xy, diameter, edges, sample_graded
+from engine.geometry.polygon import as_xy, diameter, edge_vectors, sample_graded
 from engine.interpolation import (
     Inbetweens,
-    Interval,
-    Passage,
-    Sites,
+    KeyframeBlend,
+    KeyframeSegment,
+    SampledDomain,
     Variant,
     prepare_inbetweens,
-    prepare_sites,
+    sample_domain,
     sample_keyframes,
 )
 from engine.maps import Boundary, Bounds
@@ -33,7 +33,7 @@ def subdivided(polygon, longest):
     """Cut the edges of a polygon into equal parts no longer than `longest`."""
     parts = [
         start + side * np.arange(n) / n
-        for start, side in zip(polygon, edges(polygon), strict=True)
+        for start, side in zip(polygon, edge_vectors(polygon), strict=True)
         for n in [int(np.ceil(abs(side) / longest))]
     ]
     return np.concatenate(parts)
@@ -41,7 +41,7 @@ def subdivided(polygon, longest):
 
 def around(outline, offset):
     """Return the cage at a distance of `offset` around a polygon, with as many vertices."""
-    direction = edges(outline) / np.abs(edges(outline))
+    direction = edge_vectors(outline) / np.abs(edge_vectors(outline))
     before = np.roll(direction, 1)
     half = np.sqrt(direction / before)
     return outline - 1j * before * half * offset / half.real
@@ -96,7 +96,7 @@ def _boundary(outline: bytes, cage: bytes) -> Boundary:
 class Stage:
     """A shape and the points at which in-betweens are wanted, ready for any keyframes."""
 
-    sites: Sites
+    sites: SampledDomain
 
     @property
     def transform(self) -> HilbertTransform:
@@ -114,7 +114,7 @@ class Stage:
         keys = sample_keyframes(maps, self.sites)
         sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
         extension = self.extension if variant.needs_transform else None
-        interval = Interval(self.sites, Passage.of(keys, sheets), bounds, extension)
+        interval = KeyframeSegment(self.sites, KeyframeBlend.of(keys, sheets), bounds, extension)
         return prepare_inbetweens(variant, interval)
 
 
@@ -134,7 +134,7 @@ def _stage(
 ) -> Stage:
     places, beside = (np.frombuffer(each, complex) for each in (points, values_at))
     boundary = _boundary(outline, cage)
-    return Stage(prepare_sites(boundary, places, anchor=anchor, values_at=beside))
+    return Stage(sample_domain(boundary, places, anchor=anchor, values_at=beside))
 
 
 def stage_of(
@@ -160,7 +160,7 @@ def scattered_on(outline: Complexes, count: int) -> Complexes:
     """
     golden = (np.sqrt(5) - 1) / 2
     places = np.sort(np.arange(count) * golden % 1.0)
-    return (outline[:, None] + edges(outline)[:, None] * places).ravel()
+    return (outline[:, None] + edge_vectors(outline)[:, None] * places).ravel()
 
 
 def inner_points(outline, count, seed, *, margin=0.0):

@@ -27,9 +27,9 @@ def check_invariants(session: Session) -> None:
     if project is None:
         return
     document, layer = project.document, project.layer
-    assert set(project.puppets) == {each.id for each in document.layers}
-    assert project.selected <= {handle.id for handle in layer.handles}
-    for row, frames in project.chosen_of.items():
+    assert set(project.layer_runtimes) == {each.id for each in document.layers}
+    assert project.selected_handles <= {handle.id for handle in layer.handles}
+    for row, frames in project.selected_keys.items():
         assert frames
         assert frames <= frames_in(document, row)
     assert playback.current_frame(session, project) in document.frames
@@ -41,14 +41,17 @@ def check_invariants(session: Session) -> None:
         for key in each.keys:
             check_pose(each, key.pose)
     check_joints(project)
-    if project.unkeyed is not None:
-        check_pose(layer, project.unkeyed)
+    if project.unkeyed_pose is not None:
+        check_pose(layer, project.unkeyed_pose)
 
 
 def check_joints(project: Project) -> None:
     """Fail where a layer is not drawn at the point that it hangs by."""
     for layer in project.document.layers:
-        child, joint = project.puppets[layer.id].shown, project.document.attachment_at(layer, 0)
+        child, joint = (
+            project.layer_runtimes[layer.id].shown,
+            project.document.attachment_at(layer, 0),
+        )
         if (
             joint is None
             or joint.parent is None
@@ -56,14 +59,16 @@ def check_joints(project: Project) -> None:
             or len(layer.attachments) > 1
         ):
             continue
-        parent = project.puppets[joint.parent].shown
+        parent = project.layer_runtimes[joint.parent].shown
         if child is None or parent is None:
             continue
         pair = (child, layer), (parent, project.document.layer(joint.parent))
         if not all(each.is_current and each.clip.layer is now for each, now in pair):
             continue
-        anchor = child.placement.on(np.array([child.pivot_frame_at(layer.anchor).position]))[0]
-        at = parent.placement.on(np.array([parent.pivot_frame_at(joint.parent_point).position]))[0]
+        anchor = child.placement.apply(np.array([child.pivot_frame_at(layer.anchor).position]))[0]
+        at = parent.placement.apply(np.array([parent.pivot_frame_at(joint.parent_point).position]))[
+            0
+        ]
         size = np.abs(layer.domain.outline - layer.domain.outline.mean()).max()
         factor = (
             parent.placement.factor * parent.pivot_frame_at(joint.parent_point).rotation
@@ -81,7 +86,7 @@ def check_pose(layer: Layer, pose: Pose) -> None:
     assert len(pose.logs) == len(layer.domain.holes)
     assert np.isfinite(pose.phi).all()
     assert np.isfinite(pose.psi).all()
-    if pose.certificate.certified:
+    if pose.certificate.is_certified:
         assert _is_true(layer.domain, pose)
 
 
@@ -96,7 +101,7 @@ def _is_true(domain: MeshedDomain, pose: Pose) -> bool:
     shape = HarmonicMap(
         cage=domain.cage, phi=pose.phi, psi=pose.psi, holes=domain.holes, logs=pose.logs
     )
-    return certify(shape, _boundary(domain), allowed).certified
+    return certify(shape, _boundary(domain), allowed).is_certified
 
 
 @lru_cache(maxsize=8)

@@ -12,7 +12,7 @@ from engine.geometry.polygon import (
     contains,
     diameter,
     distance_to_boundary,
-    edges,
+    edge_vectors,
     is_simple,
     signed_area,
 )
@@ -44,7 +44,7 @@ def check_hole(hole: Hole, size: float) -> None:
         distance_to_boundary(outline, cage).min(), distance_to_boundary(cage, outline).min()
     )
     assert nearest >= 0.0003 * diameter(outline)
-    assert np.abs(edges(outline)).min() >= 0.001 * size
+    assert np.abs(edge_vectors(outline)).min() >= 0.001 * size
     # As of every outline, seen from the domain; there are no angles for the mesh to fail at.
     angles = interior_angles(outline) % 360
     assert angles.min() >= 20
@@ -74,7 +74,7 @@ def corners_of(mask: Booleans) -> Complexes:
 
 
 def interior_angles(polygon: Complexes) -> Floats:
-    along = edges(polygon)
+    along = edge_vectors(polygon)
     return np.degrees(np.pi - np.angle(along / np.roll(along, 1)))
 
 
@@ -83,7 +83,7 @@ def check_outline(mask: Booleans, enclosure: Enclosure, *, most: int = 200) -> N
     assert is_simple(points)
     assert signed_area(points) > 0
     check_cage(points, enclosure.cage)
-    lengths = np.abs(edges(points))
+    lengths = np.abs(edge_vectors(points))
     assert lengths.min() >= 0.001 * size
     assert lengths.max() <= 0.0701 * size
     assert interior_angles(points).min() >= 20

@@ -1,7 +1,7 @@
 """Projects as a window has them, for the tests of the editor and of the window."""
 
 from app.document import Document, History, clip_of
-from app.editor import Project, Puppet
+from app.editor import LayerRuntime, Project
 from app.storage import Picture
 from engine.arrays import Bytes
 
@@ -10,12 +10,12 @@ def project_of(document: Document, pixels: Bytes, name: str) -> Project:
     """A saved project of a document, whose pictures have these pixels; the first is posed."""
     picture = Picture(rgba=pixels, notices=())
     puppets = {
-        layer.id: Puppet.of(clip_of(document, layer.id), picture) for layer in document.layers
+        layer.id: LayerRuntime.of(clip_of(document, layer.id), picture) for layer in document.layers
     }
     return Project(
         name=name,
         history=History(document, saved=True),
         path=None,
-        puppets=puppets,
+        layer_runtimes=puppets,
         active=document.layers[0].id,
     )

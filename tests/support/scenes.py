@@ -10,7 +10,6 @@ from shapes import regular_polygon
 
 from app.document.commands import (
     Command,
-    choice_commands,
     cycle_commands,
     filming_commands,
     group_commands,
@@ -19,6 +18,7 @@ from app.document.commands import (
     scene_commands,
     shape_commands,
     stiffness_commands,
+    switch_group_commands,
     track_commands,
 )
 from app.document.keyframe import Keyframe, LibraryPose, Pose, TangentMode, Target
@@ -119,7 +119,7 @@ def random_affine(rng: np.random.Generator, layer: Layer) -> Pose:
             sigma_a=1 + abs(shear),
             sigma_b=1 - abs(shear),
             winding=0,
-            certified=True,
+            is_certified=True,
         ),
     )
 
@@ -144,8 +144,10 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
     changes = [
         layer_commands.attach_layer(layer.id, place, joint),
         layer_commands.key_visibility(layer.id, one, visible=flag),
-        choice_commands.create_switch_group(f"choice {one}", rng.permutation(ids)[:2].tolist()),
-        choice_commands.choose_at(layer.id, to),
+        switch_group_commands.create_switch_group(
+            f"choice {one}", rng.permutation(ids)[:2].tolist()
+        ),
+        switch_group_commands.choose_at(layer.id, to),
         *2 * [cycle_commands.set_cycle(layer.id, one, to, until)],
         filming_commands.key_camera(camera),
         filming_commands.key_opacity(layer.id, one, rng.random()),
@@ -200,8 +202,12 @@ def random_state(rng: np.random.Generator, session: Session, project: Project) -
     document = project.document
     project.active = _any(rng, document.layers).id
     layer = project.layer
-    project.beside = frozenset(each.id for each in document.layers if rng.random() < 0.3)
-    project.selected = frozenset(handle.id for handle in layer.handles if rng.random() < 0.5)
+    project.other_selected_layers = frozenset(
+        each.id for each in document.layers if rng.random() < 0.3
+    )
+    project.selected_handles = frozenset(
+        handle.id for handle in layer.handles if rng.random() < 0.5
+    )
     rows = [each.id for each in document.layers]
     rows += [
         TrackRow(each.id, track.handles[0]) for each in document.layers for track in each.tracks
@@ -209,13 +215,15 @@ def random_state(rng: np.random.Generator, session: Session, project: Project) -
     for row in rows:
         frames = frozenset(frame for frame in frames_in(document, row) if rng.random() < 0.4)
         if frames and rng.random() < 0.6:
-            project.chosen_of[row] = frames
-    project.timing.unfolded = frozenset(each.id for each in document.layers if rng.random() < 0.5)
+            project.selected_keys[row] = frames
+    project.timeline.expanded_layers = frozenset(
+        each.id for each in document.layers if rng.random() < 0.5
+    )
     if layer.tracks and rng.random() < 0.5:
-        project.chosen_track = _any(rng, layer.tracks).handles[0]
-    project.looks_through = bool(document.camera) and bool(rng.integers(2))
+        project.selected_track = _any(rng, layer.tracks).handles[0]
+    project.is_camera_view = bool(document.camera) and bool(rng.integers(2))
     project.playhead = replace(project.playhead, frame=int(rng.integers(LAST + 1)))
-    session.in_timeline = bool(rng.integers(2))
+    session.is_timeline_focused = bool(rng.integers(2))
     session.cutting = _any(rng, (None, None, None, "keep", "remove", "knife", "pick", "holes"))
     session.material = _any(rng, (None, None, None, "stiff", "bone"))
     session.moves = bool(rng.random() < 0.2)

@@ -6,7 +6,7 @@ import numpy as np
 from projects import project_of
 
 from app.document import Document
-from app.editor import Jobs, Session, promises
+from app.editor import Jobs, Session, pending_changes
 from app.editor.actions import playback
 from app.editor.actions.upkeep import maintain
 from engine.arrays import Bytes
@@ -40,11 +40,11 @@ def session_of(
 def settle(session: Session) -> None:
     """Let the worker do all that there is to do."""
     while True:
-        promises.go_on(session)
+        pending_changes.run_deferred_actions(session)
         maintain(session)
         if not session.jobs.kinds:
             return
-        assert session.jobs.settle()
+        assert session.jobs.wait_until_idle()
         session.jobs.deliver()
 
 

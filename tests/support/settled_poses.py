@@ -38,7 +38,7 @@ def settled_poses(name, seed):
     maps = []
     for _ in range(2):
         away = rng.normal(size=HANDLES) + 1j * rng.normal(size=HANDLES)
-        wish, state = handles.wish(places + FAR * size * away), deformer.start()
+        wish, state = handles.targets(places + FAR * size * away), deformer.start()
         for _ in range(STEPS):
             state = deformer.step(state, wish)
         maps.append(state.map)
@@ -58,8 +58,8 @@ def series_of(name, seed, variant, *, count=1000):
     outline, _ = shape = SHAPES[name]()
     points = np.concatenate([inner_points(outline, count, 1), outline_samples(shape)])
     prepared = prepare(settled_poses(name, seed), boundary_of(shape), points, variant=variant)
-    (interval,) = prepared.intervals
-    channels = Positions.of(interval, prepared.sites)
+    (interval,) = prepared.segments
+    channels = Positions.of(interval, prepared.sampled_domain)
     series = finish(build_series(channels))
     times = np.sort(np.random.default_rng(seed).random(LOOKED_AT))
     covered = [time for time in times if series.covers(time)]

@@ -1,7 +1,7 @@
 """What a window that does not come to rest waits for, in words."""
 
 from app.document import clip_of
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.project import Project
 from app.editor.session import Session
 from app.motion import DisplayedFrame
@@ -23,8 +23,8 @@ def unrest(session: Session) -> str:
     if project.stale_layer is not None:
         lines.append(f"waits for a mesh: {project.stale_layer.name!r}")
     lines += _shown(project)
-    lines.append(f"settled: {promises.is_settled(project)}")
-    lines.append(f"failing: {sorted(session.failing)}")
+    lines.append(f"settled: {pending_changes.is_document_idle(project)}")
+    lines.append(f"failing: {sorted(session.reported_failures)}")
     lines += [f"message: {toast.text!r}" for toast in session.toasts]
     return "\n".join(lines)
 
@@ -36,7 +36,7 @@ def is_shown(session: Session) -> bool:
 
 def _shown(project: Project) -> list[str]:
     lines = []
-    for identity, puppet in project.puppets.items():
+    for identity, puppet in project.layer_runtimes.items():
         clip, shown, store = clip_of(project.document, identity), puppet.shown, puppet.store
         if shown is None:
             lines.append(f"layer {clip.layer.name!r}: nothing is shown")

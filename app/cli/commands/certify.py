@@ -91,7 +91,7 @@ def _where(report: Report) -> list[str]:
     if report.verdict is Verdict.PROVEN:
         return []
     is_over = report.verdict is Verdict.OVER
-    found = [f"key {frame}" for frame, own in report.keys if is_over and not own.certified]
+    found = [f"key {frame}" for frame, own in report.keys if is_over and not own.is_certified]
     found += [
         f"{each.first} to {each.last}" for each in report.segments if each.verdict is report.verdict
     ]
@@ -100,7 +100,7 @@ def _where(report: Report) -> list[str]:
 
 def _block(report: Report) -> dict[str, Any]:
     keys = [
-        {"frame": frame, **_named(own), "certified": own.certified} for frame, own in report.keys
+        {"frame": frame, **_named(own), "certified": own.is_certified} for frame, own in report.keys
     ]
     return {
         **_judged(report.verdict),
@@ -147,7 +147,7 @@ def _interval_block(interval: SegmentReport) -> dict[str, Any]:
         "proven": {
             **_named(interval.proof),
             "excess": list(_named(interval.excess).values()),
-            "never_folds": interval.proof.never_folds,
+            "never_folds": interval.proof.is_locally_injective,
             "unsettled_frames": list(interval.unsettled),
             "loose_frames": list(interval.loose),
         },
@@ -171,7 +171,7 @@ def _as_table(report: Report) -> str:
     for frame, own in report.keys:
         cells = [f"{value:.4f}" for value in _numbers(own)]
         lines.append(
-            _line(f"key {frame}", cells, "certified" if own.certified else "NOT CERTIFIED")
+            _line(f"key {frame}", cells, "certified" if own.is_certified else "NOT CERTIFIED")
         )
     for interval in report.segments:
         lines += _interval_lines(interval)

@@ -12,9 +12,9 @@ from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
 from app.errors import LissomError
 from app.storage import check_writable, read_arrays, write_arrays
 from engine.arrays import Complexes
-from engine.deform import Deformer, Hand, Handles, require_held
+from engine.deform import BoundedPull, Deformer, Handles, require_held
 from engine.geometry import Domain
-from engine.maps import Boundary, Bounds, HarmonicMap, Limits
+from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds
 
 LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
 MATERIAL = ("stiffness", "local_limits")
@@ -29,22 +29,22 @@ def run(arguments: argparse.Namespace) -> int:
         optional=("phi", "psi", "logs", "path", "pull", *MATERIAL, *HOLE_ARRAYS),
     )
     k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
-    bounds: Limits = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
+    bounds: LocalBounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
     domain = Domain(case["outline"], case["cage"], read_holes(case))
     points = require_held(case["handles"], domain)
     boundary = Boundary.sample(domain)
     if "stiffness" in case:
         boundary = boundary.stiffened(case["stiffness"])
     if _is_local(case):
-        bounds = bounds.where_stiff(boundary)
+        bounds = bounds.scaled_by_stiffness(boundary)
     handles = Handles.place(boundary, points)
     rows = _rows(case, len(handles.points))
     hands = _hands(case, handles.points)
-    wishes = [handles.wish(row, None, hands) for row in rows]
+    wishes = [handles.targets(row, None, hands) for row in rows]
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
     state, tried = deformer.start(_start(case, boundary)), 0
     for wish in wishes[:-1]:
-        state, count = deformer.follow(state, wish)
+        state, count = deformer.track_path_row(state, wish)
         tried += count
     state, count = deformer.settle(state, wishes[-1], throw=False)
     tried += count
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
             "k": certificate.k,
             "sigma_a": certificate.sigma_a,
             "sigma_b": certificate.sigma_b,
-            "certified": certificate.certified,
+            "certified": certificate.is_certified,
             "status": state.status.value,
             "steps": state.steps,
             "steps_tried": tried,
@@ -98,7 +98,7 @@ def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[
     return [*path, case["targets"]]
 
 
-def _hands(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[Hand]:
+def _hands(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[BoundedPull]:
     """Return the hands that pull, each at one handle, where the case asks for bounded force.
 
     One force for all is of those that are wanted elsewhere than where they are at rest.
@@ -114,7 +114,7 @@ def _hands(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[Hand
     forces = np.broadcast_to(pull.astype(np.float64), count)
     if pull.shape != (count,) and case["targets"].shape == points.shape:
         forces = np.where(case["targets"] == points, np.inf, forces)
-    return [Hand([handle], force) for handle, force in enumerate(forces.tolist())]
+    return [BoundedPull([handle], force) for handle, force in enumerate(forces.tolist())]
 
 
 def _start(case: Mapping[str, npt.NDArray[Any]], boundary: Boundary) -> HarmonicMap | None:

@@ -21,7 +21,7 @@ from app.storage import (
     write_arrays,
     write_atomically,
 )
-from engine.domain import Slit, build_domain, texture_coordinates
+from engine.domain import CutLine, build_domain, texture_coordinates
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
         cut_out = replace(cut_out, background="none")
     height = picture.size[1]
     slits = (np.array([complex(z.real, height - z.imag) for z in line]) for line in arguments.knife)
-    cut_out = replace(cut_out, slits=tuple(Slit(points=points) for points in slits))
+    cut_out = replace(cut_out, cut_lines=tuple(CutLine(points=points) for points in slits))
     domain, remedies = build_domain(
         picture.rgba, triangles=arguments.triangles, detail=arguments.detail, cut_out=cut_out
     )

@@ -61,7 +61,7 @@ def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
     )
     frames = [prepared.frame(time) for time in arguments.times]
     results = {
-        "anchor": np.array(prepared.sites.anchor),
+        "anchor": np.array(prepared.sampled_domain.anchor),
         "positions": np.array([frame.positions for frame in frames]),
         "fz": np.array([frame.fz for frame in frames]),
         "fzbar": np.array([frame.fzbar for frame in frames]),

@@ -25,8 +25,8 @@ from app.storage import (
     open_picture,
     save_project,
 )
-from engine.domain import guessed_kind, suggested_joints
-from engine.geometry.motions import MOTIONS, Motion, Parameters, kind_named, motion_named
+from engine.domain import guess_kind, suggest_joints
+from engine.geometry.motions import MOTIONS, Motion, Parameters, find_kind, find_motion
 
 WHOLE = "anything"  # what moves as a whole may be anything
 NO_JOINTS = JointsFile(kind=None, joints={})
@@ -49,10 +49,10 @@ def run(arguments: argparse.Namespace) -> int:
             raise LissomError(f"{option} is missing; 'lissom move --help' tells what is said")
     read = arguments.picture, arguments.joints, arguments.mask
     check_writable(arguments.out, sources=filter(None, read))
-    motion, parameters = motion_named(arguments.motion), _parameters(arguments)
+    motion, parameters = find_motion(arguments.motion), _parameters(arguments)
     told = NO_JOINTS if arguments.joints is None else load_joints(arguments.joints)
     if arguments.kind is not None:
-        kind_named(arguments.kind)
+        find_kind(arguments.kind)
         if told.kind not in (None, arguments.kind):
             raise LissomError(
                 f"--kind is {arguments.kind!r}, but {arguments.joints} is of {told.kind!r}"
@@ -77,7 +77,7 @@ def _list_motions() -> None:
     """Print the motions."""
     longest = max(map(len, MOTIONS))
     for name, motion in MOTIONS.items():
-        travels = "; it may travel" if motion.travels else ""
+        travels = "; it may travel" if motion.can_travel else ""
         print_line(f"{name:<{longest}}  {', '.join(motion.kinds)}: {motion.hint}{travels}")
 
 
@@ -108,13 +108,13 @@ def _find_joints(layer: Layer, motion: Motion, kind: str | None, told: JointsFil
     if kind is None:
         if told.joints:
             raise LissomError("the file of joints does not say of which kind; add kind, or --kind")
-        kind = guessed_kind(loops).name
+        kind = guess_kind(loops).name
         if kind not in motion.kinds and WHOLE in motion.kinds:
             kind = WHOLE
         print_line(f"kind: {kind} (guessed)")
     joints = dict(told.joints)
-    if not joints and kind_named(kind).parents:
-        joints = dict(suggested_joints(loops, kind_named(kind)))
+    if not joints and find_kind(kind).parents:
+        joints = dict(suggest_joints(loops, find_kind(kind)))
         if not joints:
             raise LissomError(f"no joints of {kind!r} are found in the drawing; tell --joints")
         print_line(f"joints: {', '.join(joints)} (guessed)")

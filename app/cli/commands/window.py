@@ -17,7 +17,7 @@ from app.cli.process import (
     redirect_faulthandler,
     set_switch_interval,
 )
-from app.editor import Jobs, Session, failures
+from app.editor import Jobs, Session, error_reports
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
@@ -58,11 +58,11 @@ def run(arguments: argparse.Namespace) -> int:
         system_dialogs=find_system_dialogs() is not None,
     )
     _make(folder, session)
-    saving.clear_up(session)
+    saving.remove_temporary_files(session)
     with suppress(*EXPECTED_ERRORS):
-        failures.keep_faults(session)
-    files.offer_recovery(session)
-    failures.tell_of_kept(session)
+        error_reports.keep_fault_report(session)
+    files.ask_recovery(session)
+    error_reports.offer_kept_report(session)
     if arguments.file is not None:
         files.open_file(session, arguments.file.resolve())
     window = Window(session, lambda: Renderer(window_context()))
@@ -70,8 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
     with SignalHandler(window.wake) as endings, _noting_faults(folder):
         status = _show(window, endings)
         del heard
-        have_ended = session.jobs.close(LEISURE if session.quitting else HURRY)
-        if session.quitting:
+        have_ended = session.jobs.close(LEISURE if session.is_quitting else HURRY)
+        if session.is_quitting:
             # One that was being written when the person left.
             session.autosave.remove()
     if status == EXIT_FAILED or not have_ended or has_running_threads():
@@ -89,11 +89,11 @@ def _show(window: Window, endings: SignalHandler) -> int:
     def farewell() -> None:
         nonlocal was_open
         was_open = True
-        if not session.quitting:
+        if not session.is_quitting:
             _keep(session)
         with suppress(*EXPECTED_ERRORS):
             save_preferences(session.folder, session.preferences)
-        if session.quitting:
+        if session.is_quitting:
             exit_within(PATIENCE, 0)
         else:
             exit_within(2 * HURRY, endings.exit_status if endings.is_signalled else EXIT_FAILED)
@@ -106,16 +106,19 @@ def _show(window: Window, endings: SignalHandler) -> int:
             raise
         _report(session, error)
         return EXIT_FAILED
-    return 0 if session.quitting else endings.exit_status
+    return 0 if session.is_quitting else endings.exit_status
 
 
 def _report(session: Session, error: Exception) -> None:
     """Tell what ended the window, and keep a report of it."""
     kept = "a report was kept"
     try:
-        text = failures.keep_report_of(session, error)
+        text = error_reports.keep_crash_report(session, error)
     except EXPECTED_ERRORS as reason:
-        text, kept = failures.report_of(session), f"the report could not be kept ({reason})"
+        text, kept = (
+            error_reports.problem_report_text(session),
+            f"the report could not be kept ({reason})",
+        )
     print(text, file=sys.stderr)
     print_notice(f"the window failed, as told above; nothing is sent, and {kept}")
 
@@ -133,17 +136,17 @@ def _make(folder: Path, session: Session) -> None:
     try:
         make_settings_folder(folder)
     except EXPECTED_ERRORS as error:
-        session.tell(
+        session.show_notice(
             f"Unsaved work and settings cannot be kept: {error}. Save often.", tone="error"
         )
-        session.failing |= {saving.AUTOSAVING.complaint, saving.WRITING.complaint}
+        session.reported_failures |= {saving.AUTOSAVING.complaint, saving.WRITING.complaint}
 
 
 def _keep_at_lost_display(session: Session) -> None:
     """Keep unsaved work, and tell why the window ends."""
     exit_within(PATIENCE, EXIT_FAILED)
     print_notice(DISPLAY_GONE)
-    if not session.quitting:
+    if not session.is_quitting:
         _keep(session)
     sys.stderr.flush()
 

@@ -13,7 +13,7 @@ from app.storage import cut_picture, decode_picture, load_project, sample_images
 from engine.arrays import Bytes, Complexes, Floats
 from engine.deform import Deformer, Handles
 from engine.domain import Domain, MeshedDomain, build_domain
-from engine.geometry import edges
+from engine.geometry import edge_vectors
 from engine.maps import Boundary, Bounds, HarmonicMap
 
 # The middle of the letter S in its picture; handles are laid on both sides of it.
@@ -92,8 +92,8 @@ def letter_s(triangles: int) -> ShapePair:
     for share in np.linspace(0, 1, STEPS + 1)[1:]:
         sizes = np.exp(share * S_GROWTH * np.linspace(-0.5, 0.5, PLACES))
         target = _rails(_turned(middle, turns, sizes, float(share)), sizes * S_RAIL)
-        state, _ = deformer.follow(state, handles.wish(target))
-    state, _ = deformer.settle(state, handles.wish(target), throw=False)
+        state, _ = deformer.track_path_row(state, handles.targets(target))
+    state, _ = deformer.settle(state, handles.targets(target), throw=False)
     return ShapePair(
         shape=shape,
         first=HarmonicMap.identity(domain.cage),
@@ -199,7 +199,7 @@ def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:
 
 def _subdivided(polygon: Complexes, longest: float) -> Complexes:
     parts = []
-    for start, side in zip(polygon, edges(polygon), strict=True):
+    for start, side in zip(polygon, edge_vectors(polygon), strict=True):
         count = int(np.ceil(abs(side) / longest))
         parts.append(start + side * np.arange(count) / count)
     return np.concatenate(parts)

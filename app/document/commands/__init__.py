@@ -12,7 +12,7 @@ from app.document.commands import (
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
-    stiffness_commands as material_commands,
+    stiffness_commands as stiffness_commands,
     track_commands as track_commands,
 )
 from app.document.commands.command import (
@@ -24,7 +24,7 @@ from app.document.commands.layers import (
     filming_commands as filming_commands,
     group_commands as group_commands,
     layer_commands as layer_commands,
-    switch_group_commands as choice_commands,
+    switch_group_commands as switch_group_commands,
 )
 from app.document.commands.pose_commands import (
     PoseReplacement as PoseReplacement,

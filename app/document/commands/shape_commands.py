@@ -8,7 +8,7 @@ from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.rig import transfer_painted_stiffness
 from app.document.settings import Meshing
-from engine.domain import CutOut, MeshedDomain, Slit, Stroke
+from engine.domain import CutLine, CutOut, MeshedDomain, Stroke
 from engine.maps import Bounds
 from engine.variant import Variant
 
@@ -54,10 +54,10 @@ def cut_with_brush(layer: Layer, stroke: Stroke) -> Layer:
 
 
 @layer_command("Cut by the knife")
-def cut_with_line(layer: Layer, slit: Slit) -> Layer:
+def cut_with_line(layer: Layer, slit: CutLine) -> Layer:
     """Part what touches along a line; the domain stays until it is replaced."""
-    slits = (*layer.cut_out.slits, slit)
-    return replace(layer, cut_out=replace(layer.cut_out, slits=slits), is_stale=True)
+    slits = (*layer.cut_out.cut_lines, slit)
+    return replace(layer, cut_out=replace(layer.cut_out, cut_lines=slits), is_stale=True)
 
 
 @layer_command("Change cut-out")

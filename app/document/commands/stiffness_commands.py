@@ -20,7 +20,7 @@ from app.document.rig import (
 )
 from app.errors import LissomError
 from engine.arrays import Floats
-from engine.domain.material import carried_stiffness
+from engine.domain.material import copy_nearest_stiffness
 from engine.errors import EngineError
 
 
@@ -94,7 +94,7 @@ def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
     stiffness, domain = layer.stiffness, layer.domain
     if stiffness is not None:
         opposite = 2 * layer.axis - np.concatenate(domain.loops).conj()
-        there = carried_stiffness(domain.loops, stiffness, opposite)
+        there = copy_nearest_stiffness(domain.loops, stiffness, opposite)
         farther = np.abs(np.log(there)) > np.abs(np.log(stiffness))
         stiffness = default_as_none(np.where(farther, there, stiffness))
     partners, bones = mirrored_handles_by_name(layer.handles, pairs), list(layer.bones)

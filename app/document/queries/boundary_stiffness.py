@@ -10,9 +10,9 @@ from app.document.layer import Layer
 from app.document.queries.memo import memoized_on
 from app.document.rig import Bone, combined_stiffness, default_as_none
 from engine.arrays import Complexes, Floats, as_points
-from engine.domain.material import brushed, limb_around
+from engine.domain.material import brush_weights, limb_weights
 from engine.errors import EngineError
-from engine.maps import Boundary, along_loops
+from engine.maps import Boundary, stiffness_along_loops
 
 A_SIDE = 4  # points that are looked at along a side of the outline
 
@@ -58,7 +58,7 @@ def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
         return False
     f, g = layer.map_of(pose).derivatives(points[is_stiff])
     a, b = np.abs(f), np.abs(g)
-    limits = layer.bounds.stiffened(stiffness[is_stiff])
+    limits = layer.bounds.scaled_by(stiffness[is_stiff])
     # A map that folds spends them, too: its logarithms are infinite or no numbers.
     with np.errstate(all="ignore"):
         spent = [
@@ -77,7 +77,7 @@ def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:
     every = np.concatenate(points)
     parts = [np.ones(len(every))]
     if layer.stiffness is not None:
-        parts[0] = along_loops(layer.stiffness, layer.domain.loops, points)
+        parts[0] = stiffness_along_loops(layer.stiffness, layer.domain.loops, points)
     for bone in layer.bones:
         try:
             share = bone_region(layer, bone, every)
@@ -96,7 +96,7 @@ def bone_region(layer: Layer, bone: Bone, points: Complexes) -> Floats:
         If the bone leaves the drawing or crosses a hole.
     """
     start, end = (layer.handle(identity).position for identity in bone.ends)
-    return limb_around(layer.domain.loops, start, end, points)
+    return limb_weights(layer.domain.loops, start, end, points)
 
 
 def brushed_stiffness(
@@ -121,7 +121,7 @@ def brushed_stiffness(
         The part of the radius over which that becomes less, 0 to 1.
     """
     loops = layer.domain.loops
-    shares = brushed(loops, as_points(list(places), "places"), radius, softness)
+    shares = brush_weights(loops, as_points(list(places), "places"), radius, softness)
     if not shares.any():
         return layer.stiffness, False
     before = np.ones(len(shares)) if layer.stiffness is None else layer.stiffness

@@ -13,7 +13,16 @@ from engine.variant import Baseline
 # Fields of a layer, and of its handles, that its motion does not follow from. All others count.
 UNMOVING = {
     *("name", "next_handle", "library", "mirror", "motions", "unread_motions", "reference"),
-    *("locked", "hidden", "visibility_keys", "opacity", "opacity_keys", "blend", "clipped", "group"),
+    *(
+        "locked",
+        "hidden",
+        "visibility_keys",
+        "opacity",
+        "opacity_keys",
+        "blend",
+        "clipped",
+        "group",
+    ),
     *("draw_order_keys", "unknown"),
 }
 UNMOVING_OF_HANDLES = {"name", "group", "unknown"}

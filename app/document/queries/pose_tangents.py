@@ -14,7 +14,7 @@ from app.document.queries.memo import memoized_on
 from app.document.queries.tangents import KeyTangent, TangentSegment, stop_factor, tangents_at
 from app.document.settings import FrameRange
 from app.document.timing import TangentMode
-from engine.interpolation import Joint, windows_of
+from engine.interpolation import InteriorKnot, support_of
 from engine.variant import Baseline
 
 # Pixels by which the coefficients of two maps may differ that are the same to the eye: the solver
@@ -48,7 +48,9 @@ class PoseSegment:
 
         Of an end without a joint they say nothing.
         """
-        return windows_of(isinstance(self.start, Joint), isinstance(self.end, Joint), self.apart)
+        return support_of(
+            isinstance(self.start, InteriorKnot), isinstance(self.end, InteriorKnot), self.apart
+        )
 
     @property
     def is_linear(self) -> bool:
@@ -58,13 +60,21 @@ class PoseSegment:
     @property
     def end_speeds(self) -> tuple[float, float]:
         """How fast `weight` grows with the share at the first key and at the second one."""
-        if self.is_linear or isinstance(self.start, Joint) or isinstance(self.end, Joint):
+        if (
+            self.is_linear
+            or isinstance(self.start, InteriorKnot)
+            or isinstance(self.end, InteriorKnot)
+        ):
             return 1.0, 1.0
         return self.start, self.end
 
     def weight(self, share: float) -> float:
         """Return which share of the way is done after a share of the interval's time."""
-        if self.is_linear or isinstance(self.start, Joint) or isinstance(self.end, Joint):
+        if (
+            self.is_linear
+            or isinstance(self.start, InteriorKnot)
+            or isinstance(self.end, InteriorKnot)
+        ):
             return share
         # The cubic from 0 to 1 with these slopes at its ends.
         rest = 1.0 - share
@@ -102,14 +112,18 @@ def _pose_segment(
     )
     window, turns, apart = [keys[first], keys[last]], [keys[first].revolutions], [False, False]
     others: list[tuple[Keyframe, int]] = []
-    if isinstance(start, Joint) and at_start.before is not None and at_start.after is not None:
+    if (
+        isinstance(start, InteriorKnot)
+        and at_start.before is not None
+        and at_start.after is not None
+    ):
         before, after = keys[found[at_start.before].first], found[at_start.after]
         window.insert(0, before)
         turns.insert(0, before.revolutions)
         if at_start.after != number:
             apart[0] = True
             others.append((keys[after.last], keys[after.first].revolutions))
-    if isinstance(end, Joint) and at_end.before is not None and at_end.after is not None:
+    if isinstance(end, InteriorKnot) and at_end.before is not None and at_end.after is not None:
         before, after = keys[found[at_end.before].first], found[at_end.after]
         window.append(keys[after.last])
         turns.append(keys[after.first].revolutions)
@@ -190,7 +204,7 @@ def _tangent_of(clip: Clip, number: int, at: AdjacentSegments, *, side: int) -> 
         return end
     # A key of a cycle: the velocity is that in it, the time to come to it or go on is the span's.
     pace, usual = (keys[leg.first].easing.end_speeds[1 - side] for leg in (own, other))
-    if not isinstance(end, Joint) or usual == 0.0:
+    if not isinstance(end, InteriorKnot) or usual == 0.0:
         return stop_factor(pace) if 0.0 in (end, usual) else 1.0
     if not 0.0 < pace < inf:
         return 1.0

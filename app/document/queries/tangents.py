@@ -9,11 +9,11 @@ from math import inf, isfinite
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from app.document.timing import HOLD, Easing, TangentMode
-from engine.interpolation import Joint
+from engine.interpolation import InteriorKnot
 
 # How an interval leaves a key, or reaches it: by the joint with which the motion passes it, or at a
 # share of a straight blend's pace, 1 at a corner and 0 at a stop.
-KeyTangent = Joint | float
+KeyTangent = InteriorKnot | float
 
 
 class KeyLike(Protocol):
@@ -131,7 +131,7 @@ def tangents_at(
         if is_same(left, keys[before.first]) or is_same(left, keys[after.last]):
             # What is given twice is meant to be kept: past it the motion would swing beyond.
             return stops
-        joint = Joint(before.frames, after.frames)
+        joint = InteriorKnot(before.frames, after.frames)
         if end_pace == start_pace == 0.0:
             return joint, joint
         if 0.0 in (end_pace, start_pace):
@@ -205,13 +205,14 @@ def _slope(
     if velocity is not None:
         return arms[side] * velocity
     end = passages.tangents(index)[side]
-    if not isinstance(end, Joint):
+    if not isinstance(end, InteriorKnot):
         return end * change
     window = (before.first if before else index, index, after.last if after else index)
     first, middle, last = (
-        share * moved.value_of(keys[i]) for share, i in zip(end.velocity.tolist(), window, strict=True)
+        share * moved.value_of(keys[i])
+        for share, i in zip(end.velocity.tolist(), window, strict=True)
     )
-    slope: Value = 3.0 * abs(end.arms[side]) * (first + middle + last)
+    slope: Value = 3.0 * abs(end.control_offsets[side]) * (first + middle + last)
     return slope
 
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Self
 
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
-from engine.geometry.motions import Parameters, kind_named, motion_named
+from engine.geometry.motions import Parameters, find_kind, find_motion
 
 MAX_REPEATS = 1000
 
@@ -40,8 +40,8 @@ class AppliedMotion:
             f"A motion goes from a frame to a later one, from 0 to {LAST_FRAME:,}, not from "
             f"{self.first} by {self.start} to {self.last}.",
         )
-        motion_named(self.motion).course(self.kind)
-        kind = kind_named(self.kind)
+        find_motion(self.motion).template_for(self.kind)
+        kind = find_kind(self.kind)
         if kind.parents:
             kind.require_joints(self.joints)
         require(

@@ -8,7 +8,7 @@ import numpy as np
 from app.document.checks import NOTHING, Unknown, require
 from engine.arrays import Floats, freeze
 from engine.domain import MeshedDomain
-from engine.domain.material import carried_stiffness
+from engine.domain.material import copy_nearest_stiffness
 from engine.maps import SOFTEST, STIFFEST
 
 DEFAULT_BONE_STIFFNESS = 10.0  # of a bone
@@ -61,4 +61,4 @@ def transfer_painted_stiffness(
     if stiffness is None or into is domain:
         return stiffness
     corners = np.concatenate(into.loops)
-    return default_as_none(carried_stiffness(domain.loops, stiffness, corners))
+    return default_as_none(copy_nearest_stiffness(domain.loops, stiffness, corners))

@@ -9,38 +9,38 @@ from app.editor.actions import (
     editing as editing,
     exporting as exporting,
     files as files,
-    guiding as guiding,
     playback as playback,
     posing as posing,
     saving as saving,
     tracking as tracking,
+    tutorials as tutorials,
     upkeep as upkeep,
     viewing as viewing,
 )
-from app.editor.actions.body import (
-    cutting as cutting,
-    material as material,
-    rebuilding as rebuilding,
+from app.editor.actions.layer_setup import (
+    cut_out_editing as cut_out_editing,
+    resolving as resolving,
+    stiffness_editing as stiffness_editing,
 )
-from app.editor.actions.posing.moving import (
-    drafting as drafting,
-    giving as giving,
-    placing as placing,
+from app.editor.actions.posing.motion_presets import (
+    apply_motion as apply_motion,
+    joint_placement as joint_placement,
+    preset_setup as preset_setup,
 )
 from app.editor.actions.timing import (
     cycles as cycles,
     keys as keys,
     springs as springs,
-    timeline_pointing as timeline_pointing,
+    timeline_drag as timeline_drag,
     tracks as tracks,
 )
 from app.editor.actions.viewing import (
     OverlayName as OverlayName,
-    answer as answer,
-    browse as browse,
-    choose as choose,
+    answer_dialog as answer_dialog,
+    browse_files as browse_files,
+    choose_file as choose_file,
     close_dialog as close_dialog,
-    dismiss as dismiss,
+    dismiss_toast as dismiss_toast,
     show_dialog as show_dialog,
-    use_own_dialogs as use_own_dialogs,
+    use_own_file_browser as use_own_file_browser,
 )

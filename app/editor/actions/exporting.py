@@ -8,14 +8,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.document import Clip, ExportSettings, FrameRange, clip_of, scene_commands
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions import editing, posing
 from app.editor.dialogs import FileDialog, Question
-from app.editor.failures import ask_worker, report, sentence
+from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
-from app.editor.work import Afterwards, Kind
+from app.editor.work import Afterwards, JobKind
 from app.errors import LissomError, display_name
 from app.export import (
     FRAMES,
@@ -39,22 +39,22 @@ UNDER_WAY = "An export is under way. The next one can begin when it is done."
 RUNNING = "An export is running"
 CANCELLED_UNWRITTEN = "The export was cancelled. Nothing was written."
 CANCELLED_MIDWAY = "The export was cancelled. Frames that were written stay."
-PREPARING = Kind("Preparing the export", "The export could not begin", "export")
-COPYING = Kind("Copying the picture", "The picture was not copied", "export")
+PREPARING = JobKind("Preparing the export", "The export could not begin", "export")
+COPYING = JobKind("Copying the picture", "The picture was not copied", "export")
 
 
-def ask(session: Session) -> None:
+def ask_destination_and_export(session: Session) -> None:
     """Ask where to export to, and begin."""
-    _ask(session, "Export", lambda path: do(start_at, path))
+    _ask(session, "Export", lambda path: do(start_export_at, path))
 
 
-def choose(session: Session) -> None:
+def ask_export_destination(session: Session) -> None:
     """Ask where the next export goes; it does not begin yet."""
-    _ask(session, "Choose", lambda path: do(export_to, path))
+    _ask(session, "Choose", lambda path: do(set_export_destination, path))
 
 
 @with_project
-def export_to(_: Session, project: Project, out: Path) -> None:
+def set_export_destination(_: Session, project: Project, out: Path) -> None:
     """Note where the next export of this format goes, as the person chose it."""
     name = project.document.export.format
     _note_place(project, name, out)
@@ -65,45 +65,45 @@ def export_to(_: Session, project: Project, out: Path) -> None:
 
 
 def _note_place(project: Project, name: str, out: Path) -> None:
-    project.exports_to.pop(name, None)
-    project.exports_to[name] = out
+    project.export_destinations.pop(name, None)
+    project.export_destinations[name] = out
 
 
-def start_at(session: Session, out: Path) -> None:
+def start_export_at(session: Session, out: Path) -> None:
     """Export to where the person chose."""
-    export_to(session, out)
-    start(session, out)
+    set_export_destination(session, out)
+    start_export(session, out)
 
 
 @with_project
-def replace_files(session: Session, project: Project, out: Path) -> None:
+def replace_export_files(session: Session, project: Project, out: Path) -> None:
     """Export, and replace what is there."""
     project.replaceable = project.document.export.format, out
-    start(session, out)
+    start_export(session, out)
 
 
 @with_project
-def repeat(session: Session, project: Project) -> None:
+def repeat_export(session: Session, project: Project) -> None:
     """Export where it was told to go, or where the last one went; ask if there is neither."""
-    out = destination(project)
+    out = export_destination(project)
     if out is not None:
-        start(session, out)
+        start_export(session, out)
     else:
-        ask(session)
+        ask_destination_and_export(session)
 
 
-def destination(project: Project) -> Path | None:
+def export_destination(project: Project) -> Path | None:
     """Return where the next export goes, as its format was exported last; None if that is open.
 
     For the first time it goes where the last one of another format went, under a name that suits.
     """
-    name, places = project.document.export.format, project.exports_to
+    name, places = project.document.export.format, project.export_destinations
     newest = next(reversed(places.values()), None)
     return places.get(name) or (with_suffix_for(newest, name) if newest else None)
 
 
 @with_project
-def start(session: Session, project: Project, out: Path) -> None:
+def start_export(session: Session, project: Project, out: Path) -> None:
     """Export into a folder or a file; ask first if that takes the place of other files."""
     if not _is_free(session):
         return
@@ -118,11 +118,11 @@ def start(session: Session, project: Project, out: Path) -> None:
         session.dialog = Question(
             title=f"Replace the {what}?",
             text=f"{out.parent if out.name in there else out} holds {which} already.",
-            answers=(("Replace", do(replace_files, out)),),
+            answers=(("Replace", do(replace_export_files, out)),),
         )
         return
     session.cancellation = Cancellation()
-    promises.once_settled(session, do(_begin, request), "Export", changes=False)
+    pending_changes.run_when_idle(session, do(_begin, request), "Export", changes=False)
 
 
 @with_project
@@ -154,7 +154,9 @@ def copy_picture(session: Session, project: Project) -> None:
     request = _request(session, project, out, settings)
     check_request(project.document, request)
     session.cancellation = Cancellation()
-    promises.once_settled(session, do(_begin_copy, request), "Copy the picture", changes=False)
+    pending_changes.run_when_idle(
+        session, do(_begin_copy, request), "Copy the picture", changes=False
+    )
 
 
 @with_project
@@ -165,7 +167,7 @@ def _begin_copy(session: Session, project: Project, request: ExportRequest) -> N
     _prepare(session, project, request, begun)
 
 
-def is_under_way(session: Session) -> bool:
+def is_export_under_way(session: Session) -> bool:
     """Tell whether an export runs, is being prepared, or waits for what is on its way."""
     is_waiting = session.project is not None and any(map(_is_export, session.project.afterwards))
     return is_waiting or session.export is not None or PREPARING in session.jobs.kinds
@@ -177,9 +179,9 @@ def _is_export(waiting: Afterwards) -> bool:
 
 def _is_free(session: Session) -> bool:
     """Tell whether no export is under way; if there is one, say so."""
-    if not is_under_way(session):
+    if not is_export_under_way(session):
         return True
-    session.tell(UNDER_WAY, topic="export")
+    session.show_notice(UNDER_WAY, topic="export")
     return False
 
 
@@ -204,11 +206,11 @@ def _prepare(
     if format_.is_still and unkeyed is not None and unkeyed.layer == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
-            document = posing.as_key(session, project, unkeyed)(document)
-    pictures = {layer: puppet.cut.value.texture for layer, puppet in project.puppets.items()}
+            document = posing.key_pose_command(session, project, unkeyed)(document)
+    pictures = {layer: puppet.cut.value.texture for layer, puppet in project.layer_runtimes.items()}
     samplers = {
         layer: (puppet.fine or puppet.store).sampler or puppet.store.sampler
-        for layer, puppet in project.puppets.items()
+        for layer, puppet in project.layer_runtimes.items()
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_key(document)) else None
@@ -227,7 +229,7 @@ def _prepare(
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
 
-    ask_worker(session, PREPARING, work, begun)
+    run_job(session, PREPARING, work, begun)
 
 
 def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
@@ -240,27 +242,27 @@ def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
     return Animation(clip, sampler=sampler)
 
 
-def cancel(session: Session) -> None:
+def cancel_export(session: Session) -> None:
     """Give the export up, unless its file is complete already; frames that are written stay."""
     run, project = session.export, session.project
-    if not is_under_way(session):
+    if not is_export_under_way(session):
         return
     if project is not None:
         project.afterwards = [each for each in project.afterwards if not _is_export(each)]
     # Dropped first, so that nobody is told of a failure; then left, as it may take long.
     session.jobs.drop(PREPARING)
-    session.jobs.leave(PREPARING)
+    session.jobs.abandon(PREPARING)
     is_nothing_written = session.cancellation.cancel()
     if run is not None and _is_one_file(run) and not is_nothing_written:
         return
     session.export = None
-    session.tell(CANCELLED_UNWRITTEN if is_nothing_written else CANCELLED_MIDWAY)
+    session.show_notice(CANCELLED_UNWRITTEN if is_nothing_written else CANCELLED_MIDWAY)
 
 
-def unless_running(session: Session, then: Action) -> None:
+def confirm_ending_export(session: Session, then: Action) -> None:
     """Do something that ends an export, but ask first if one is under way."""
     run = session.export
-    if not is_under_way(session):
+    if not is_export_under_way(session):
         then.apply(session)
         return
     done, total = (run.done, len(run.plan.times)) if run is not None else (0, 0)
@@ -278,13 +280,13 @@ def _is_one_file(run: ExportRun) -> bool:
     return bool(EXPORT_FORMATS[run.plan.format].suffixes)
 
 
-def advance(session: Session, run: ExportRun, done: int) -> None:
+def update_export_progress(session: Session, run: ExportRun, done: int) -> None:
     """Note how many frames are drawn."""
     if session.export is run:
         session.export = replace(run, done=done)
 
 
-def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
+def finish_export(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     """Tell that an export is complete, and what the person should know about it."""
     session.export = None
     if run.for_clipboard:
@@ -295,14 +297,14 @@ def finish(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
     count = len(run.plan.times)
     frames = "1 frame" if count == 1 else f"{count} frames"
     what = f"{frames} to " if EXPORT_FORMATS[run.plan.format].is_drawn else ""
-    session.tell(
+    session.show_notice(
         f"Exported {what}{run.plan.out.name}.",
         tone="good",
         label="Open folder",
         action=do(open_folder, folder),
     )
     for notice in (*notices, *run.plan.notices):
-        session.tell(sentence(notice))
+        session.show_notice(as_sentence(notice))
 
 
 def _copy(session: Session, picture: Path) -> None:
@@ -315,28 +317,28 @@ def _copy(session: Session, picture: Path) -> None:
             picture.unlink(missing_ok=True)
 
     def done(_: None) -> None:
-        session.tell("The picture is on the clipboard.", tone="good")
+        session.show_notice("The picture is on the clipboard.", tone="good")
 
-    ask_worker(session, COPYING, work, done)
+    run_job(session, COPYING, work, done)
 
 
-def fail(session: Session, error: Exception) -> None:
+def report_failed_export(session: Session, error: Exception) -> None:
     """Tell that an export failed."""
     session.export = None
-    report(session, "The export failed", error)
+    report_failure(session, "The export failed", error)
 
 
-def set_export(session: Session, export: ExportSettings) -> None:
+def set_export_settings(session: Session, export: ExportSettings) -> None:
     """Set what the next export makes."""
-    editing.edit(session, scene_commands.set_export(export))
+    editing.edit_document(session, scene_commands.set_export(export))
 
 
-def keep_aspect(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
+def set_aspect_locked(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
     """Let width and height of an export change together, or each alone."""
-    session.keeps_aspect = keeps
+    session.is_aspect_locked = keeps
 
 
-def show_frame(session: Session, box: BoundingBox) -> None:
+def preview_export_frame(session: Session, box: BoundingBox) -> None:
     """Show what an export shows in the viewport, until the next frame of the window."""
     session.export_frame = box
 
@@ -360,7 +362,7 @@ def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path],
         return
     settings = project.document.export
     suffixes = EXPORT_FORMATS[settings.format].suffixes
-    out = destination(project)
+    out = export_destination(project)
     if out is None:
         out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
     session.dialog = FileDialog(

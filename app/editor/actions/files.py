@@ -10,13 +10,13 @@ from typing import NamedTuple
 from app.document import Document, History, Meshing, clip_of, motion_notices
 from app.editor.action import Action, do
 from app.editor.actions import playback, saving
-from app.editor.actions.body import cutting
+from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.saving import PROJECT
-from app.editor.dialogs import Leftover, Question, Recovery
-from app.editor.failures import ask_worker, sentence
+from app.editor.dialogs import Question, RecoverableFile, RecoveryDialog
+from app.editor.error_reports import as_sentence, run_job
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind, Puppet
+from app.editor.work import JobKind, LayerRuntime
 from app.errors import ImportLog, display_name
 from app.storage import (
     FileLock,
@@ -74,7 +74,7 @@ class SampleFile(NamedTuple):
 
 
 @cache
-def samples() -> tuple[SampleFile, ...]:
+def sample_files() -> tuple[SampleFile, ...]:
     """Return the samples, animated ones first."""
     found = []
     projects = {path.stem: path for path in sample_images().glob(f"*{PROJECT}")}
@@ -107,19 +107,19 @@ def _found(paths: tuple[Path, ...], _: int) -> tuple[tuple[Path, bool], ...]:
     return tuple((path, os.path.isfile(path)) for path in paths)  # noqa: PTH113 - never raises
 
 
-def open_recent(session: Session, path: Path) -> None:
+def open_recent_file(session: Session, path: Path) -> None:
     """Open a file of the recent ones; one that is gone is taken off them."""
     if os.path.isfile(path):  # noqa: PTH113 - never raises
         open_file(session, path)
         return
     session.preferences = session.preferences.without_recent(path)
-    session.tell(
+    session.show_notice(
         f"{path.name} is not in {path.parent} any more. It was taken off the recent files.",
         tone="error",
     )
 
 
-class Offer(NamedTuple):
+class NextStep(NamedTuple):
     """What a person may want to do next."""
 
     text: str
@@ -127,18 +127,18 @@ class Offer(NamedTuple):
     action: Action
 
 
-class Opened(NamedTuple):
+class OpenedFile(NamedTuple):
     """What reading a file gives."""
 
     document: Document
-    puppets: dict[int, Puppet]
+    layer_runtimes: dict[int, LayerRuntime]
     notices: tuple[str, ...] = ()
-    offer: Offer | None = None
+    next_step: NextStep | None = None
     read_as: str | None = None
     drawings: tuple[Path, ...] = ()
 
 
-def ask_open(session: Session) -> None:
+def ask_file_to_open(session: Session) -> None:
     """Ask for a picture or a project."""
     session.ask_file("Open image or project", OPENABLE, lambda path: do(open_file, path))
 
@@ -149,130 +149,132 @@ def open_file(session: Session, path: Path) -> None:
     If there are changes to be lost by then, a question comes first.
     """
     meshing = session.meshing
-    kind = Kind(display_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
+    kind = JobKind(display_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
     _open(session, path, kind, lambda: _read(path, meshing))
 
 
-def open_together(session: Session, paths: Sequence[Path]) -> None:
+def open_files_as_layers(session: Session, paths: Sequence[Path]) -> None:
     """Read several pictures on the worker, and open them as the layers of one scene."""
     meshing = session.meshing
-    kind = Kind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
+    kind = JobKind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
 
-    def read() -> Opened:
-        return with_puppets(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
+    def read() -> OpenedFile:
+        return with_layer_runtimes(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
 
     _open(session, paths[0], kind, read)
 
 
-def _open(session: Session, path: Path, kind: Kind, read: Callable[[], Opened]) -> None:
-    def done(opened: Opened) -> None:
-        saving.unless_unsaved(session, do(show, path, opened))
+def _open(session: Session, path: Path, kind: JobKind, read: Callable[[], OpenedFile]) -> None:
+    def done(opened: OpenedFile) -> None:
+        saving.confirm_unsaved(session, do(install_opened_file, path, opened))
 
-    ask_worker(session, kind, read, done)
+    run_job(session, kind, read, done)
 
 
-def open_dropped(session: Session, paths: Sequence[Path]) -> None:
+def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
     """Open what was dropped on the window: a project or a drawing, or several as layers."""
     usable = [path for path in paths if path.suffix.lower() in OPENABLE and not path.is_dir()]
     pictures = [path for path in usable if path.suffix.lower() in PICTURES]
     if len(pictures) > 1:
-        open_together(session, pictures)
+        open_files_as_layers(session, pictures)
     elif usable:
         if len(paths) > 1:
-            session.tell(f"Opened {usable[0].name}; only one file at a time.")
+            session.show_notice(f"Opened {usable[0].name}; only one file at a time.")
         open_file(session, usable[0])
     elif paths:
         what = "a folder" if paths[0].is_dir() else "neither a picture nor a project"
         kinds = "a picture (PNG, JPEG, WebP, …)"
-        session.tell(f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error")
+        session.show_notice(
+            f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error"
+        )
 
 
-def show(session: Session, path: Path, opened: Opened) -> None:
+def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> None:
     """Make what was read the project of the window, unless it is open in another one: ask then."""
     # A sample is the person's to play with, not to save over.
     if path.suffix.lower() != PROJECT or path.parent == sample_images():
-        _show(session, path, opened, None)
+        _install(session, path, opened, None)
         return
     try:
-        hold = saving.hold_file(session, path)
+        hold = saving.lock_project_file(session, path)
     except FileLockedError as error:
         session.dialog = Question(
             title="Open elsewhere",
             text=f"{path.name} is open already {error}. What is saved here and there takes the "
             "place of each other.",
             answers=(
-                ("Open a copy", do(show_copy, path, opened)),
-                ("Open anyway", do(show_anyway, path, opened)),
+                ("Open a copy", do(install_copy, path, opened)),
+                ("Open anyway", do(install_anyway, path, opened)),
             ),
         )
         return
-    _show(session, path, opened, path, hold)
+    _install(session, path, opened, path, hold)
 
 
-def show_copy(session: Session, path: Path, opened: Opened) -> None:
+def install_copy(session: Session, path: Path, opened: OpenedFile) -> None:
     """Make what was read the project of the window, as a new one that is to be saved elsewhere."""
-    _show(session, path, opened, None)
+    _install(session, path, opened, None)
 
 
-def show_anyway(session: Session, path: Path, opened: Opened) -> None:
+def install_anyway(session: Session, path: Path, opened: OpenedFile) -> None:
     """Make what was read the project of the window, though another one has it open."""
-    _show(session, path, opened, path)
+    _install(session, path, opened, path)
 
 
-def _show(
-    session: Session, path: Path, opened: Opened, own: Path | None, hold: FileLock | None = None
+def _install(
+    session: Session, path: Path, opened: OpenedFile, own: Path | None, hold: FileLock | None = None
 ) -> None:
     """Make what was read the project of the window; `own` is the file that it is saved in."""
     session.autosave.remove()
     project = Project(
         name=display_name(path.stem),
         history=History(opened.document, saved=True),
-        puppets=opened.puppets,
+        layer_runtimes=opened.layer_runtimes,
         active=_foremost(opened.document),
         path=own,
         read_as=opened.read_as,
         drawings=set(opened.drawings),
-        hold=hold,
+        file_lock=hold,
     )
-    saving.put_project(session, project)
+    saving.set_project(session, project)
     if path.parent != sample_images():
         session.preferences = session.preferences.with_recent(path)
     elif any(len(layer.keys) > 1 for layer in opened.document.layers):
         playback.toggle_play(session)
     for notice in opened.notices:
-        session.tell(sentence(notice))
+        session.show_notice(as_sentence(notice))
     if opened.drawings:
-        tell_of_import(session, project, opened.document.import_log)
-    if opened.offer:
-        session.tell(tone="good", **opened.offer._asdict())
+        show_import_notice(session, project, opened.document.import_log)
+    if opened.next_step:
+        session.show_notice(tone="good", **opened.next_step._asdict())
 
 
-def tell_of_import(session: Session, project: Project, summary: ImportLog) -> None:
+def show_import_notice(session: Session, project: Project, summary: ImportLog) -> None:
     """Tell of what is lost of a drawing that was brought in."""
     if not summary.warnings:
         return
-    project.shows_summary = True
+    project.is_import_log_open = True
     count = len(summary.warnings)
-    session.tell(
+    session.show_notice(
         f"{'One thing looks' if count == 1 else f'{count} things look'} different here; the tab "
         "Layers tells which.",
         topic="import",
         label="Show",
-        action=do(show_summary),
+        action=do(show_import_log),
     )
 
 
 @with_project
-def show_summary(session: Session, project: Project) -> None:
+def show_import_log(session: Session, project: Project) -> None:
     """Show what opening a drawing told, in the panel of layers."""
-    project.shows_summary = True
-    session.wanted_panel = "Layers"
+    project.is_import_log_open = True
+    session.panel_to_focus = "Layers"
 
 
 @with_project
-def fold_summary(_: Session, project: Project) -> None:
+def toggle_import_log(_: Session, project: Project) -> None:
     """Show or hide what opening a drawing told, where the panel of layers has it."""
-    project.shows_summary = not project.shows_summary
+    project.is_import_log_open = not project.is_import_log_open
 
 
 def _foremost(document: Document) -> int:
@@ -283,18 +285,18 @@ def _foremost(document: Document) -> int:
     )
 
 
-def with_puppets(opened: OpenedScene) -> Opened:
+def with_layer_runtimes(opened: OpenedScene) -> OpenedFile:
     """Return a scene with its layers as a window has them."""
-    puppets = _puppets(opened.document, opened.pictures)
-    return Opened(opened.document, puppets, opened.notices)
+    puppets = _layer_runtimes(opened.document, opened.pictures)
+    return OpenedFile(opened.document, puppets, opened.notices)
 
 
-def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, Puppet]:
+def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict[int, LayerRuntime]:
     if len(pictures) > 1:
         kept = {id(each): move_to_disk(each) for each in pictures.values()}
         pictures = {identity: kept[id(each)] for identity, each in pictures.items()}
     made = run_parallel(
-        lambda identity: Puppet.of(
+        lambda identity: LayerRuntime.of(
             clip_of(document, identity), pictures[identity], among=len(document.layers)
         ),
         pictures,
@@ -303,107 +305,109 @@ def _puppets(document: Document, pictures: Mapping[int, Picture]) -> dict[int, P
     return dict(zip(pictures, made, strict=True))
 
 
-def _read(path: Path, meshing: Meshing) -> Opened:
+def _read(path: Path, meshing: Meshing) -> OpenedFile:
     if is_layered(path):
-        return with_puppets(open_layered(path, meshing))._replace(drawings=(path,))
+        return with_layer_runtimes(open_layered(path, meshing))._replace(drawings=(path,))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 
 
-def _read_project(path: Path) -> Opened:
+def _read_project(path: Path) -> OpenedFile:
     # Before, so that what somebody saves meanwhile is taken for a change, and never for ours.
     digest = project_digest(path)
-    return decoded(load_project(path), path.name)._replace(read_as=digest)
+    return decode_project(load_project(path), path.name)._replace(read_as=digest)
 
 
-def decoded(document: Document, name: str) -> Opened:
+def decode_project(document: Document, name: str) -> OpenedFile:
     """Return a project's document with its layers as a window has them."""
     files = list(dict.fromkeys(layer.picture for layer in document.layers))
     decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
     by_file = dict(zip(files, decoded, strict=True))
     pictures = {layer.id: by_file[layer.picture] for layer in document.layers}
-    return Opened(document, _puppets(document, pictures), motion_notices(document))
+    return OpenedFile(document, _layer_runtimes(document, pictures), motion_notices(document))
 
 
-def _read_picture(path: Path, meshing: Meshing) -> Opened:
-    opened = with_puppets(open_picture(path, meshing))
-    (puppet,) = opened.puppets.values()
-    return opened._replace(offer=_offer(puppet), drawings=(path,))
+def _read_picture(path: Path, meshing: Meshing) -> OpenedFile:
+    opened = with_layer_runtimes(open_picture(path, meshing))
+    (puppet,) = opened.layer_runtimes.values()
+    return opened._replace(next_step=_next_step(puppet), drawings=(path,))
 
 
-def _offer(puppet: Puppet) -> Offer | None:
+def _next_step(puppet: LayerRuntime) -> NextStep | None:
     """Return what a person may want to do about an opaque picture that was just opened."""
     cut = puppet.cut.value
     if puppet.is_opaque and cut.is_all:
-        return Offer(
+        return NextStep(
             text="The whole picture is the drawing. Brush away what does not belong to it, or pick "
             "the background's colour in the tab Cut-out.",
             label="Cut out",
-            action=do(cutting.begin_or_swap),
+            action=do(cut_out_editing.toggle_cut_brush),
         )
     if cut.holes is not None and cut.holes.shut:
-        return Offer(
+        return NextStep(
             text="Does the background show through inside the drawing? A click opens it as a hole.",
             label="Show where",
-            action=do(cutting.take_up, "holes"),
+            action=do(cut_out_editing.toggle_cut_tool, "holes"),
         )
     return None
 
 
-def offer_recovery(session: Session) -> None:
+def ask_recovery(session: Session) -> None:
     """Ask what to do with what was not saved when Lissom ended before, if there is any."""
-    candidates = leftovers(session)
+    candidates = list_recoverable_files(session)
     if candidates:
-        session.dialog = Recovery(candidates)
+        session.dialog = RecoveryDialog(candidates)
 
 
 def show_recovery(session: Session) -> None:
     """Show what was not saved when Lissom ended before, or tell that there is nothing."""
-    offer_recovery(session)
-    if not isinstance(session.dialog, Recovery):
-        session.tell("There is no unsaved work of an earlier time.")
+    ask_recovery(session)
+    if not isinstance(session.dialog, RecoveryDialog):
+        session.show_notice("There is no unsaved work of an earlier time.")
 
 
-def leftovers(session: Session) -> tuple[Leftover, ...]:
+def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
     """Return the unsaved work of windows that are gone, the newest first."""
     found = []
     for path in find_recoverable_files(session.folder):
         with suppress(OSError):  # another window has just taken it
             status = path.stat()
-            found.append(Leftover(path, read_source_info(path), status.st_mtime, status.st_size))
+            found.append(
+                RecoverableFile(path, read_source_info(path), status.st_mtime, status.st_size)
+            )
     return tuple(found)
 
 
-def recover(session: Session, path: Path) -> None:
+def recover_file(session: Session, path: Path) -> None:
     """Open unsaved work; it stays unsaved, and is kept until it is saved."""
-    kind = Kind("Opening unsaved work", "The unsaved work cannot be opened")
+    kind = JobKind("Opening unsaved work", "The unsaved work cannot be opened")
 
-    def done(read: tuple[Opened, SourceInfo]) -> None:
-        saving.unless_unsaved(session, do(show_recovered, path, *read))
+    def done(read: tuple[OpenedFile, SourceInfo]) -> None:
+        saving.confirm_unsaved(session, do(install_recovered, path, *read))
 
-    ask_worker(session, kind, lambda: _read_leftover(path), done)
+    run_job(session, kind, lambda: _read_recoverable_file(path), done)
 
 
-def _read_leftover(path: Path) -> tuple[Opened, SourceInfo]:
+def _read_recoverable_file(path: Path) -> tuple[OpenedFile, SourceInfo]:
     document, origin = load_recoverable_file(path)
-    return decoded(document, origin.name), origin
+    return decode_project(document, origin.name), origin
 
 
-def throw_away(session: Session, path: Path) -> None:
+def discard_recoverable_file(session: Session, path: Path) -> None:
     """Delete unsaved work, and go on with what else there is."""
     remove_recoverable_file(path)
-    session.tell("The unsaved work was discarded.")
-    offer_recovery(session)
+    session.show_notice("The unsaved work was discarded.")
+    ask_recovery(session)
 
 
-def show_recovered(session: Session, path: Path, opened: Opened, origin: SourceInfo) -> None:
+def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: SourceInfo) -> None:
     """Make unsaved work the project of the window, under its own name and unsaved."""
-    saving.put_project(
+    saving.set_project(
         session,
         Project(
             name=origin.name,
             history=History(opened.document, saved=False),
-            puppets=opened.puppets,
+            layer_runtimes=opened.layer_runtimes,
             active=_foremost(opened.document),
             path=origin.path,
             is_recovered=True,
@@ -412,4 +416,4 @@ def show_recovered(session: Session, path: Path, opened: Opened, origin: SourceI
     session.autosave.write(opened.document, origin)
     remove_recoverable_file(path)
     what = f"unsaved work on {origin.path.name}" if origin.path else "unsaved work"
-    session.tell(f"This is your {what}. Save it to keep it.", tone="good")
+    session.show_notice(f"This is your {what}. Save it to keep it.", tone="good")

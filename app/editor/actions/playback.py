@@ -4,7 +4,7 @@ from bisect import bisect_left
 
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import frames_in, seen_at
+from app.editor.timeline_view import display_frame, frames_in
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
@@ -18,7 +18,7 @@ def seek(session: Session, project: Project, frame: int) -> None:
 
 def scrub(session: Session, frame: int) -> None:
     """Halt, and put the playhead on a frame."""
-    halt(session)
+    stop_playback(session)
     seek(session, frame)
 
 
@@ -29,37 +29,37 @@ def toggle_play(session: Session, project: Project) -> None:
     project.playhead = turn(project.document, session.clock())
 
 
-def tap_space(session: Session) -> None:
+def toggle_play_on_space(session: Session) -> None:
     """Play or halt where Space is let go, unless it was held to move the view."""
-    if not session.space_used:
+    if not session.is_space_used:
         toggle_play(session)
-    session.space_used = False
+    session.is_space_used = False
 
 
 @with_project
-def halt(session: Session, project: Project) -> None:
+def stop_playback(session: Session, project: Project) -> None:
     """Stop where the playhead is."""
     project.playhead = project.playhead.pause(project.document, session.clock())
 
 
 @with_project
-def halt_at_end(session: Session, project: Project) -> None:
+def stop_playback_at_end(session: Session, project: Project) -> None:
     """Stop an animation that does not loop when it is over; called once a frame."""
     if project.playhead.is_over(project.document, session.clock()):
-        halt(session)
+        stop_playback(session)
 
 
 @with_project
-def step(session: Session, project: Project, frames: int) -> None:
+def step_frames(session: Session, project: Project, frames: int) -> None:
     """Go on or back by a number of frames."""
-    halt(session)
+    stop_playback(session)
     seek(session, current_frame(session, project) + frames)
 
 
 @with_project
-def to_key(session: Session, project: Project, direction: int) -> None:
+def go_to_key(session: Session, project: Project, direction: int) -> None:
     """Go to the next key (1) of the chosen row, or the previous one (-1); at the ends stay."""
-    _to_next(session, project, keyed_frames(project), direction)
+    _go_to_next(session, project, keyed_frames(project), direction)
 
 
 def keyed_frames(project: Project) -> list[int]:
@@ -68,15 +68,15 @@ def keyed_frames(project: Project) -> list[int]:
 
 
 def _keyed_frames(project: Project) -> tuple[int, ...]:
-    document, row, keyed = project.document, project.row, project.timing.keyed
+    document, row, keyed = project.document, project.row, project.timeline.keyed_frames
     if not keyed.follows((document, row)):
         track = project.track_in(row)
-        frames = sorted(seen_at(document, track, frame) for frame in frames_in(document, row))
+        frames = sorted(display_frame(document, track, frame) for frame in frames_in(document, row))
         keyed.set((document, row), tuple(frames))
     return keyed.value
 
 
-def is_keyed(project: Project, frame: int) -> bool:
+def is_frame_keyed(project: Project, frame: int) -> bool:
     """Tell whether a key of the chosen row is seen at a frame."""
     frames = _keyed_frames(project)
     at = bisect_left(frames, frame)
@@ -84,15 +84,15 @@ def is_keyed(project: Project, frame: int) -> bool:
 
 
 @with_project
-def to_marker(session: Session, project: Project, direction: int) -> None:
+def go_to_marker(session: Session, project: Project, direction: int) -> None:
     """Go to the next marker (1) or the previous one (-1); at the ends stay."""
     marked = [marker.frame for marker in project.document.markers]
     frames = project.document.frames
-    _to_next(session, project, [frame for frame in marked if frame in frames], direction)
+    _go_to_next(session, project, [frame for frame in marked if frame in frames], direction)
 
 
-def _to_next(session: Session, project: Project, frames: list[int], direction: int) -> None:
-    halt(session)
+def _go_to_next(session: Session, project: Project, frames: list[int], direction: int) -> None:
+    stop_playback(session)
     here = current_frame(session, project)
     if direction > 0:
         there = next((frame for frame in frames if frame > here), None)
@@ -103,19 +103,19 @@ def _to_next(session: Session, project: Project, frames: list[int], direction: i
 
 
 @with_project
-def to_start(session: Session, project: Project) -> None:
+def go_to_start(session: Session, project: Project) -> None:
     """Go to the first frame that plays."""
     seek(session, project.document.played_frames.first)
 
 
 @with_project
-def to_end(session: Session, project: Project) -> None:
+def go_to_end(session: Session, project: Project) -> None:
     """Go to the last frame that plays."""
     seek(session, project.document.played_frames.last)
 
 
 @with_project
-def set_speed(session: Session, project: Project, speed: float) -> None:
+def set_playback_speed(session: Session, project: Project, speed: float) -> None:
     """Play at a multiple of the document's own speed."""
     project.playhead = project.playhead.at_speed(speed, project.document, session.clock())
 
@@ -125,7 +125,7 @@ def current_frame(session: Session, project: Project) -> int:
     return project.playhead.frame_at(project.document, session.clock())
 
 
-def posed_frame(session: Session, project: Project) -> int:
+def edited_frame(session: Session, project: Project) -> int:
     """Return the frame at which what the layer that is posed shows now is keyed.
 
     It is another one than the present frame where a stretch repeats.

@@ -4,14 +4,19 @@ from functools import partial
 from pathlib import Path
 
 from app.document import Document
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.action import Action, do
 from app.editor.actions import exporting, posing
 from app.editor.dialogs import FileDialog, Question
-from app.editor.failures import ask_worker, mended, report, report_once
+from app.editor.error_reports import (
+    clear_reported_failure,
+    report_failure,
+    report_first_failure,
+    run_job,
+)
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Job, Kind, Promise
+from app.editor.work import Job, JobKind, Promise
 from app.errors import display_name
 from app.reports import draw_curves, write_curves
 from app.storage import (
@@ -31,10 +36,10 @@ from app.storage import (
 PROJECT = ".lissom"
 PATIENCE = 10.0  # seconds that saving and closing wait for what is on its way
 UNSAVED = "Unsaved changes"
-SAVING = Kind("Saving", "The project was not saved", "keep")
-AUTOSAVING = Kind("Autosaving", "Unsaved work cannot be kept", "keep")
-WRITING = Kind("Saving preferences", "The preferences cannot be kept", "keep")
-CLEARING = Kind("Clearing up", "What was left half written stays", "keep")
+SAVING = JobKind("Saving", "The project was not saved", "keep")
+AUTOSAVING = JobKind("Autosaving", "Unsaved work cannot be kept", "keep")
+WRITING = JobKind("Saving preferences", "The preferences cannot be kept", "keep")
+CLEARING = JobKind("Clearing up", "What was left half written stays", "keep")
 
 
 def save(session: Session) -> None:
@@ -53,33 +58,35 @@ def save_then(session: Session, project: Project, then: Action | None) -> None:
     if project.path is None or project.is_recovered:
         _ask_where(session, then)
     else:
-        write(session, project.path, then)
+        write_project(session, project.path, then)
 
 
-def write(session: Session, path: Path, then: Action | None) -> None:
+def write_project(session: Session, path: Path, then: Action | None) -> None:
     """Save the project in a file, as soon as nothing is on its way to it.
 
     What came afterwards would be a change again, which nobody made; and to save twice at a time
     would take the first for another program's.
     """
-    writing = do(write_now, path, then)
-    promises.once_settled(
+    writing = do(write_project_now, path, then)
+    pending_changes.run_when_idle(
         session, writing, "Save", changes=False, after_saves=True, patience=PATIENCE
     )
 
 
 @with_project
-def replace_changed(session: Session, project: Project, path: Path, then: Action | None) -> None:
+def overwrite_changed_file(
+    session: Session, project: Project, path: Path, then: Action | None
+) -> None:
     """Save the project in a file, whatever somebody else has saved there since."""
     project.read_as = None
-    write(session, path, then)
+    write_project(session, path, then)
 
 
 @with_project
-def write_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
+def write_project_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
     """Save the project in a file as it is."""
     document, known = project.document, project.read_as if path == project.path else None
-    textures = {layer: puppet.cut.value.texture for layer, puppet in project.puppets.items()}
+    textures = {layer: puppet.cut.value.texture for layer, puppet in project.layer_runtimes.items()}
     drawings = tuple(project.drawings)
 
     def work() -> str:
@@ -94,17 +101,17 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
         project.history.mark_saved(document)
         project.name, project.path, project.is_recovered = display_name(path.stem), path, False
         project.read_as = digest
-        _hold_saved(session, project, path)
+        _lock_saved_file(session, project, path)
         session.preferences = session.preferences.with_recent(path)
-        session.tell(f"Saved {path.name}.", tone="good")
+        session.show_notice(f"Saved {path.name}.", tone="good")
         if then is not None:
             # There may be changes again.
-            unless_unsaved(session, then)
+            confirm_unsaved(session, then)
 
     def failed(error: Exception) -> None:
         project.pending.remove(saving)
         if not isinstance(error, _ChangedError):
-            report(session, SAVING.complaint, error)
+            report_failure(session, SAVING.complaint, error)
         elif session.project is project:
             session.dialog = Question(
                 title="Changed by somebody else",
@@ -112,7 +119,7 @@ def write_now(session: Session, project: Project, path: Path, then: Action | Non
                 "program has changed it since.",
                 answers=(
                     ("Save under another name", do(_ask_where, then)),
-                    ("Replace it", do(replace_changed, path, then)),
+                    ("Replace it", do(overwrite_changed_file, path, then)),
                 ),
             )
 
@@ -125,7 +132,7 @@ class _ChangedError(Exception):
     """The file is not as it was when it was opened or saved here last."""
 
 
-def hold_file(session: Session, path: Path) -> FileLock | None:
+def lock_project_file(session: Session, path: Path) -> FileLock | None:
     """Let other windows see that a project is open here; tell where that is not possible.
 
     Raises
@@ -134,39 +141,41 @@ def hold_file(session: Session, path: Path) -> FileLock | None:
         If it is open in another window.
     """
     project = session.project
-    if project is not None and project.hold is not None and project.hold.path == path:
-        return project.hold
+    if project is not None and project.file_lock is not None and project.file_lock.path == path:
+        return project.file_lock
     try:
         return FileLock(path)
     except OSError as error:
         reason = error.strerror or str(error)
-        session.tell(
+        session.show_notice(
             f"Whether {path.name} is open in another window cannot be seen in {path.parent} "
             f"({reason}). You are asked before it replaces what somebody else has saved."
         )
         return None
 
 
-def put_project(session: Session, project: Project | None) -> None:
+def set_project(session: Session, project: Project | None) -> None:
     """Make a project that of the window, or none; let others have the file of the one before."""
     before, session.project = session.project, project
-    session.pointer = session.cutting = session.material = None
+    session.active_tool = session.cutting = session.material = None
     session.moves = False
-    hold = before.hold if before is not None else None
-    if hold is not None and (project is None or project.hold is not hold):
+    hold = before.file_lock if before is not None else None
+    if hold is not None and (project is None or project.file_lock is not hold):
         hold.release()
 
 
-def _hold_saved(session: Session, project: Project, path: Path) -> None:
+def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
     """Hold the file that a project was saved in, in place of the one before."""
-    if session.project is not project or (project.hold is not None and project.hold.path == path):
+    if session.project is not project or (
+        project.file_lock is not None and project.file_lock.path == path
+    ):
         return
-    before = project.hold
+    before = project.file_lock
     try:
-        project.hold = hold_file(session, path)
+        project.file_lock = lock_project_file(session, path)
     except FileLockedError as error:
-        project.hold = None
-        session.tell(f"{path.name} is open elsewhere, too: {error}.", tone="error")
+        project.file_lock = None
+        session.show_notice(f"{path.name} is open elsewhere, too: {error}.", tone="error")
     if before is not None:
         before.release()
 
@@ -193,7 +202,7 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
         write_atomically(path, lambda file: file.write(picture))
     else:
         write_curves(path, curves)
-    session.tell(f"Saved {path.name}.", tone="good")
+    session.show_notice(f"Saved {path.name}.", tone="good")
 
 
 @with_project
@@ -202,7 +211,7 @@ def _ask_curves(session: Session, project: Project, suffix: str) -> None:
     session.ask_file("Save the curves", (suffix,), lambda path: do(save_curves, path), name=name)
 
 
-def unless_unsaved(session: Session, then: Action) -> None:
+def confirm_unsaved(session: Session, then: Action) -> None:
     """Do something that gives up the project, but ask first if it has changes.
 
     What is on its way to it, or is being saved, is waited for, unless the person insists.
@@ -214,34 +223,36 @@ def unless_unsaved(session: Session, then: Action) -> None:
     asked = [each for each in project.afterwards if _asks_about(each.then, then)]
     if asked:
         project.afterwards = [each for each in project.afterwards if each not in asked]
-        ask_unsaved(session, then)
+        ask_unsaved_now(session, then)
         return
-    if not promises.is_settled(project, after_saves=True):
-        session.tell(f"{promises.coming(project)} comes first.", topic="settling")
-    asking = do(ask_unsaved, then)
-    promises.once_settled(
+    if not pending_changes.is_document_idle(project, after_saves=True):
+        session.show_notice(
+            f"{pending_changes.pending_label(project)} comes first.", topic="settling"
+        )
+    asking = do(ask_unsaved_now, then)
+    pending_changes.run_when_idle(
         session, asking, "Close", changes=False, after_saves=True, patience=PATIENCE
     )
 
 
 def _asks_about(waiting: Action, then: Action) -> bool:
     """Tell whether an action is the question that comes before another one."""
-    return waiting.verb is ask_unsaved and waiting.arguments[0].verb is then.verb
+    return waiting.verb is ask_unsaved_now and waiting.arguments[0].verb is then.verb
 
 
 @with_project
-def ask_unsaved(session: Session, project: Project, then: Action) -> None:
+def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
     """Do something that gives up the project, but ask first if it has changes now."""
     unkeyed = project.history.preview_pose
-    is_settled = promises.is_settled(project, after_saves=True)
-    if is_settled and not has_unsaved(project):
+    is_settled = pending_changes.is_document_idle(project, after_saves=True)
+    if is_settled and not has_unsaved_changes(project):
         then.apply(session)
         return
     name = project.path.name if project.path else "This project"
     text = f"{name} has changes that are not saved."
     save = do(save_then, then)
     if not is_settled:
-        text += f" {promises.coming(project)} is not finished."
+        text += f" {pending_changes.pending_label(project)} is not finished."
     if unkeyed is not None:
         text += f" The pose at frame {unkeyed.frame} is in no key: saving makes one of it."
         save = do(key_and_save, then)
@@ -259,38 +270,38 @@ def key_and_save(session: Session, project: Project, then: Action) -> None:
     save_then(session, then)
 
 
-def close(session: Session) -> None:
+def close_project(session: Session) -> None:
     """Go back to the welcome view, after a question if there are changes."""
-    unless_unsaved(session, do(give_up))
+    confirm_unsaved(session, do(discard_project))
 
 
-def give_up(session: Session) -> None:
+def discard_project(session: Session) -> None:
     """Close the project, whatever it holds."""
-    put_project(session, None)
+    set_project(session, None)
     session.autosave.remove()
 
 
-def quit_lissom(session: Session) -> None:
+def request_quit(session: Session) -> None:
     """Close the window, after questions if an export is under way or there are changes."""
-    exporting.unless_running(session, do(unless_unsaved, do(leave)))
+    exporting.confirm_ending_export(session, do(confirm_unsaved, do(close_window)))
 
 
-def leave(session: Session) -> None:
+def close_window(session: Session) -> None:
     """Close the window."""
     session.autosave.remove()
-    if session.project is not None and session.project.hold is not None:
-        session.project.hold.release()
-        session.project.hold = None
-    session.quitting = True
+    if session.project is not None and session.project.file_lock is not None:
+        session.project.file_lock.release()
+        session.project.file_lock = None
+    session.is_quitting = True
 
 
-def maintain(session: Session) -> None:
+def write_due_files(session: Session) -> None:
     """Write what is due: unsaved work, preferences; once a frame."""
     autosave(session)
     write_preferences(session)
 
 
-def clear_up(session: Session) -> None:
+def remove_temporary_files(session: Session) -> None:
     """Remove what was left half written where this person works; at the start."""
     folders = {session.folder, *session.preferences.written}
 
@@ -299,7 +310,7 @@ def clear_up(session: Session) -> None:
             remove_abandoned_files(folder)
 
     # They may lie on a slow disk.
-    ask_worker(session, CLEARING, work, lambda _: None)
+    run_job(session, CLEARING, work, lambda _: None)
 
 
 def write_preferences(session: Session) -> None:
@@ -308,19 +319,19 @@ def write_preferences(session: Session) -> None:
     if preferences == session.saved_preferences:
         return
     session.saved_preferences = preferences
-    ask_worker(
+    run_job(
         session,
         WRITING,
         lambda: save_preferences(folder, preferences),
-        lambda _: mended(session, WRITING.complaint),
-        partial(report_once, session, WRITING.complaint),
+        lambda _: clear_reported_failure(session, WRITING.complaint),
+        partial(report_first_failure, session, WRITING.complaint),
     )
 
 
 @with_project
 def autosave(session: Session, project: Project) -> None:
     """Keep changes that are not saved, every now and then."""
-    if not has_unsaved(project):
+    if not has_unsaved_changes(project):
         if project.autosaved is not None:
             project.autosaved = None
             session.autosave.remove()
@@ -334,7 +345,7 @@ def autosave(session: Session, project: Project) -> None:
         project.changed_at = now
     # Not while the hand moves, which it would disturb; but a hand that moves on and on is no
     # reason to lose what was done before.
-    may_write = promises.is_settled(project) or now - project.changed_at >= SECONDS
+    may_write = pending_changes.is_document_idle(project) or now - project.changed_at >= SECONDS
     is_due = now - project.autosaved_at >= SECONDS
     if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
         _begin_autosave(session, project, now)
@@ -349,10 +360,10 @@ def autosave_now(session: Session, project: Project) -> None:
     LissomError
         If they cannot be kept.
     """
-    posing.bring_all(session, project)
+    posing.commit_all_poses(session, project)
     kept = project.document, project.history.preview_pose
     is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
-    if is_kept or not has_unsaved(project):
+    if is_kept or not has_unsaved_changes(project):
         return
     # One that waits is older, and must not take its place.
     session.jobs.drop(AUTOSAVING)
@@ -360,7 +371,7 @@ def autosave_now(session: Session, project: Project) -> None:
     project.autosaved, project.autosaved_at = kept, session.clock()
 
 
-def has_unsaved(project: Project) -> bool:
+def has_unsaved_changes(project: Project) -> bool:
     """Tell whether there is anything that no file has, a pose that no key holds among it."""
     return not project.history.is_saved or project.history.preview_pose is not None
 
@@ -370,7 +381,7 @@ def _all_keyed(session: Session, project: Project) -> Document:
     unkeyed = project.history.preview_pose
     if unkeyed is None:
         return project.document
-    return posing.as_key(session, project, unkeyed)(project.document)
+    return posing.key_pose_command(session, project, unkeyed)(project.document)
 
 
 def _begin_autosave(session: Session, project: Project, now: float) -> None:
@@ -379,7 +390,7 @@ def _begin_autosave(session: Session, project: Project, now: float) -> None:
     project.autosaved, project.autosaved_at = kept, now
 
     def done(_: None) -> None:
-        mended(session, AUTOSAVING.complaint)
+        clear_reported_failure(session, AUTOSAVING.complaint)
         # In the meantime it may have been saved, or closed.
         if session.project is not project or project.autosaved != kept:
             session.autosave.remove()
@@ -388,10 +399,10 @@ def _begin_autosave(session: Session, project: Project, now: float) -> None:
         # There may be room again next time.
         if project.autosaved == kept:
             project.autosaved = earlier
-        report_once(session, AUTOSAVING.complaint, error)
+        report_first_failure(session, AUTOSAVING.complaint, error)
 
     work = partial(session.autosave.write, document, origin)
-    ask_worker(session, AUTOSAVING, work, done, failed)
+    run_job(session, AUTOSAVING, work, done, failed)
 
 
 @with_project
@@ -402,5 +413,5 @@ def _ask_where(session: Session, project: Project, then: Action | None) -> None:
         name=project.path.name if project.path else f"{project.name}{PROJECT}",
         suffixes=(PROJECT,),
         writes=True,
-        chosen=lambda path: do(write, path, then),
+        chosen=lambda path: do(write_project, path, then),
     )

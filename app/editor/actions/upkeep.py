@@ -6,13 +6,13 @@ from typing import TypeVar
 
 from app.document import Clip, clip_of, keyed_pose_at, segment_time_at
 from app.editor.actions import playback, posing, tracking, viewing
-from app.editor.actions.body import rebuilding
-from app.editor.actions.posing.moving import drafting
-from app.editor.failures import report
+from app.editor.actions.layer_setup import resolving
+from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import measure_shortfalls
-from app.editor.work import Derived, Job, Kind, Pull, Puppet
+from app.editor.timeline_view import measure_key_errors
+from app.editor.work import Derived, Job, JobKind, LayerRuntime, Pull
 from app.motion import (
     DeformMesh,
     InbetweenCache,
@@ -37,17 +37,17 @@ MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
 UNMADE = "The in-betweens of these keys cannot be made"
 # What is awaited, or takes a few milliseconds, is not to wait until all in-betweens are there.
-GLIMPSING = Kind("In-between", UNMADE, "hand")
-SKETCHING = Kind("In-betweens", UNMADE)
-COMPARING = Kind("Other in-betweens", "The in-betweens to compare with cannot be made")
-REFINING = Kind("Finer in-betweens", "The in-betweens cannot be made in full detail")
-STREAMING = Kind("Smooth playback", "Playback cannot be made smooth")
-CUTTING = Kind("Cutting out", "The picture cannot be cut out so")
-SHRINKING = Kind("Small pictures", "The picture of a layer cannot be made small", "hand")
-HANGING = Kind("Joints", "The joints cannot be followed between the keys")
-TRACING = Kind("Motion paths", "The paths of the handles cannot be traced")
-MEASURING = Kind("Measuring", "The distortion could not be measured")
-SPANNING = Kind("Measuring the motion", "The extent of the motion could not be measured")
+GLIMPSING = JobKind("In-between", UNMADE, "hand")
+SKETCHING = JobKind("In-betweens", UNMADE)
+COMPARING = JobKind("Other in-betweens", "The in-betweens to compare with cannot be made")
+REFINING = JobKind("Finer in-betweens", "The in-betweens cannot be made in full detail")
+STREAMING = JobKind("Smooth playback", "Playback cannot be made smooth")
+CUTTING = JobKind("Cutting out", "The picture cannot be cut out so")
+SHRINKING = JobKind("Small pictures", "The picture of a layer cannot be made small", "hand")
+HANGING = JobKind("Joints", "The joints cannot be followed between the keys")
+TRACING = JobKind("Motion paths", "The paths of the handles cannot be traced")
+MEASURING = JobKind("Measuring", "The distortion could not be measured")
+SPANNING = JobKind("Measuring the motion", "The extent of the motion could not be measured")
 
 Source = TypeVar("Source")
 Value = TypeVar("Value")
@@ -56,14 +56,14 @@ Value = TypeVar("Value")
 @with_project
 def bring_poses(session: Session, project: Project) -> None:
     """Let the document have what pulls have come to."""
-    posing.give_in(session, project, rebuilding.loosen)
-    posing.maintain(session, project)
+    posing.clamp_unreachable_targets(session, project, resolving.relax_limits_and_solve)
+    posing.update_pose_drags(session, project)
 
 
 @with_project
 def bring_tracks(session: Session, project: Project) -> None:
     """Let the document have what hands do with tracks."""
-    tracking.maintain(session, project)
+    tracking.update_track_drags(session, project)
 
 
 @with_project
@@ -77,10 +77,10 @@ def ask_for_missing(session: Session, project: Project) -> None:
         for job in missing(session, project):
             if job.kind not in session.jobs.kinds:
                 session.jobs.put(job)
-    shortfalls, layer = project.timing.shortfalls, project.layer
+    shortfalls, layer = project.timeline.target_errors, project.layer
     if not shortfalls.follows(layer):
         # Little work: of the poses that were not measured before, and there is one at a time.
-        shortfalls.set(layer, measure_shortfalls(layer, shortfalls))
+        shortfalls.set(layer, measure_key_errors(layer, shortfalls))
 
 
 @with_project
@@ -98,8 +98,8 @@ def settle_shown(session: Session, project: Project) -> None:
 STEPS: tuple[Callable[[Session], None], ...] = (
     bring_poses,
     bring_tracks,
-    rebuilding.maintain,
-    drafting.maintain,
+    resolving.rebuild_changed_cut_out,
+    preset_setup.update_motion_setup,
     ask_for_missing,
     settle_shown,
 )
@@ -120,25 +120,25 @@ def follow_playhead(session: Session, project: Project) -> None:
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all on which it depends which jobs are due."""
-    take = project.take
+    take = project.recording
     return (
-        *(project.document, project.history.position, project.active, project.selected),
+        *(project.document, project.history.position, project.active, project.selected_handles),
         *(playback.current_frame(session, project), project.playhead.since is None),
         *(session.jobs.kinds, session.jobs.delivered, session.prepares_ahead),
-        *(session.overlays, session.split),
-        *(session.export_frame, project.awaits_extent, session.pointer, session.records),
-        *(project.chosen_track, take, take and (take.is_over, len(take.samples))),
-        *(project.unkeyed, tuple(project.pending), tuple(map(_stage, project.pulls))),
-        tuple(puppet.store for puppet in project.puppets.values()),
+        *(session.overlays, session.compare_view),
+        *(session.export_frame, project.awaits_extent, session.active_tool, session.records),
+        *(project.selected_track, take, take and (take.is_over, len(take.samples))),
+        *(project.unkeyed_pose, tuple(project.pending), tuple(map(_stage, project.pulls))),
+        tuple(puppet.store for puppet in project.layer_runtimes.values()),
     )
 
 
 def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
     """Return all on which it depends what is drawn, and what is drawn now."""
-    puppets = project.puppets.values()
+    puppets = project.layer_runtimes.values()
     return (
         *(_inputs(session, project), _is_moving(session, project)),
-        *((each.shown, each.fine, each.corrected, each.twin) for each in puppets),
+        *((each.shown, each.fine, each.corrected, each.comparison) for each in puppets),
     )
 
 
@@ -149,23 +149,23 @@ def _stage(pull: Pull) -> tuple[object, ...]:
 
 def _follow_document(session: Session, project: Project) -> None:
     """Let what is known follow the document."""
-    for identity, puppet in project.puppets.items():
+    for identity, puppet in project.layer_runtimes.items():
         puppet.corrected = reuse_corrections(project.document, identity, puppet.corrected)
     project.extent.recall(extent_key(project.document))
-    project.pair_up(session.split.method if session.split else None)
+    project.update_comparisons(session.compare_view.method if session.compare_view else None)
     _pin(session, project)
 
 
-def give_up(session: Session, kind: Kind) -> None:
+def give_up(session: Session, kind: JobKind) -> None:
     """End a job that takes too long, or never ends; what it was for is told to have failed."""
-    session.jobs.leave(kind)
+    session.jobs.abandon(kind)
 
 
 def _pin(session: Session, project: Project) -> None:
     """Tell all stores which clips are present, and to which ones undo and redo lead."""
-    frame, tried = playback.current_frame(session, project), posing.tried_clips(project)
+    frame, tried = playback.current_frame(session, project), posing.candidate_clips(project)
     for clip, puppet in _clips(project):
-        layer, twin = clip.layer.id, puppet.twin
+        layer, twin = clip.layer.id, puppet.comparison
         others = [each for each in tried if each.layer.id == layer]
         others += [] if twin is None else [twin.clip(project.document)]
         nearby = [
@@ -186,7 +186,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if _asks_extent(session, project) and not project.is_posing:
         yield from _span(session, project)
     yield from _make_frames(session, project)
-    yield from tracking.missing_here(session, project)
+    yield from tracking.correction_jobs_for_shown_frame(session, project)
     if _awaits_frame(session, project):
         # On few cores it would come much later beside others.
         return
@@ -195,16 +195,16 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
             job = _prepare(session, project, kind, puppet, clip)
             if job is not None:
                 room = None
-                if puppet is not project.puppet and project.is_crowded:
+                if puppet is not project.layer_runtime and project.is_crowded:
                     if STREAMING in session.jobs.kinds:
                         return
                     room = next(_stream(session, project), None)
                 yield room or job
                 return
-    if tracking.is_under_way(session, project):
+    if tracking.is_track_drag_pending(session, project):
         return
     if _prepares_all(session, project):
-        yield from tracking.missing(session, project)
+        yield from tracking.next_correction_jobs(session, project)
     if project.is_posing:
         # What follows takes longer than the hand stays where it is.
         return
@@ -227,15 +227,17 @@ def _prepares_all(session: Session, project: Project) -> bool:
     return session.prepares_ahead or session.overlays.onion or _asks_extent(session, project)
 
 
-def _clips(project: Project) -> list[tuple[Clip, Puppet]]:
-    return [(clip_of(project.document, layer), each) for layer, each in project.puppets.items()]
+def _clips(project: Project) -> list[tuple[Clip, LayerRuntime]]:
+    return [
+        (clip_of(project.document, layer), each) for layer, each in project.layer_runtimes.items()
+    ]
 
 
 def _make_frames(session: Session, project: Project) -> Iterator[Job]:
     """Yield the in-betweens at the playhead, before and beside all others of their intervals."""
     frame = playback.current_frame(session, project)
     for clip, puppet in _clips(project):
-        is_posed = clip.layer.id == project.active and project.unkeyed is not None
+        is_posed = clip.layer.id == project.active and project.unkeyed_pose is not None
         # What fails at one frame would at others, and is told of once.
         if not is_posed and not puppet.store.has_failed(clip, "frame"):
             work = puppet.store.frame_job(clip, frame)
@@ -258,7 +260,7 @@ def _awaits_frame(session: Session, project: Project) -> bool:
     )
 
 
-def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, Clip]]:
+def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, LayerRuntime, Clip]]:
     """Yield the clips that are to have their in-betweens, what is missed most first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
@@ -274,13 +276,13 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, 
         for clip, puppet in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, puppet.store):
                 yield SKETCHING, puppet, clip
-    for clip in posing.tried_clips(project, left=not prepares_all):
-        yield SKETCHING, project.puppets[clip.layer.id], clip
+    for clip in posing.candidate_clips(project, left=not prepares_all):
+        yield SKETCHING, project.layer_runtimes[clip.layer.id], clip
     if project.is_posing:
         return
-    for puppet in project.puppets.values():
-        if puppet.twin is not None:
-            twin = puppet.twin.clip(project.document)
+    for puppet in project.layer_runtimes.values():
+        if puppet.comparison is not None:
+            twin = puppet.comparison.clip(project.document)
             if is_wanted(twin, puppet.store):
                 yield COMPARING, puppet, twin
     for clip, puppet in clips:
@@ -291,10 +293,10 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[Kind, Puppet, 
 
 
 def _prepare(
-    session: Session, project: Project, kind: Kind, puppet: Puppet, clip: Clip
+    session: Session, project: Project, kind: JobKind, puppet: LayerRuntime, clip: Clip
 ) -> Job | None:
     """Return what prepares the nearest in-betweens that a clip lacks, or its mesh."""
-    domain, among = clip.layer.domain, len(project.puppets)
+    domain, among = clip.layer.domain, len(project.layer_runtimes)
     is_fine, frame = kind == REFINING, playback.current_frame(session, project)
     store = puppet.fine if is_fine else puppet.store
     if store is None or store.mesh.source is not domain:
@@ -304,7 +306,7 @@ def _prepare(
             setattr(puppet, "fine" if is_fine else "store", InbetweenCache(mesh=mesh))
 
         return _interval_job(session, kind, puppet, clip, work=partial(make, domain), done=begin)
-    is_edited = puppet is project.puppet and not is_fine
+    is_edited = puppet is project.layer_runtime and not is_fine
     lacking = store.missing_segments(clip, frame, is_edited=is_edited)
     if store.lacks_sampler(clip):
         # A frame at a key needs no in-betweens to be corrected.
@@ -337,12 +339,12 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
 def _take_build(project: Project, store: InbetweenCache, build: SeriesBuild) -> None:
     """Take in a series; where it is crowded, let go of what it was made from."""
     store.add_build(build)
-    project.make_room()
+    project.free_memory()
 
 
-def _part(kind: Kind) -> InbetweenPart:
+def _part(kind: JobKind) -> InbetweenPart:
     """Return which part of a clip's in-betweens a job makes."""
-    parts: dict[Kind, InbetweenPart] = {
+    parts: dict[JobKind, InbetweenPart] = {
         GLIMPSING: "frame",
         REFINING: "fine",
         STREAMING: "series",
@@ -352,8 +354,8 @@ def _part(kind: Kind) -> InbetweenPart:
 
 def _interval_job(
     session: Session,
-    kind: Kind,
-    puppet: Puppet,
+    kind: JobKind,
+    puppet: LayerRuntime,
     clip: Clip,
     *,
     work: Callable[[], Value],
@@ -365,21 +367,21 @@ def _interval_job(
 
 def _job(
     session: Session,
-    kind: Kind,
+    kind: JobKind,
     work: Callable[[], Value],
     done: Callable[[Value], None],
     fail: Callable[[], None],
 ) -> Job:
     def failed(error: Exception) -> None:
         fail()
-        report(session, kind.complaint, error)
+        report_failure(session, kind.complaint, error)
 
     return Job(kind=kind, work=work, done=done, failed=failed)
 
 
 def _derive(
     session: Session,
-    kind: Kind,
+    kind: JobKind,
     into: Derived[Source, Value],
     source: Source,
     work: Callable[[], Value],
@@ -392,7 +394,7 @@ def _derive(
 def _cut(session: Session, project: Project) -> Iterator[Job]:
     """Yield what is to be cut out of pictures anew, and the small ones of the list of layers."""
     for layer in project.document.layers:
-        puppet, cut_out = project.puppets[layer.id], layer.cut_out
+        puppet, cut_out = project.layer_runtimes[layer.id], layer.cut_out
         cut = partial(cut_picture, puppet.picture, cut_out)
         yield from _derive(session, CUTTING, puppet.cut, cut_out, cut)
         whole = puppet.cut.value
@@ -403,9 +405,9 @@ def _cut(session: Session, project: Project) -> Iterator[Job]:
 def _trace(session: Session, project: Project) -> Iterator[Job]:
     """Yield the paths of the active layer's handles, while some are shown."""
     clip, paths = project.clip, project.paths
-    if session.overlays.paths and project.selected:
+    if session.overlays.paths and project.selected_handles:
         document, known, siblings = project.document, paths.value, project.samplers
-        sibling = project.puppet.store.sampler
+        sibling = project.layer_runtime.store.sampler
 
         def trace() -> MotionPaths:
             carried = find_parent_motion(document, clip.layer.id, siblings)
@@ -416,7 +418,7 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
 
 def _hang(session: Session, project: Project) -> Iterator[Job]:
     """Yield some frames of the joints of what hangs."""
-    joints, source = project.joints, parenting_key(project.document)
+    joints, source = project.parent_transforms, parenting_key(project.document)
     is_settled = not source or joints.follows(source) or joints.has_failed(source)
     if is_settled or HANGING in session.jobs.kinds:
         return
@@ -434,10 +436,10 @@ def _hang(session: Session, project: Project) -> Iterator[Job]:
 
 def _measure(session: Session, project: Project) -> Iterator[Job]:
     """Yield what is measured of the in-betweens."""
-    twin, wanted = project.puppet.twin, [(project.clip, project.curves)]
+    twin, wanted = project.layer_runtime.comparison, [(project.clip, project.curves)]
     if twin is not None:
-        wanted.append((twin.clip(project.document), project.twin_curves))
-    store, corrected = project.puppet.store, project.puppet.corrected
+        wanted.append((twin.clip(project.document), project.comparison_curves))
+    store, corrected = project.layer_runtime.store, project.layer_runtime.corrected
     for clip, curves in wanted:
         inbetweens = store.prepared(clip)
         own = corrected if corrected is not None and corrected.corrects(clip) else None
@@ -458,15 +460,15 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
     corrected = {clip.layer.id: each.corrected for clip, each in clips if each.corrected}
     if not all(each.is_whole for each in corrected.values()):
         return
-    stores = {layer: puppet.store.snapshot() for layer, puppet in project.puppets.items()}
-    span = partial(measure_extent, document, stores, project.joints.value, corrected)
+    stores = {layer: puppet.store.snapshot() for layer, puppet in project.layer_runtimes.items()}
+    span = partial(measure_extent, document, stores, project.parent_transforms.value, corrected)
     yield from _derive(session, SPANNING, extent, source, span)
 
 
 def _fit_motion(session: Session, project: Project) -> None:
     source = extent_key(project.document)
     if project.extent.follows(source) and project.extent.value is not None:
-        viewing.look_at(session, project.extent.value)
+        viewing.zoom_to_box(session, project.extent.value)
     elif project.extent.has_failed(source):
         project.awaits_extent = False
 
@@ -474,15 +476,15 @@ def _fit_motion(session: Session, project: Project) -> None:
 def _show(session: Session, project: Project) -> None:
     """Settle what is drawn in the next frame, and beside it by the method that is compared."""
     frame, document = playback.current_frame(session, project), project.document
-    if project.take is not None and project.puppet.corrected is not None:
-        project.puppet.corrected.lead(frame)
+    if project.recording is not None and project.layer_runtime.corrected is not None:
+        project.layer_runtime.corrected.lead(frame)
     shown, twins, poses = {}, {}, {}
-    if any(each.shown and each.shown.frame != frame for each in project.puppets.values()):
+    if any(each.shown and each.shown.frame != frame for each in project.layer_runtimes.values()):
         project.moved_at = session.clock()
     is_moving = _is_moving(session, project)
     for clip, puppet in _clips(project):
-        layer, twin = clip.layer.id, puppet.twin
-        pose = project.unkeyed if layer == project.active else None
+        layer, twin = clip.layer.id, puppet.comparison
+        pose = project.unkeyed_pose if layer == project.active else None
         if pose is not None:
             poses[layer] = pose
         fine = [puppet.fine] if puppet.fine is not None and not is_moving else []
@@ -492,12 +494,14 @@ def _show(session: Session, project: Project) -> None:
             earlier, other = twin.shown or shown[layer], twin.clip(document)
             # What a pose shows is the same in both.
             twins[layer] = show(other, frame, pose, [puppet.store], earlier)
-    known = project.joints.value
-    for layer, hung in hang_shown(document, shown, project.hung, poses, known).items():
-        project.puppets[layer].shown = hung
+    known = project.parent_transforms.value
+    for layer, hung in hang_shown(
+        document, shown, project.current_parent_transforms, poses, known
+    ).items():
+        project.layer_runtimes[layer].shown = hung
     # By the meshes alone: the joints that are followed exactly are of the layers' own methods.
     for layer, hung in hang_shown(document, twins, None, {}, known).items():
-        if (twin := project.puppets[layer].twin) is not None:
+        if (twin := project.layer_runtimes[layer].comparison) is not None:
             twin.shown = hung
 
 

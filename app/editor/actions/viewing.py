@@ -10,7 +10,7 @@ from typing import Any, Literal
 from app.document import Baseline, Meshing, Variant
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
-from app.editor.project import Project, view_around
+from app.editor.project import Project, fit_view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
 from app.errors import LissomError
 from app.motion import BoundingBox, bounding_box
@@ -32,59 +32,61 @@ HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 
 @with_project
-def look_from(_: Session, project: Project, camera: View | None) -> None:
+def set_view(_: Session, project: Project, camera: View | None) -> None:
     """Move the camera; None fits the picture's frame into the viewport, whatever its size."""
-    project.camera, project.looks_through = camera, False
+    project.camera, project.is_camera_view = camera, False
     project.awaits_extent = False
 
 
 @with_project
-def fit_pose(session: Session, project: Project) -> None:
+def zoom_to_pose(session: Session, project: Project) -> None:
     """Show all layers as they are in this frame, whole."""
-    shown = [puppet.shown for puppet in project.puppets.values()]
-    boxes = [bounding_box(each.placement.on(each.positions)) for each in shown if each is not None]
+    shown = [puppet.shown for puppet in project.layer_runtimes.values()]
+    boxes = [
+        bounding_box(each.placement.apply(each.positions)) for each in shown if each is not None
+    ]
     if boxes:
-        look_at(session, reduce(BoundingBox.joined, boxes))
+        zoom_to_box(session, reduce(BoundingBox.joined, boxes))
 
 
 @with_project
-def fit_motion(_: Session, project: Project) -> None:
+def zoom_to_motion(_: Session, project: Project) -> None:
     """Show where all layers get to in any frame, as soon as that is measured."""
     project.awaits_extent = True
 
 
 @with_project
-def fit_selection(session: Session, project: Project) -> None:
+def zoom_to_selection(session: Session, project: Project) -> None:
     """Show the selected handles with some of the layer around them, or the whole layer."""
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     if shown is None:
         return
-    box = bounding_box(shown.placement.on(shown.positions))
-    selected = [handle.id in project.selected for handle in shown.clip.layer.handles]
+    box = bounding_box(shown.placement.apply(shown.positions))
+    selected = [handle.id in project.selected_handles for handle in shown.clip.layer.handles]
     if any(selected):
         room = AROUND_HANDLES * abs(box.upper - box.lower) * (1 + 1j)
-        box = bounding_box(shown.placement.on(shown.handle_positions[selected]))
+        box = bounding_box(shown.placement.apply(shown.handle_positions[selected]))
         box = BoundingBox(box.lower - room, box.upper + room)
-    look_at(session, box)
+    zoom_to_box(session, box)
 
 
-def look_at(session: Session, box: BoundingBox) -> None:
+def zoom_to_box(session: Session, box: BoundingBox) -> None:
     """Move the camera so that a box of the plane fills the viewport."""
-    look_from(session, view_around(box, session.screen))
+    set_view(session, fit_view_around(box, session.screen))
 
 
 @with_project
-def actual_size(session: Session, project: Project) -> None:
+def zoom_to_actual_size(session: Session, project: Project) -> None:
     """Show one pixel of the picture as one of the screen, around the same centre."""
-    look_from(session, replace(project.view(session.screen), scale=1.0))
+    set_view(session, replace(project.view(session.screen), scale=1.0))
 
 
-def resize(session: Session, width: int, height: int) -> None:
+def set_viewport_size(session: Session, width: int, height: int) -> None:
     """Take note of the viewport's size in pixels."""
     session.screen = (max(width, 1), max(height, 1))
 
 
-def toggle(session: Session, overlay: OverlayName) -> None:
+def toggle_overlay(session: Session, overlay: OverlayName) -> None:
     """Show or hide an overlay."""
     shown: dict[str, Any] = {overlay: not getattr(session.overlays, overlay)}
     session.overlays = replace(session.overlays, **shown)
@@ -105,36 +107,36 @@ def show_curves(session: Session, kind: CurveKind) -> None:
     session.curves = kind
 
 
-def toggle_split(session: Session) -> None:
+def toggle_comparison(session: Session) -> None:
     """Show another method beside the drawing's own, or the drawing alone."""
-    if session.split is None:
-        session.split = session.last_split
+    if session.compare_view is None:
+        session.compare_view = session.last_compare_view
     else:
-        session.last_split, session.split = session.split, None
+        session.last_compare_view, session.compare_view = session.compare_view, None
 
 
-def compare_with(session: Session, method: Variant | Baseline | None) -> None:
+def compare_with_method(session: Session, method: Variant | Baseline | None) -> None:
     """Show a method beside the drawing's own; None shows the drawing alone."""
-    if (method is None) != (session.split is None):
-        toggle_split(session)
-    if method is not None and session.split is not None:
-        session.split = replace(session.split, method=method)
+    if (method is None) != (session.compare_view is None):
+        toggle_comparison(session)
+    if method is not None and session.compare_view is not None:
+        session.compare_view = replace(session.compare_view, method=method)
 
 
-def move_divider(session: Session, place: float) -> None:
+def move_comparison_divider(session: Session, place: float) -> None:
     """Move the divider to a share of the viewport's width."""
-    if session.split is not None:
+    if session.compare_view is not None:
         place = min(max(place, LEAST_PART), 1.0 - LEAST_PART)
-        session.split = replace(session.split, place=place)
+        session.compare_view = replace(session.compare_view, divider=place)
 
 
-def lay_beside(session: Session, beside: bool) -> None:  # noqa: FBT001 - a panel's two choices
+def set_side_by_side(session: Session, beside: bool) -> None:  # noqa: FBT001 - a panel's two choices
     """Show the two methods side by side, or under a divider over one place."""
-    if session.split is not None:
-        session.split = replace(session.split, beside=beside)
+    if session.compare_view is not None:
+        session.compare_view = replace(session.compare_view, is_side_by_side=beside)
 
 
-def set_ghosts(session: Session, before: int, after: int, step: int) -> None:
+def set_onion_skin(session: Session, before: int, after: int, step: int) -> None:
     """Choose how many ghosts the onion skin has, and how many frames apart."""
     session.preferences = replace(
         session.preferences,
@@ -144,12 +146,12 @@ def set_ghosts(session: Session, before: int, after: int, step: int) -> None:
     )
 
 
-def put_ghosts_in_front(session: Session, in_front: bool) -> None:  # noqa: FBT001 - a checkbox's
+def set_onion_skin_in_front(session: Session, in_front: bool) -> None:  # noqa: FBT001 - a checkbox's
     """Let the onion skin be in front of the drawing, or behind it."""
     session.preferences = replace(session.preferences, ghosts_in_front=in_front)
 
 
-def reach_paths(session: Session, reach: int) -> None:
+def set_path_range(session: Session, reach: int) -> None:
     """Choose of how many frames around the playhead motion paths are; 0 takes all that play."""
     session.preferences = replace(session.preferences, path_reach=reach)
 
@@ -160,7 +162,7 @@ def set_backdrop(session: Session, backdrop: str) -> None:
 
 
 @with_project
-def draft_meshing(_: Session, project: Project, meshing: Meshing) -> None:
+def preview_meshing(_: Session, project: Project, meshing: Meshing) -> None:
     """Choose what the domain will be rebuilt with."""
     project.meshing = meshing
 
@@ -171,24 +173,24 @@ def toggle_theme(session: Session) -> None:
     session.preferences = replace(session.preferences, theme=theme)
 
 
-def scale_up(session: Session) -> None:
+def enlarge_interface(session: Session) -> None:
     """Enlarge the whole interface."""
-    _scale(session, SCALE_STEP)
+    _scale_interface(session, SCALE_STEP)
 
 
-def scale_down(session: Session) -> None:
+def shrink_interface(session: Session) -> None:
     """Make the whole interface smaller."""
-    _scale(session, -SCALE_STEP)
+    _scale_interface(session, -SCALE_STEP)
 
 
-def _scale(session: Session, step: float) -> None:
+def _scale_interface(session: Session, step: float) -> None:
     scale = min(max(session.preferences.scale + step, SMALLEST_SCALE), LARGEST_SCALE)
     session.preferences = replace(session.preferences, scale=scale)
 
 
-def attend(session: Session, in_timeline: bool) -> None:  # noqa: FBT001 - the only argument
+def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001 - the only argument
     """Note whether the person is in the timeline, and not in the drawing."""
-    session.in_timeline = in_timeline
+    session.is_timeline_focused = in_timeline
 
 
 def toggle_auto_key(session: Session) -> None:
@@ -202,26 +204,26 @@ def show_dialog(session: Session, dialog: Dialog) -> None:
     session.dialog = dialog
 
 
-def browse(session: Session, dialog: FileDialog) -> None:
+def browse_files(session: Session, dialog: FileDialog) -> None:
     """Go on with the file browser that is open, in another state."""
     session.dialog = dialog
 
 
-def choose(session: Session, dialog: FileDialog, path: Path) -> None:
+def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
     """Do with a path what the file dialog asked for, and begin there the next time."""
     session.dialog = None
     session.preferences = replace(session.preferences, folder=path.parent)
     dialog.chosen(path).apply(session)
 
 
-def use_own_dialogs(session: Session) -> None:
+def use_own_file_browser(session: Session) -> None:
     """Ask for files with our own browser, and not with the system's dialogs, from now on."""
     session.system_dialogs = False
 
 
 def show_tab(session: Session, title: str) -> None:
     """Bring a tab at the side to the front."""
-    session.wanted_panel = title
+    session.panel_to_focus = title
 
 
 def show_shortcuts(session: Session) -> None:
@@ -245,7 +247,7 @@ def open_manual(session: Session, page: str) -> None:
     if not is_open:
         raise LissomError(f"no browser was found; the manual is {path}")
     # What starts it may fail later, unheard.
-    session.tell(f"The manual opens in the browser. It lies in {path}.", topic="manual")
+    session.show_notice(f"The manual opens in the browser. It lies in {path}.", topic="manual")
 
 
 def close_dialog(session: Session) -> None:
@@ -254,17 +256,17 @@ def close_dialog(session: Session) -> None:
     session.dialog = dialog.behind if isinstance(dialog, ProblemReport) else None
 
 
-def answer(session: Session, action: Action) -> None:
+def answer_dialog(session: Session, action: Action) -> None:
     """Close the dialog and do what was chosen in it."""
     session.dialog = None
     action.apply(session)
 
 
-def dismiss(session: Session, toast: Toast) -> None:
+def dismiss_toast(session: Session, toast: Toast) -> None:
     """Take a message away."""
     session.toasts = [other for other in session.toasts if other is not toast]
 
 
-def tint(session: Session, by: Tint | None) -> None:
+def set_tint(session: Session, by: Tint | None) -> None:
     """Show by colours what of the drawing is in front, or stiff; None shows it as it is."""
     session.tint = by

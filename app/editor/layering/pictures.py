@@ -14,15 +14,15 @@ from app.document import (
     group_commands,
     layer_commands,
 )
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, files, rebuilding
+from app.editor.actions import editing, files, resolving
 from app.editor.dialogs import Question
-from app.editor.failures import sentence
-from app.editor.layering.choosing import choose
+from app.editor.error_reports import as_sentence
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind, Puppet
+from app.editor.work import JobKind, LayerRuntime
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
 from app.solving import KeyResolver, start_picture_replacement
 from app.storage import (
@@ -40,31 +40,31 @@ from app.storage import (
     require_memory,
 )
 
-ADDING = Kind("Adding a layer", "The layer cannot be added")
+ADDING = JobKind("Adding a layer", "The layer cannot be added")
 LONGEST = 28  # characters of a name on a button
 
 
-class _Made(NamedTuple):
+class _LoadedLayer(NamedTuple):
     """A layer, its decoded picture, what was done, in words, and the layer as a window has it."""
 
     layer: Layer
     picture: Picture
     notices: tuple[str, ...]
-    puppet: Puppet | None = None
+    layer_runtime: LayerRuntime | None = None
 
 
 @with_project
-def stand_still(session: Session, project: Project, identity: int) -> None:
+def make_still(session: Session, project: Project, identity: int) -> None:
     """Make a layer a still picture, without handles and keys."""
     still = make_still_layer(project.document.layer(identity))
     command = layer_commands.replace_layer(identity, still)
-    editing.edit(session, replace(command, label="Make still"))
+    editing.edit_document(session, replace(command, label="Make still"))
 
 
 @with_project
-def stand_up(session: Session, project: Project, identity: int) -> None:
+def make_posable(session: Session, project: Project, identity: int) -> None:
     """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
-    layer, picture = project.document.layer(identity), project.puppets[identity].picture
+    layer, picture = project.document.layer(identity), project.layer_runtimes[identity].picture
     imported = ImportedLayer(
         name=layer.name, data=layer.picture.data, picture=picture, corner=layer.corner
     )
@@ -75,69 +75,71 @@ def stand_up(session: Session, project: Project, identity: int) -> None:
 
     def done(made: Layer) -> None:
         command = layer_commands.replace_layer(identity, made)
-        editing.edit(session, replace(command, label="Let be posed"))
-        choose(session, identity)
+        editing.edit_document(session, replace(command, label="Let be posed"))
+        set_active_layer(session, identity)
 
-    kind = Kind("Finding a shape", f"{layer.name} cannot be posed")
-    promises.begin(session, project, kind, work, done)
+    kind = JobKind("Finding a shape", f"{layer.name} cannot be posed")
+    pending_changes.begin_pending_change(session, project, kind, work, done)
 
 
-def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _Made:
+def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _LoadedLayer:
     """Return the layer of a layer that can be posed."""
     # Where nothing is transparent, a plain background is taken off first.
     is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())
     made, notices = make_posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
     if made.still:
         raise LissomError(f"there is no shape on it ({'; '.join(notices)})")
-    return _Made(made, imported.picture, (*imported.picture.notices, *notices))
+    return _LoadedLayer(made, imported.picture, (*imported.picture.notices, *notices))
 
 
 def replace_picture(session: Session, identity: int, path: Path) -> None:
     """Let a layer have another picture; its handles, keys and joints stay."""
-    promises.once_settled(session, do(_replace_picture, identity, path), "Replace the picture")
+    pending_changes.run_when_idle(
+        session, do(_replace_picture, identity, path), "Replace the picture"
+    )
 
 
 @with_project
 def _replace_picture(session: Session, project: Project, identity: int, path: Path) -> None:
-    if identity not in project.puppets:
+    if identity not in project.layer_runtimes:
         return
     before, canvas = project.document.layer(identity), project.document.canvas
     scene = project.document.layers
 
-    def work() -> tuple[KeyResolver, _Made]:
+    def work() -> tuple[KeyResolver, _LoadedLayer]:
         data = read_file(path)
         picture = decode_picture(data, path.name)
         _require_room([each for each in scene if each is not before], [picture])
         if before.still:
-            made = _Made(make_still_picture(data, picture), picture, picture.notices)
+            made = _LoadedLayer(make_still_picture(data, picture), picture, picture.notices)
         else:
             imported = ImportedLayer(name=before.name, data=data, picture=picture)
             made = _shape(imported, identity, before.meshing)
         return start_picture_replacement(before, made.layer, canvas), made
 
-    def done(begun: tuple[KeyResolver, _Made]) -> None:
+    def done(begun: tuple[KeyResolver, _LoadedLayer]) -> None:
         renewal, made = begun
         project.drawings.add(path)
         project.pictures[made.layer.picture] = made.picture
-        rebuilding.begin(session, renewal)
+        resolving.begin_solving_keys(session, renewal)
         if renewal.before in project.document.layers:
-            choose(session, identity)
+            set_active_layer(session, identity)
             for notice in made.notices:
-                session.tell(sentence(notice))
+                session.show_notice(as_sentence(notice))
 
-    kind = Kind("Replacing a picture", f"The picture of {before.name} was not replaced")
-    promises.begin(session, project, kind, work, done)
+    kind = JobKind("Replacing a picture", f"The picture of {before.name} was not replaced")
+    pending_changes.begin_pending_change(session, project, kind, work, done)
 
 
 @with_project
-def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
+def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> None:
     """Add pictures, and the layers of drawings, as layers in front of all others."""
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
-    def work() -> tuple[list[_Made], ImportLog, Sequence[Group]]:
+    def work() -> tuple[list[_LoadedLayer], ImportLog, Sequence[Group]]:
         document, summary, told = before, EMPTY_IMPORT_LOG, NoticeCollector()
-        made: list[_Made] = []
+        made: list[_LoadedLayer] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
             _require_room(document.layers, [imported.picture for imported in drawing.layers])
@@ -152,13 +154,13 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
                 )
                 document = layer_commands.add_layer(layer)(document)
                 # Here, and not while the window waits: it takes a tenth of a second.
-                puppet = Puppet.of(clip_of(document, identity), imported.picture)
+                puppet = LayerRuntime.of(clip_of(document, identity), imported.picture)
                 for notice in imported.picture.notices + notices:
                     told.add_note(document.layers[-1].name, notice)
-                made.append(_Made(layer, imported.picture, (), puppet))
+                made.append(_LoadedLayer(layer, imported.picture, (), puppet))
         return made, summary + told.import_log, document.groups[len(before.groups) :]
 
-    def done(read: tuple[list[_Made], ImportLog, Sequence[Group]]) -> None:
+    def done(read: tuple[list[_LoadedLayer], ImportLog, Sequence[Group]]) -> None:
         made, summary, groups = read
         project.drawings.update(paths)
         gesture = object()
@@ -170,12 +172,12 @@ def add(session: Session, project: Project, paths: Sequence[Path]) -> None:
             command = layer_commands.add_layer(replace(layer, id=identity))
             project.history.do(command, gesture=gesture)
             if puppet is not None and identity == layer.id:
-                project.puppets[identity] = puppet
-        editing.follow_layers(project)
-        choose(session, identity)
-        files.tell_of_import(session, project, summary)
+                project.layer_runtimes[identity] = puppet
+        editing.update_layer_runtimes(project)
+        set_active_layer(session, identity)
+        files.show_import_notice(session, project, summary)
 
-    promises.begin(session, project, ADDING, work, done)
+    pending_changes.begin_pending_change(session, project, ADDING, work, done)
 
 
 def _require_room(layers: Iterable[Layer], pictures: Iterable[Picture]) -> None:
@@ -211,38 +213,38 @@ def _drawing(path: Path) -> LayeredPicture:
     return LayeredPicture(size=picture.size, layers=(imported,))
 
 
-def ask(session: Session) -> None:
+def ask_pictures_to_add(session: Session) -> None:
     """Ask for a picture that becomes another layer."""
     suffixes = (*files.PICTURES, *files.LAYERED)
-    session.ask_file("Add a picture as a layer", suffixes, lambda path: do(add, [path]))
+    session.ask_file("Add a picture as a layer", suffixes, lambda path: do(add_layers, [path]))
 
 
 @with_project
-def ask_replace(session: Session, project: Project, identity: int) -> None:
+def ask_replacement_picture(session: Session, project: Project, identity: int) -> None:
     """Ask for a picture that takes the place of a layer's own."""
     title = f"Replace the picture of {project.document.layer(identity).name}"
     session.ask_file(title, files.PICTURES, lambda path: do(replace_picture, identity, path))
 
 
-def point_at(session: Session, identity: int) -> None:
+def set_drop_target(session: Session, identity: int) -> None:
     """Note on which layer's row the pointer is in this frame."""
     session.pointed_layer = identity
 
 
-def drop(session: Session, paths: Sequence[Path]) -> None:
+def drop_files(session: Session, paths: Sequence[Path]) -> None:
     """Open what was dropped on the window; ask whether pictures are to join the open scene."""
     kinds = (*files.PICTURES, *files.LAYERED)
     pictures = [path for path in paths if path.suffix.lower() in kinds and not path.is_dir()]
     project = session.project
     if project is None or not pictures or len(pictures) < len(paths):
-        files.open_dropped(session, paths)
+        files.open_dropped_files(session, paths)
         return
     (first, *others) = pictures
     what = f"{len(pictures)} pictures" if others else first.name
     is_one = not others and not is_layered(first)
     answers: list[tuple[str, Action]] = [
-        ("New layer" if is_one else "New layers", do(add, pictures)),
-        ("New scene", do(files.open_dropped, pictures)),
+        ("New layer" if is_one else "New layers", do(add_layers, pictures)),
+        ("New scene", do(files.open_dropped_files, pictures)),
     ]
     text = "New layers lie in front of the others and share their timeline."
     if is_one:

@@ -11,6 +11,6 @@ from app.editor.poses import (
     copying as copying,
     flipping as flipping,
     library as library,
+    paste_destinations as paste_destinations,
     pasting as pasting,
-    receiving as receiving,
 )

@@ -4,37 +4,39 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from app.document import Clip, Keyframe, Layer, Pose, clip_of, keyed_pose_at, segment_time_at
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.actions import playback, posing
-from app.editor.poses import putting
+from app.editor.poses import pose_insertion
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, CopiedTrack, Session, with_project
 from app.editor.timeline_view import TrackRow, layer_of
-from app.editor.work import Kind
+from app.editor.work import JobKind
 from app.motion import PoseSampler
 from app.solving import Rig, fit_shown_pose
 
-COPYING = Kind("Copying a pose", "The pose could not be copied", "hand")
+COPYING = JobKind("Copying a pose", "The pose could not be copied", "hand")
 KEYS_COPIED = "{count} keys copied."
 
 
 @with_project
-def copy(session: Session, project: Project) -> None:
+def copy_pose_or_keys(session: Session, project: Project) -> None:
     """Copy the pose at the playhead or, in the timeline, the keys that are chosen there.
 
     Where several layers are chosen, those of all of them.
     """
-    if copies_keys(session, project):
+    if is_copying_keys(session, project):
         copy_keys(session)
     elif len(project.selected_layers) > 1:
         _copy_poses(session, project, project.selected_layers)
     else:
         frame = playback.current_frame(session, project)
-        putting.take_pose(session, project, COPYING, partial(_copy, session, frame))
+        pose_insertion.request_pose_at_playhead(
+            session, project, COPYING, partial(_copy, session, frame)
+        )
 
 
 @with_project
-def copy_all(session: Session, project: Project) -> None:
+def copy_all_poses(session: Session, project: Project) -> None:
     """Copy the poses that all layers have at the playhead."""
     _copy_poses(session, project, [layer.id for layer in project.document.layers])
 
@@ -50,9 +52,9 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     known: dict[int, Pose] = {}
     works = {}
     for layer in layers:
-        clip, puppet = clip_of(document, layer.id), project.puppets[layer.id]
+        clip, puppet = clip_of(document, layer.id), project.layer_runtimes[layer.id]
         is_active = layer.id == project.active
-        pose = posing.pose_here(session, project) if is_active else None
+        pose = posing.pose_at_playhead(session, project) if is_active else None
         pose = pose or keyed_pose_at(clip, segment_time_at(clip, frame))
         if pose is None:
             rig = partial(Rig.of, layer, puppet.rig)
@@ -65,28 +67,28 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
         keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in layers]
         session.copied = tuple(CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys)
         session.copied_tracks = ()
-        session.tell(f"Poses of {len(keys)} layers at frame {frame} copied.", topic="copy")
+        session.show_notice(f"Poses of {len(keys)} layers at frame {frame} copied.", topic="copy")
 
     if works:
-        promises.begin(
+        pending_changes.begin_pending_change(
             session, project, COPYING, lambda: {i: work() for i, work in works.items()}, take
         )
     elif layers:
         take({})
     else:
-        session.tell("No layer has a handle or a second key: there are no poses to copy.")
+        session.show_notice("No layer has a handle or a second key: there are no poses to copy.")
 
 
-def copies_keys(session: Session, project: Project) -> bool:
+def is_copying_keys(session: Session, project: Project) -> bool:
     """Tell whether keys would be copied, and not the pose at the playhead."""
-    return session.in_timeline and bool(project.chosen_of)
+    return session.is_timeline_focused and bool(project.selected_keys)
 
 
 @with_project
 def copy_keys(session: Session, project: Project) -> None:
     """Copy the chosen keys; poses on their way come to rest in the copies, too."""
     keys, tracks = [], []
-    for row, at in project.chosen_of.items():
+    for row, at in project.selected_keys.items():
         layer, track = project.document.layer(layer_of(row)), project.track_in(row)
         if isinstance(row, TrackRow) and track is not None:
             taken = tuple(key for key in track.keys if key.frame in at)
@@ -111,6 +113,6 @@ def _take(
     poses = [key.frame for each in copied for key in each.keys]
     first, *more = poses + [key.frame for each in tracks for key in each.keys]
     single = f"Pose at frame {first}" if poses else f"Key of the track at frame {first}"
-    session.tell(
+    session.show_notice(
         KEYS_COPIED.format(count=1 + len(more)) if more else f"{single} copied.", topic="copy"
     )

@@ -2,15 +2,15 @@
 
 from app.document import pose_commands
 from app.editor.poses import pasting
-from app.editor.poses.receiving import landing_on
+from app.editor.poses.paste_destinations import find_paste_destination
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session, with_project
 
 
-def is_fresh(project: Project) -> bool:
+def can_flip_again(project: Project) -> bool:
     """Tell whether what was flipped last is still what the chosen keys hold."""
-    flip = project.flip
-    if flip is None or project.chosen != flip.frames or project.active != flip.layer:
+    flip = project.last_flip
+    if flip is None or project.selected_frames != flip.frames or project.active != flip.layer:
         return False
     return all(
         project.layer.key(frame).pose is pose
@@ -18,30 +18,30 @@ def is_fresh(project: Project) -> bool:
     )
 
 
-def shows_axis(session: Session, project: Project) -> bool:
+def is_mirror_axis_shown(session: Session, project: Project) -> bool:
     """Tell whether the axis is shown: after a flip, and as long as the person wants to see it."""
-    return project.playhead.since is None and (session.overlays.mirror or is_fresh(project))
+    return project.playhead.since is None and (session.overlays.mirror or can_flip_again(project))
 
 
 @with_project
-def move_axis(_: Session, project: Project, x: float | None, gesture: object) -> None:
+def move_mirror_axis(_: Session, project: Project, x: float | None, gesture: object) -> None:
     """Put the axis elsewhere, or in the middle."""
     project.history.do(pose_commands.set_mirror(project.active, x), gesture=gesture)
 
 
 @with_project
-def flip_again(session: Session, project: Project, gesture: object) -> None:
+def flip_pose_again(session: Session, project: Project, gesture: object) -> None:
     """Flip once more what was flipped last, at the axis of now."""
-    flip = project.flip
-    if flip is not None and is_fresh(project):
+    flip = project.last_flip
+    if flip is not None and can_flip_again(project):
         copied = CopiedKeys(project.layer, flip.keys)
-        found = [landing_on(project.document, copied, project.layer, "flipped")]
+        found = [find_paste_destination(project.document, copied, project.layer, "flipped")]
         by = min(flip.frames) - min(key.frame for key in flip.keys)
-        pasting.bring(session, project, found, "flipped", by, gesture=gesture)
+        pasting.paste_poses(session, project, found, "flipped", by, gesture=gesture)
 
 
-def place_axis(session: Session, x: float | None) -> None:
+def set_mirror_axis(session: Session, x: float | None) -> None:
     """Put the axis elsewhere, or in the middle, and flip again what was flipped last."""
     gesture = object()
-    move_axis(session, x, gesture)
-    flip_again(session, gesture)
+    move_mirror_axis(session, x, gesture)
+    flip_pose_again(session, gesture)

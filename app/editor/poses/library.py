@@ -7,28 +7,30 @@ from typing import NamedTuple
 
 from app.document import Keyframe, Layer, LibraryPose, Pose, Target, pose_commands
 from app.editor.actions import editing, playback, posing
-from app.editor.poses import pasting, putting
-from app.editor.poses.receiving import Landing, landing_on
-from app.editor.project import PoseBlend, Project
+from app.editor.poses import pasting, pose_insertion
+from app.editor.poses.paste_destinations import PasteDestination, find_paste_destination
+from app.editor.project import BlendPreview, Project
 from app.editor.session import CopiedKeys, Session, with_project
-from app.editor.work import Kind, Start
+from app.editor.work import DragStart, JobKind
 
-KEEPING = Kind("Keeping a pose", "The pose could not be kept", "hand")
+KEEPING = JobKind("Keeping a pose", "The pose could not be kept", "hand")
 
 
 @with_project
-def keep(session: Session, project: Project) -> None:
+def save_pose_to_library(session: Session, project: Project) -> None:
     """Put the pose at the playhead into the library."""
-    putting.take_pose(session, project, KEEPING, partial(_keep, session, project))
+    pose_insertion.request_pose_at_playhead(
+        session, project, KEEPING, partial(_save_pose, session, project)
+    )
 
 
-def _keep(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
+def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
     if layer.domain is not project.layer.domain:
-        session.tell("The pose was not kept: the shape changed meanwhile.")
+        session.show_notice("The pose was not kept: the shape changed meanwhile.")
         return
     taken = [Keyframe(frame=0, pose=pose)]
-    (key,) = putting.fitted(project, project.active, taken, layer.bounds)
-    editing.edit(session, pose_commands.save_pose(project.active, key.pose))
+    (key,) = pose_insertion.fit_keys_to_layer(project, project.active, taken, layer.bounds)
+    editing.edit_document(session, pose_commands.save_pose(project.active, key.pose))
     project.picked_pose = (project.active, project.layer.library[-1].name)
 
 
@@ -39,7 +41,7 @@ class PoseOffer(NamedTuple):
     kept: LibraryPose
 
 
-def offers(project: Project) -> list[PoseOffer]:
+def list_library_poses(project: Project) -> list[PoseOffer]:
     """Return the poses of the layer's own library, then those of others with its handles' names.
 
     They come to it as they do by pasting.
@@ -49,48 +51,56 @@ def offers(project: Project) -> list[PoseOffer]:
     return [
         PoseOffer(each, kept)
         for each in layers
-        if each.library and not _landing(project, PoseOffer(each, each.library[0])).hindrance
+        if each.library
+        and not _paste_destination(project, PoseOffer(each, each.library[0])).disabled_reason
         for kept in each.library
     ]
 
 
 @with_project
-def apply(session: Session, project: Project, name: str, owner: int | None = None) -> None:
+def apply_library_pose(
+    session: Session, project: Project, name: str, owner: int | None = None
+) -> None:
     """Put a pose of a library into a key at the present frame; by default the layer's own."""
-    _put(session, project, _offer(project, name, owner), putting.stand_at_frame(session, project))
+    _put(
+        session,
+        project,
+        _find_library_pose(project, name, owner),
+        pose_insertion.stop_and_get_frame(session, project),
+    )
 
 
 @with_project
-def apply_at(
+def apply_library_pose_at(
     session: Session, project: Project, name: str, frame: int, owner: int | None = None
 ) -> None:
     """Put a pose of a library into a key at a frame, and go there."""
-    putting.stand_at_frame(session, project)
-    _put(session, project, _offer(project, name, owner), frame)
+    pose_insertion.stop_and_get_frame(session, project)
+    _put(session, project, _find_library_pose(project, name, owner), frame)
     playback.seek(session, frame)
 
 
-def _offer(project: Project, name: str, owner: int | None) -> PoseOffer:
+def _find_library_pose(project: Project, name: str, owner: int | None) -> PoseOffer:
     layer = project.layer if owner is None else project.document.layer(owner)
     return PoseOffer(layer, layer.library_pose(name))
 
 
-def _landing(project: Project, offer: PoseOffer) -> Landing:
+def _paste_destination(project: Project, offer: PoseOffer) -> PasteDestination:
     copied = CopiedKeys(offer.owner, (Keyframe(frame=0, pose=offer.kept.pose),))
-    return landing_on(project.document, copied, project.layer, "as it is")
+    return find_paste_destination(project.document, copied, project.layer, "as it is")
 
 
 def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> None:
-    landing = _landing(project, offer)
-    if landing.hindrance:
-        session.tell(landing.hindrance)
+    landing = _paste_destination(project, offer)
+    if landing.disabled_reason:
+        session.show_notice(landing.disabled_reason)
         return
     project.picked_pose = (offer.owner.id, offer.kept.name)
-    pasting.bring(session, project, [landing], "as it is", frame, label="Use pose")
+    pasting.paste_poses(session, project, [landing], "as it is", frame, label="Use pose")
 
 
 @with_project
-def blend(
+def blend_library_pose(
     session: Session, project: Project, name: str, share: float, owner: int | None = None
 ) -> None:
     """Mix a pose of a library into the one that is shown, as it was when this began.
@@ -104,32 +114,34 @@ def blend(
     owner : int, optional
         Whose pose it is; by default the layer's own.
     """
-    offer = _offer(project, name, owner)
-    begun = project.blend
+    offer = _find_library_pose(project, name, owner)
+    begun = project.blend_preview
     if begun is None or (begun.name, begun.owner) != (name, offer.owner.id):
-        project.blend = begun = PoseBlend(name=name, owner=offer.owner.id, gesture=object())
-    project.blend = replace(begun, share=share)
-    wishes = pasting.wishes_of(project, _landing(project, offer), "as it is")
+        project.blend_preview = begun = BlendPreview(
+            name=name, owner=offer.owner.id, gesture=object()
+        )
+    project.blend_preview = replace(begun, share=share)
+    wishes = pasting.pasted_targets(project, _paste_destination(project, offer), "as it is")
 
-    def mix(start: Start, _: Mapping[int, Target]) -> Mapping[int, Target]:
+    def mix(start: DragStart, _: Mapping[int, Target]) -> Mapping[int, Target]:
         return {
             identity: _between(start.targets[identity], target, share)
             for identity, target in wishes.items()
             if identity in start.targets
         }
 
-    posing.pull(session, mix, gesture=begun.gesture)
+    posing.drag_handles(session, mix, gesture=begun.gesture)
 
 
 @with_project
-def end_blend(session: Session, project: Project) -> None:
+def end_pose_blend(session: Session, project: Project) -> None:
     """Let the pose be as it is mixed now; wholly mixed in, it is that of the library itself."""
-    blend, project.blend = project.blend, None
-    posing.let_go(session)
+    blend, project.blend_preview = project.blend_preview, None
+    posing.release_drag(session)
     if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
-        for pull in [pull for pull in project.pulls if blend.gesture in pull.wishes]:
+        for pull in [pull for pull in project.pulls if blend.gesture in pull.target_changes]:
             pose = project.document.layer(pull.layer).library_pose(blend.name).pose
-            posing.end_at(session, project, pull, pose)
+            posing.end_drag_at(session, project, pull, pose)
 
 
 def _between(one: Target, other: Target, share: float) -> Target:
@@ -142,12 +154,12 @@ def _between(one: Target, other: Target, share: float) -> Target:
 
 
 @with_project
-def rename(session: Session, project: Project, name: str, to: str) -> None:
+def rename_library_pose(session: Session, project: Project, name: str, to: str) -> None:
     """Give a pose of the library another name."""
     editing.edit_layer(session, pose_commands.rename_pose, name, to)
     project.picked_pose = (project.active, to)
 
 
-def delete(session: Session, name: str) -> None:
+def delete_library_pose(session: Session, name: str) -> None:
     """Take a pose out of the library; keys that were made of it stay."""
     editing.edit_layer(session, pose_commands.delete_pose, name)

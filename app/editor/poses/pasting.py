@@ -12,87 +12,92 @@ from app.document import (
     parse_pairs,
     scene_commands,
 )
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import editing, playback, posing
-from app.editor.poses import putting
-from app.editor.poses.pasting_tracks import paste_track, tracks_here
-from app.editor.poses.receiving import (
-    Landing,
-    PasteWay,
-    hindrance,
-    landing_here,
-    landings,
-    left_out,
+from app.editor.poses import pose_insertion
+from app.editor.poses.paste_destinations import (
+    PasteDestination,
+    PasteMode,
+    find_active_paste_destination,
+    find_paste_destinations,
+    paste_keys_disabled_reason,
+    skipped_layers_reasons,
 )
-from app.editor.project import Flip, Project
+from app.editor.poses.pasting_tracks import paste_track, pasteable_tracks
+from app.editor.project import LastFlip, Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import seen_at
-from app.editor.work import Kind
+from app.editor.timeline_view import display_frame
+from app.editor.work import JobKind
 from app.solving import Rig, fit_shown_pose, flip_poses, flip_targets
 
-LABELS: Mapping[PasteWay, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
-CARRYING = Kind("Pasting", "The poses could not be pasted", "hand")
-FLIPPING = Kind("Flipping", "The pose could not be flipped", "hand")
+LABELS: Mapping[PasteMode, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
+PASTING = JobKind("Pasting", "The poses could not be pasted", "hand")
+FLIPPING = JobKind("Flipping", "The pose could not be flipped", "hand")
 NOT_PASTED = "The pose was not pasted: a layer, its shape or its handles changed. Paste again."
 
 
-def why_not(session: Session, project: Project, way: PasteWay) -> str:
+def paste_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
     """Return in a sentence why nothing that was copied can be pasted; empty where it can."""
-    tracks = tracks_here(session, project, way)
-    return "" if tracks else hindrance(session, project, way)
+    tracks = pasteable_tracks(session, project, way)
+    return "" if tracks else paste_keys_disabled_reason(session, project, way)
 
 
-def why_not_on_selected(session: Session, project: Project, way: PasteWay) -> str:
+def paste_on_selected_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
     """Return in a sentence why the selected handles can take nothing over; empty where they can."""
-    landing = landing_here(session, project, way)
+    landing = find_active_paste_destination(session, project, way)
     if landing is None:
-        return hindrance(session, project, way) or "Choose a layer first that was copied."
-    if not project.selected:
+        return (
+            paste_keys_disabled_reason(session, project, way)
+            or "Choose a layer first that was copied."
+        )
+    if not project.selected_handles:
         return "Select the handles first that are to take it over."
-    return landing.hindrance
+    return landing.disabled_reason
 
 
 @with_project
-def paste(session: Session, project: Project, way: PasteWay = "as it is") -> None:
+def paste_copied(session: Session, project: Project, way: PasteMode = "as it is") -> None:
     """Put what was copied into a key at the present frame: of several keys, the first one."""
-    frame = putting.stand_at_frame(session, project)
-    promises.once_settled(session, do(_paste, frame, way), LABELS.get(way, "Paste"))
+    frame = pose_insertion.stop_and_get_frame(session, project)
+    pending_changes.run_when_idle(session, do(_paste, frame, way), LABELS.get(way, "Paste"))
 
 
 @with_project
-def _paste(session: Session, project: Project, frame: int, way: PasteWay) -> None:
-    if why_not(session, project, way):
+def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> None:
+    if paste_disabled_reason(session, project, way):
         return
-    tracks = tracks_here(session, project, way)
-    found = [each for each in landings(session, project, way) if each.copied.keys]
+    tracks = pasteable_tracks(session, project, way)
+    found = [each for each in find_paste_destinations(session, project, way) if each.copied.keys]
     starts = [key.frame for each in found for key in each.copied.keys]
-    starts += [seen_at(project.document, c.track, k.frame) for c in tracks.values() for k in c.keys]
+    starts += [
+        display_frame(project.document, c.track, k.frame) for c in tracks.values() for k in c.keys
+    ]
     by, gesture = frame - min(starts), object()
-    told = left_out(session, project, way)
+    told = skipped_layers_reasons(session, project, way)
 
     def then() -> None:
         for row, each in tracks.items():
             paste_track(session, project, row, each, by, gesture)
         for reason in told:
-            session.tell(reason)
+            session.show_notice(reason)
         names = [each.layer.name for each in found]
         if any(each.layer.id != project.active for each in found):
             whose = f"{len(names)} layers" if len(names) > 1 else names[0]
-            session.tell(f"Pasted onto {whose}.", topic="paste")
+            session.show_notice(f"Pasted onto {whose}.", topic="paste")
 
-    project.chosen_of = {}
+    project.selected_keys = {}
     if found:
-        bring(session, project, found, way, by, gesture=gesture, then=then)
+        paste_poses(session, project, found, way, by, gesture=gesture, then=then)
     else:
         then()
 
 
-def bring(
+def paste_poses(
     session: Session,
     project: Project,
-    found: Sequence[Landing],
-    way: PasteWay,
+    found: Sequence[PasteDestination],
+    way: PasteMode,
     by: int,
     *,
     label: str | None = None,
@@ -105,7 +110,7 @@ def bring(
 
     Parameters
     ----------
-    found : sequence of Landing
+    found : sequence of PasteDestination
     way : str
     by : int
     label : str, optional
@@ -127,44 +132,50 @@ def bring(
     def put(solved: Mapping[int, Sequence[Keyframe]]) -> None:
         everything = {each.layer.id: {**keys, **solved}[each.layer.id] for each in found}
         poses = {each.layer.id for each in found if each.copied.is_pose}
-        putting.put(session, project, frame, everything, poses=poses, label=label, gesture=gesture)
+        pose_insertion.insert_poses(
+            session, project, frame, everything, poses=poses, label=label, gesture=gesture
+        )
         if way == "flipped" and len(found) == 1 and found[0].is_own:
             _note_flip(project, found[0], everything[found[0].layer.id])
         then()
 
     def done(solved: Mapping[int, Sequence[Keyframe]]) -> None:
         if not all(_is_as_it_was(project, each) for each in found):
-            session.tell(NOT_PASTED)
+            session.show_notice(NOT_PASTED)
             return
         put(solved)
         if playback.current_frame(session, project) != frame:
             playback.seek(session, frame)
 
     if works:
-        kind = FLIPPING if way == "flipped" else CARRYING
-        promises.begin(
+        kind = FLIPPING if way == "flipped" else PASTING
+        pending_changes.begin_pending_change(
             session, project, kind, lambda: {i: work() for i, work in works.items()}, done
         )
     else:
         put({})
 
 
-def set_pairs(session: Session, text: str) -> None:
+def set_mirror_names(session: Session, text: str) -> None:
     """Set which words, or whole names, tell layers and handles of the two sides apart."""
-    editing.edit(session, scene_commands.set_mirror_names(parse_pairs(text)))
+    editing.edit_document(session, scene_commands.set_mirror_names(parse_pairs(text)))
 
 
 @with_project
-def paste_on_selected(session: Session, project: Project, way: PasteWay = "as it is") -> None:
+def paste_on_selected(session: Session, project: Project, way: PasteMode = "as it is") -> None:
     """Let the selected handles go where they, or their partners, were, and the shape follow."""
-    if not why_not_on_selected(session, project, way):
-        landing = landing_here(session, project, way)
+    if not paste_on_selected_disabled_reason(session, project, way):
+        landing = find_active_paste_destination(session, project, way)
         if landing is not None:
-            wishes = wishes_of(project, landing, way)
-            posing.wish(session, {i: wishes[i] for i in project.selected if i in wishes})
+            wishes = pasted_targets(project, landing, way)
+            posing.set_targets(
+                session, {i: wishes[i] for i in project.selected_handles if i in wishes}
+            )
 
 
-def wishes_of(project: Project, landing: Landing, way: PasteWay) -> Mapping[int, Target]:
+def pasted_targets(
+    project: Project, landing: PasteDestination, way: PasteMode
+) -> Mapping[int, Target]:
     """Return where a layer's handles are wanted by the first of some keys, by their ids."""
     if landing.is_own:
         pose, layer = _fitted(project, landing)[0].pose, landing.layer
@@ -172,10 +183,10 @@ def wishes_of(project: Project, landing: Landing, way: PasteWay) -> Mapping[int,
             return flip_targets(layer, pose, layer.axis, project.document.pairs)
         if landing.is_direct(way):
             return pose.targets
-    return landing.carriage(way).transfer_targets(landing.layer, landing.copied.keys[0].pose)
+    return landing.pose_transfer(way).transfer_targets(landing.layer, landing.copied.keys[0].pose)
 
 
-def _is_as_it_was(project: Project, landing: Landing) -> bool:
+def _is_as_it_was(project: Project, landing: PasteDestination) -> bool:
     """Tell whether a layer still has the shape and the handles that poses were solved for."""
     was = landing.layer
     return any(
@@ -184,16 +195,18 @@ def _is_as_it_was(project: Project, landing: Landing) -> bool:
     )
 
 
-def _fitted(project: Project, landing: Landing) -> list[Keyframe]:
+def _fitted(project: Project, landing: PasteDestination) -> list[Keyframe]:
     copied = landing.copied
-    return putting.fitted(project, landing.layer.id, copied.keys, copied.layer.bounds)
+    return pose_insertion.fit_keys_to_layer(
+        project, landing.layer.id, copied.keys, copied.layer.bounds
+    )
 
 
 def _solving(
-    project: Project, landing: Landing, way: PasteWay, by: int
+    project: Project, landing: PasteDestination, way: PasteMode, by: int
 ) -> Callable[[], Sequence[Keyframe]]:
     """Return what solves the poses for a layer, on the worker's thread."""
-    layer, puppet = landing.layer, project.puppets[landing.layer.id]
+    layer, puppet = landing.layer, project.layer_runtimes[landing.layer.id]
     earlier, sibling = puppet.rig, puppet.store.sampler
     if landing.is_own and way == "flipped":
         keys, pairs = _fitted(project, landing), project.document.pairs
@@ -209,7 +222,7 @@ def _solving(
             ]
 
         return flip
-    carriage, clip = landing.carriage(way), clip_of(project.document, layer.id)
+    carriage, clip = landing.pose_transfer(way), clip_of(project.document, layer.id)
     turns = -1 if carriage.similarity.mirrors else 1
     # What is in front is not what moves: within one layer it stays where it is.
     fronts = {handle.id: handle.id for handle in layer.handles}
@@ -234,12 +247,12 @@ def _carried(key: Keyframe, fronts: Mapping[int, int], *, turns: int, pose: Pose
     return replace(key, pose=pose, revolutions=turns * key.revolutions, depths=known)
 
 
-def _note_flip(project: Project, landing: Landing, flipped: Sequence[Keyframe]) -> None:
+def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Keyframe]) -> None:
     """Note what was flipped, so that it is flipped again where the axis is moved."""
     layer = landing.layer.id
-    project.flip = Flip(
+    project.last_flip = LastFlip(
         layer=layer,
         keys=tuple(_fitted(project, landing)),
-        frames=project.chosen_of.get(layer, frozenset()),
+        frames=project.selected_keys.get(layer, frozenset()),
         poses=tuple(key.pose for key in flipped),
     )

@@ -4,38 +4,38 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from app.document import Track, track_commands
-from app.editor.poses.receiving import Landing, PasteWay, landings
+from app.editor.poses.paste_destinations import PasteDestination, PasteMode, find_paste_destinations
 from app.editor.project import Project
 from app.editor.session import CopiedTrack, Session
 from app.editor.timeline_view import TrackRow
 
 
-def tracks_here(
-    session: Session, project: Project, way: PasteWay
+def pasteable_tracks(
+    session: Session, project: Project, way: PasteMode
 ) -> Mapping[TrackRow, CopiedTrack]:
     """Return what was copied of each track, by the row on which it can be pasted.
 
     Keys of one track go to that which is chosen; else they go with those of poses, by names.
     """
-    copied, chosen = session.copied_tracks, project.chosen_track
+    copied, chosen = session.copied_tracks, project.selected_track
     if way == "as it is" and len(copied) == 1 and chosen is not None:
         return {TrackRow(project.active, chosen): copied[0]}
     carried = {}
-    for landing in landings(session, project, way):
+    for landing in find_paste_destinations(session, project, way):
         ours = {other: identity for identity, other in landing.pairs.items()}
         for each in copied:
             handles = tuple(ours[each_id] for each_id in each.track.handles if each_id in ours)
             if each.layer.id == landing.copied.layer.id and each.track.handles[0] in ours:
-                track = _carried_track(landing, each, way, handles)
+                track = _transferred_track(landing, each, way, handles)
                 carried[TrackRow(landing.layer.id, handles[0])] = track
     return carried
 
 
-def _carried_track(
-    landing: Landing, copied: CopiedTrack, way: PasteWay, handles: tuple[int, ...]
+def _transferred_track(
+    landing: PasteDestination, copied: CopiedTrack, way: PasteMode, handles: tuple[int, ...]
 ) -> CopiedTrack:
     """Return a track that was copied as one of a layer's handles."""
-    likeness = landing.carriage(way).similarity
+    likeness = landing.pose_transfer(way).similarity
     old = landing.copied.layer.handle(copied.track.handles[0]).position
     new = landing.layer.handle(handles[0]).position
     # Beside the pose ways count, and in the picture places, with what the handle is beside them.
@@ -65,7 +65,7 @@ def paste_track(
     layer = project.document.layer(row.layer)
     track, name = layer.track_of(row.handle), layer.handle(row.handle).name
     if track is not None and track.is_scene_space != copied.track.is_scene_space:
-        session.tell(
+        session.show_notice(
             f"The keys that were copied are {_kind(copied.track)}, those of {name} are "
             f"{_kind(track)}. Set both alike in the Handle tab, then copy again."
         )
@@ -73,7 +73,7 @@ def paste_track(
     by += copied.track.delay - (0 if track is None else track.delay)
     keys = tuple(replace(key, frame=key.frame + by) for key in copied.keys)
     if keys[0].frame < 0:
-        session.tell(f"The track of {name} is too late for a key at this frame.")
+        session.show_notice(f"The track of {name} is too late for a key at this frame.")
         return
     if track is None:
         handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
@@ -83,7 +83,10 @@ def paste_track(
         command = track_commands.put_track_keys(*row, keys)
     project.history.do(command, gesture=gesture)
     frames = frozenset(key.frame for key in keys)
-    project.selected, project.chosen_of = frozenset(), {**project.chosen_of, row: frames}
+    project.selected_handles, project.selected_keys = (
+        frozenset(),
+        {**project.selected_keys, row: frames},
+    )
 
 
 def _kind(track: Track) -> str:

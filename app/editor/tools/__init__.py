@@ -5,8 +5,8 @@ Out: a session that the tool in hand has changed, and that forgets it where it i
 Imports: `app.editor.actions`.
 """
 
-from app.editor.tools import moving as moving, pointing as pointing
-from app.editor.tools.brushes import pointed as pointed
-from app.editor.tools.entry import ERASE as ERASE
+from app.editor.tools import move_tool as move_tool, tool_pointer as tool_pointer
+from app.editor.tools.edit_tools import find_joint_near as find_joint_near
+from app.editor.tools.numeric_entry import ERASE as ERASE
 from app.editor.tools.table import TOOLS as TOOLS, tools_of as tools_of
-from app.editor.tools.tool import Spot as Spot
+from app.editor.tools.tool import PointerHit as PointerHit

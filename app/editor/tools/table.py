@@ -3,46 +3,46 @@
 from typing import Final
 
 from app.editor.session import Session
-from app.editor.tools.anchoring import Anchoring
-from app.editor.tools.brushes import (
-    Boning,
-    Brushing,
-    Jointing,
-    Parting,
-    Pointing,
-    Stiffening,
+from app.editor.tools.anchor_tool import AnchorTool
+from app.editor.tools.attach_tool import AttachTool
+from app.editor.tools.edit_tools import (
+    BoneTool,
+    CutBrushTool,
+    CutClickTool,
+    JointTool,
+    KnifeTool,
+    StiffnessBrushTool,
 )
-from app.editor.tools.joining import Joining
-from app.editor.tools.mirroring import Mirroring
-from app.editor.tools.moving import Moving
-from app.editor.tools.pulling import Pulling
-from app.editor.tools.selecting import Choosing, Selecting
+from app.editor.tools.mirror_axis_tool import MirrorAxisTool
+from app.editor.tools.move_tool import Moving
+from app.editor.tools.pose_tool import PoseTool
+from app.editor.tools.rotate_tool import RotateTool
+from app.editor.tools.select_tools import PickLayerTool, SelectTool
 from app.editor.tools.tool import Tool
-from app.editor.tools.turning import Turning
 
-CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (Brushing, Parting, Pointing)
-MATERIAL_TOOLS: Final[tuple[type[Tool], ...]] = (Stiffening, Boning)
-JOINT_TOOLS: Final[tuple[type[Tool], ...]] = (Jointing,)
-MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (Mirroring, Moving, Anchoring)
+CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (CutBrushTool, KnifeTool, CutClickTool)
+STIFFNESS_TOOLS: Final[tuple[type[Tool], ...]] = (StiffnessBrushTool, BoneTool)
+JOINT_TOOLS: Final[tuple[type[Tool], ...]] = (JointTool,)
+MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (MirrorAxisTool, Moving, AnchorTool)
 # A press is for the first that takes it; hints are told in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
-    Mirroring,
+    MirrorAxisTool,
     Moving,
-    Joining,
-    Choosing,
-    Pulling,
-    Turning,
-    Anchoring,
-    Selecting,
+    AttachTool,
+    PickLayerTool,
+    PoseTool,
+    RotateTool,
+    AnchorTool,
+    SelectTool,
 )
 
 
 def tools_of(session: Session) -> tuple[type[Tool], ...]:
     """Return the tools of what the person does now: cut out, give a motion, move, or pose."""
-    if session.project is not None and session.project.draft is not None:
+    if session.project is not None and session.project.motion_setup is not None:
         return JOINT_TOOLS
     if session.cutting is not None:
         return CUTTING_TOOLS
     if session.material is not None:
-        return MATERIAL_TOOLS
+        return STIFFNESS_TOOLS
     return MOVING_TOOLS if session.moves else TOOLS

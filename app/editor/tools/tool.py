@@ -9,11 +9,11 @@ import numpy as np
 from app.editor.actions import editing
 from app.editor.project import Project
 from app.editor.session import CLICK, Hint, Mark, Session
-from app.editor.timeline_view import KeysOf
+from app.editor.timeline_view import KeysByRow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Spot:
+class PointerHit:
     """Where the pointer is, and what is under it."""
 
     place: complex  # in the plane
@@ -32,11 +32,11 @@ class Spot:
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class SelectionSnapshot:
     """What was selected when a gesture began."""
 
     handles: frozenset[int]
-    keys: KeysOf
+    keys: KeysByRow
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -50,24 +50,24 @@ class Tool(ABC):
 
     Attributes
     ----------
-    before : Selection
+    before : SelectionSnapshot
     """
 
     project: Project
-    before: Selection = field(init=False)
+    before: SelectionSnapshot = field(init=False)
 
     def __post_init__(self) -> None:
         """Keep what is selected."""
-        self.before = Selection(self.project.selected, self.project.chosen_of)
+        self.before = SelectionSnapshot(self.project.selected_handles, self.project.selected_keys)
 
     @classmethod
     @abstractmethod
-    def hints(cls, session: Session, project: Project, spot: Spot) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         """Return what it would do at a spot, in words."""
 
     @classmethod
     @abstractmethod
-    def press(cls, session: Session, project: Project, spot: Spot) -> Self | None:
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
         """Begin at a spot; None where it is for another tool."""
 
     def move(self, session: Session, place: complex) -> None:  # noqa: B027 - not every tool cares
@@ -81,16 +81,19 @@ class Tool(ABC):
 
     def cancel(self, session: Session) -> None:
         """Undo what it did to the document and to the selection."""
-        self.project.selected, self.project.chosen_of = self.before.handles, self.before.keys
-        editing.take_back(session, self)
+        self.project.selected_handles, self.project.selected_keys = (
+            self.before.handles,
+            self.before.keys,
+        )
+        editing.revert_gesture(session, self)
 
     @property
-    def marks(self) -> tuple[Mark, ...]:
+    def tool_overlays(self) -> tuple[Mark, ...]:
         """What is drawn of it over the picture."""
         return ()
 
     @property
-    def ways(self) -> tuple[Hint, ...]:
+    def active_hints(self) -> tuple[Hint, ...]:
         """What can be done until it ends."""
         return ()
 
@@ -99,7 +102,7 @@ class Tool(ABC):
         return abs(place - start) * self.project.view(session.screen).scale > CLICK
 
 
-def on_scene(project: Project, place: complex) -> complex:
+def to_scene(project: Project, place: complex) -> complex:
     """Return where a place of the layer that is posed, by itself, is in the scene."""
-    shown = project.puppet.shown
-    return place if shown is None else complex(shown.placement.on(np.array([place]))[0])
+    shown = project.layer_runtime.shown
+    return place if shown is None else complex(shown.placement.apply(np.array([place]))[0])

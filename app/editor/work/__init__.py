@@ -5,21 +5,28 @@ Out: their results, on the main thread; promises of what will change the documen
 Imports: `app.document`, `app.solving`, `app.editor.action`.
 """
 
-from app.editor.work.carry import Carry as Carry, Sample as Sample, Take as Take
 from app.editor.work.derived import Derived as Derived
-from app.editor.work.jobs import Job as Job, Jobs as Jobs, Kind as Kind
-from app.editor.work.motion_draft import (
-    MotionDraft as MotionDraft,
-    MotionErrand as MotionErrand,
+from app.editor.work.jobs import Job as Job, JobKind as JobKind, Jobs as Jobs
+from app.editor.work.layer_runtime import (
+    ComparisonRuntime as ComparisonRuntime,
+    LayerRuntime as LayerRuntime,
+)
+from app.editor.work.motion_setup import (
+    MotionJob as MotionJob,
+    MotionSetup as MotionSetup,
 )
 from app.editor.work.promise import Afterwards as Afterwards, Promise as Promise
 from app.editor.work.pull import (
     MOST_STEPS as MOST_STEPS,
+    DragStart as DragStart,
     Pull as Pull,
-    Start as Start,
-    WishFrom as WishFrom,
-    pulled_by as pulled_by,
-    targets_of as targets_of,
-    wherever as wherever,
+    TargetChange as TargetChange,
+    absolute_targets as absolute_targets,
+    combine_targets as combine_targets,
+    find_changed_handles as find_changed_handles,
 )
-from app.editor.work.puppet import Puppet as Puppet, Twin as Twin
+from app.editor.work.track_drag import (
+    RecordedSample as RecordedSample,
+    Recording as Recording,
+    TrackDrag as TrackDrag,
+)

@@ -22,7 +22,7 @@ MOMENT = 0.5  # seconds that it waits for what was given up
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class JobKind:
     """What a job is for."""
 
     label: str  # in words that the status bar can show
@@ -36,7 +36,7 @@ class Kind:
 class Job:
     """A pure computation on frozen input, and what is done with its result."""
 
-    kind: Kind
+    kind: JobKind
     work: Callable[[], Any]  # runs on a worker thread; touches nothing mutable and no GL
     done: Callable[[Any], None]  # takes the result, on the main thread
     failed: Callable[[Exception], None]  # takes the exception that ended `work`, on the main thread
@@ -57,10 +57,10 @@ class _Lane:
 class _Hold:
     """Kinds of which no job begins, all of them where none is named, but for the first few."""
 
-    kinds: frozenset[Kind]
+    kinds: frozenset[JobKind]
     first: int
 
-    def holds(self, kind: Kind) -> bool:
+    def holds(self, kind: JobKind) -> bool:
         return not self.kinds or kind in self.kinds
 
 
@@ -84,7 +84,7 @@ class Jobs:
         self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
-        self._finished: list[tuple[Kind, Callable[[], None]]] = []
+        self._finished: list[tuple[JobKind, Callable[[], None]]] = []
         self._is_closed = False
         # The end of the program takes BLAS away, and a thread that is in it crashes.
         atexit.register(self.close)
@@ -105,7 +105,7 @@ class Jobs:
             self._condition.notify_all()
 
     @contextmanager
-    def held(self, *kinds: Kind, first: int = 0) -> Iterator[None]:
+    def held(self, *kinds: JobKind, first: int = 0) -> Iterator[None]:
         """Let no job of these kinds begin within the block, or of any kind where none is given.
 
         A job that is held waits, and others of its lane begin before it. The first few begin all
@@ -122,12 +122,12 @@ class Jobs:
                 self._holds.remove(hold)
                 self._condition.notify_all()
 
-    def drop(self, kind: Kind) -> None:
+    def drop(self, kind: JobKind) -> None:
         """Make an unfinished job of this kind stale."""
         with self._condition:
             self._forget(kind)
 
-    def leave(self, kind: Kind) -> None:
+    def abandon(self, kind: JobKind) -> None:
         """Give up a job of this kind that may never end; what waits behind it goes on elsewhere.
 
         Its result is thrown away, and it has failed as far as anybody is told. One that tells how
@@ -152,7 +152,7 @@ class Jobs:
                     self._staff(name)
 
     @property
-    def kinds(self) -> tuple[Kind, ...]:
+    def kinds(self) -> tuple[JobKind, ...]:
         """The kinds that are unfinished: first what is finished already, last what still waits."""
         with self._condition:
             running = [
@@ -169,12 +169,12 @@ class Jobs:
         return self._is_closed
 
     @property
-    def given_up(self) -> int:
+    def abandoned_count(self) -> int:
         """How many jobs that were given up still run."""
         with self._condition:
             return sum(lane.thread is not None and lane.thread.is_alive() for lane in self._left)
 
-    def running_for(self, seconds: float) -> tuple[Kind, ...]:
+    def running_for(self, seconds: float) -> tuple[JobKind, ...]:
         """Return the kinds of jobs that run since so many seconds or more.
 
         Stale ones are among them where others wait for them to end.
@@ -189,7 +189,7 @@ class Jobs:
                 and (not lane.is_stale or self._is_waiting(name))
             )
 
-    def share_of(self, kind: Kind) -> float | None:
+    def share_of(self, kind: JobKind) -> float | None:
         """Return how much of a job that runs is done, from 0 to 1; None where it does not tell."""
         with self._condition:
             for lane in self._lanes.values():
@@ -210,7 +210,7 @@ class Jobs:
             self.delivered += 1
             hand_over()
 
-    def settle(self, timeout: float = 60.0) -> bool:
+    def wait_until_idle(self, timeout: float = 60.0) -> bool:
         """Wait until all that is not held is to be delivered; return whether that came in time."""
         with self._condition:
             return self._condition.wait_for(
@@ -266,7 +266,7 @@ class Jobs:
         """Tell whether a job waits for a lane."""
         return any(job.kind.lane == name for job in self._waiting)
 
-    def _forget(self, kind: Kind) -> None:
+    def _forget(self, kind: JobKind) -> None:
         self._waiting = [job for job in self._waiting if job.kind != kind]
         self._finished = [done for done in self._finished if done[0] != kind]
         for lane in self._lanes.values():

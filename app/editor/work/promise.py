@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import inf
 
 from app.editor.action import Action
-from app.editor.work.motion_draft import MotionErrand
+from app.editor.work.motion_setup import MotionJob
 from app.solving import KeyResolver
 
 
@@ -14,8 +14,8 @@ class Promise:
 
     label: str  # what comes, in words that the status bar can show
     changes: bool = True  # whether it changes the document when it comes; a save does not
-    renewal: KeyResolver | None = None  # keys that are being solved again, and how far that is
-    errand: MotionErrand | None = None  # a motion on its way, and how far that is
+    key_resolver: KeyResolver | None = None  # keys that are being solved again, and how far that is
+    motion_job: MotionJob | None = None  # a motion on its way, and how far that is
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

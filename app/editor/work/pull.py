@@ -10,7 +10,7 @@ from app.document import Clip, Document, History, Layer, Pose, PoseReplacement, 
 from app.editor.work.derived import Derived
 from app.editor.work.promise import Promise
 from app.solving import DragSolver
-from engine.deform import Hand
+from engine.deform import BoundedPull
 
 # Newton steps towards one wish; a drag comes to rest in far fewer.
 MOST_STEPS = 600
@@ -18,7 +18,7 @@ ROUNDING = 1e-9  # pixels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Start:
+class DragStart:
     """A pose as a pull begins with it, by the ids of the layer's handles.
 
     Parameters
@@ -32,11 +32,11 @@ class Start:
     """
 
     places: Mapping[int, complex]
-    turns: Mapping[int, float]
+    angles: Mapping[int, float]
     targets: Mapping[int, Target]
 
     @classmethod
-    def of(cls, layer: Layer, pose: Pose) -> "Start":
+    def of(cls, layer: Layer, pose: Pose) -> "DragStart":
         """Return the start that a pose of a layer is."""
         f, identities = layer.map_of(pose), [handle.id for handle in layer.handles]
         at = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
@@ -50,14 +50,14 @@ class Start:
         places: Mapping[int, complex],
         turns: Mapping[int, float],
         targets: Mapping[int, Target],
-    ) -> "Start":
+    ) -> "DragStart":
         """Return the start with handles at some places, wanted there unless a target says else."""
         wanted = {i: targets.get(i) or Target(position=places[i]) for i in places}
-        return cls(places=places, turns=turns, targets=wanted)
+        return cls(places=places, angles=turns, targets=wanted)
 
 
 # Returns where handles are wished, of a pull's start and of what was wished of it before.
-WishFrom = Callable[[Start, Mapping[int, Target]], Mapping[int, Target]]
+TargetChange = Callable[[DragStart, Mapping[int, Target]], Mapping[int, Target]]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -76,13 +76,13 @@ class Pull(Promise):
         Where the pose belongs now: it moves with its key.
     gesture : object
         What is one step of undo together.
-    start : Start, optional
+    start : DragStart, optional
         None as long as the in-between that it begins with is not worked out.
     before : Pose, optional
         The one that the key or the frame had; None for a new key.
     is_keyed : bool
         Whether a key has the pose, as the person wanted when it began.
-    wishes : dict of object to WishFrom
+    wishes : dict of object to TargetChange
         By the gestures that they are of, in order; each knows what was wished before it.
     hands : dict of object to Hand
         By the gestures that pull handles, told by their ids, until the pose has come to rest.
@@ -101,7 +101,7 @@ class Pull(Promise):
         Whether the hand still pulls.
     drag : DragSolver, optional
         Where the solver is; None until its first steps are done.
-    solved : tuple of mapping of int to Target and tuple of Hand, optional
+    solved : tuple of mapping of int to Target and tuple of BoundedPull, optional
         The targets that these steps were towards, and the hands that pulled.
     steps : int
         Newton steps towards the present targets.
@@ -125,19 +125,19 @@ class Pull(Promise):
     clip: Clip
     frame: int
     gesture: object
-    start: Start | None
+    start: DragStart | None
     before: Pose | None
     is_keyed: bool
-    wishes: dict[object, WishFrom] = field(default_factory=dict)
-    hands: dict[object, Hand] = field(default_factory=dict)
-    ways: dict[object, complex] = field(default_factory=dict)
+    target_changes: dict[object, TargetChange] = field(default_factory=dict)
+    dragged_targets: dict[object, BoundedPull] = field(default_factory=dict)
+    translations: dict[object, complex] = field(default_factory=dict)
     rests: bool = True
     targets: Mapping[int, Target] | None = None
-    pulled: frozenset[int] = frozenset()
+    dragged_handles: frozenset[int] = frozenset()
     position: int = 0
     is_held: bool = True
     drag: DragSolver | None = None
-    solved: tuple[Mapping[int, Target], tuple[Hand, ...]] | None = None
+    solved: tuple[Mapping[int, Target], tuple[BoundedPull, ...]] | None = None
     steps: int = 0
     found: Pose | None = None
     newest: Pose | None = None
@@ -149,54 +149,56 @@ class Pull(Promise):
     ready: Pose | None = None
     is_left: bool = False
 
-    def wish(self, gesture: object, wish: WishFrom, hand: Hand | None = None) -> None:
+    def change_targets(
+        self, gesture: object, wish: TargetChange, hand: BoundedPull | None = None
+    ) -> None:
         """Wish something else of a gesture, in place of what it wished before."""
-        self.wishes[gesture] = wish
+        self.target_changes[gesture] = wish
         if hand is not None:
-            self.hands[gesture] = hand
-        self.aim()
+            self.dragged_targets[gesture] = hand
+        self.update_targets()
 
     def move(self, gesture: object, way: complex) -> None:
         """Let a gesture move the layer as a whole, so far from where it began."""
-        self.ways[gesture] = way
-        self.wish(gesture, _nothing)
+        self.translations[gesture] = way
+        self.change_targets(gesture, _nothing)
         pose = self.found or self.before
         if pose is not None:
             self.take(pose)
 
     def take(self, pose: Pose) -> Pose:
         """Take note of where the solver is; return that as it is moved."""
-        way = sum(self.ways.values())
+        way = sum(self.translations.values())
         self.found = pose
         self.newest = _moved_pose(self.clip.layer, pose, way) if way else pose
         return self.newest
 
-    def forget(self, gesture: object) -> None:
+    def revert(self, gesture: object) -> None:
         """Take back what a gesture wished."""
-        del self.wishes[gesture]
-        self.hands.pop(gesture, None)
-        if self.ways.pop(gesture, None) and self.found is not None:
+        del self.target_changes[gesture]
+        self.dragged_targets.pop(gesture, None)
+        if self.translations.pop(gesture, None) and self.found is not None:
             self.take(self.found)
-        self.aim()
+        self.update_targets()
 
-    def insist(self) -> None:
+    def force_targets(self) -> None:
         """Let what hands pulled be wanted where they let go, however far that is."""
-        self.hands = {}
+        self.dragged_targets = {}
         self.steps = 0
 
     def release(self) -> None:
         """Let what hands pulled be wanted where it is from now on; a pose at rest stays."""
         if self.drag is None or self.targets is None:
             return
-        before, hands = self.targets, self.hands
+        before, hands = self.targets, self.dragged_targets
         self.drag, places = self.drag.release(before, tuple(hands.values()))
         moves = {i: place.position - before[i].position for i, place in places.items()}
         for gesture in hands:
             others = {i for other in hands if other is not gesture for i in hands[other].handles}
             own = {i: moves.pop(i) for i in places if i in moves and i not in others}
-            self.wishes[gesture] = partial(_moved, self.wishes[gesture], own)
-        self.hands = {}
-        self.aim()
+            self.target_changes[gesture] = partial(_moved, self.target_changes[gesture], own)
+        self.dragged_targets = {}
+        self.update_targets()
         # Unless a later wish is for a place that does not depend on the one before it.
         found = {**before, **places}
         if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
@@ -206,27 +208,27 @@ class Pull(Promise):
     @property
     def reached(self) -> Mapping[int, Target]:
         """Where handles that hands pull would be wanted if these let go now, by their ids."""
-        if self.drag is None or self.targets is None or not self.hands:
+        if self.drag is None or self.targets is None or not self.dragged_targets:
             return {}
-        return self._moved(self.drag.release(self.targets, tuple(self.hands.values()))[1])
+        return self._moved(self.drag.release(self.targets, tuple(self.dragged_targets.values()))[1])
 
     @property
-    def asked(self) -> Mapping[int, Target] | None:
+    def world_targets(self) -> Mapping[int, Target] | None:
         """The targets, moved as the layer is; None as long as there is no start."""
         return None if self.targets is None else self._moved(self.targets)
 
     def _moved(self, targets: Mapping[int, Target]) -> Mapping[int, Target]:
-        return _moved_targets(targets, dict.fromkeys(targets, sum(self.ways.values())))
+        return _moved_targets(targets, dict.fromkeys(targets, sum(self.translations.values())))
 
-    def aim(self) -> None:
+    def update_targets(self) -> None:
         """Work out the targets anew."""
         self.steps = 0
         if self.start is None:
             # Those of a start that was left knew other handles.
-            self.targets, self.pulled = None, frozenset()
+            self.targets, self.dragged_handles = None, frozenset()
         else:
-            self.targets = targets_of(self.start, self.wishes.values())
-            self.pulled = pulled_by(self.start, self.wishes.values())
+            self.targets = combine_targets(self.start, self.target_changes.values())
+            self.dragged_handles = find_changed_handles(self.start, self.target_changes.values())
 
     @property
     def layer(self) -> int:
@@ -236,7 +238,11 @@ class Pull(Promise):
     @property
     def is_rigid(self) -> bool:
         """Whether there is nothing to be solved, as a pose at rest is but moved."""
-        return self.rests and bool(self.ways) and self.ways.keys() == self.wishes.keys()
+        return (
+            self.rests
+            and bool(self.translations)
+            and self.translations.keys() == self.target_changes.keys()
+        )
 
     @property
     def is_at_rest(self) -> bool:
@@ -244,13 +250,13 @@ class Pull(Promise):
         if self.is_rigid:
             return self.found is not None
         is_over = self.drag is not None and self.drag.is_over
-        towards = (self.targets, tuple(self.hands.values()))
+        towards = (self.targets, tuple(self.dragged_targets.values()))
         return self.steps >= MOST_STEPS or (is_over and self.solved == towards)
 
     @property
     def is_settled(self) -> bool:
         """Whether the document has the pose at rest, and hands that let go have given in."""
-        is_done = self.is_held or not self.hands
+        is_done = self.is_held or not self.dragged_targets
         return self.is_at_rest and self.kept is self.newest and is_done
 
     def is_in(self, history: History) -> bool:
@@ -275,7 +281,7 @@ class Pull(Promise):
             if now == then and earlier.targets.keys() == pose.targets.keys() == then.keys():
                 return pose
             # Handles came, went or were put elsewhere since: of those nothing is wished yet.
-            start = Start.of(layer, replace(pose, targets=earlier.targets))
+            start = DragStart.of(layer, replace(pose, targets=earlier.targets))
             targets = {}
             for identity, position in now.items():
                 here = replace(start.targets[identity], position=start.places[identity])
@@ -287,7 +293,10 @@ class Pull(Promise):
 
 
 def _moved(
-    wish: WishFrom, moves: Mapping[int, complex], start: Start, targets: Mapping[int, Target]
+    wish: TargetChange,
+    moves: Mapping[int, complex],
+    start: DragStart,
+    targets: Mapping[int, Target],
 ) -> Mapping[int, Target]:
     """Return what is wished, moved as far as hands, and joints beside them, have given in."""
     joints = {i: targets[i] for i in moves if i in targets}
@@ -309,19 +318,19 @@ def _moved_pose(layer: Layer, pose: Pose, way: complex) -> Pose:
     return replace(pose.with_map(layer.map_of(pose).moved(1.0, way)), targets=targets)
 
 
-def _nothing(_: Start, __: Mapping[int, Target]) -> Mapping[int, Target]:
+def _nothing(_: DragStart, __: Mapping[int, Target]) -> Mapping[int, Target]:
     """Return no wishes: those that there are stay."""
     return {}
 
 
-def wherever(
-    wishes: Mapping[int, Target], _: Start, targets: Mapping[int, Target]
+def absolute_targets(
+    wishes: Mapping[int, Target], _: DragStart, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
     """Return wishes that do not depend on where a pull begins."""
     return {i: wish for i, wish in wishes.items() if i in targets}
 
 
-def targets_of(start: Start, wishes: Iterable[WishFrom]) -> Mapping[int, Target]:
+def combine_targets(start: DragStart, wishes: Iterable[TargetChange]) -> Mapping[int, Target]:
     """Return what some wishes, one after the other, come to."""
     targets = dict(start.targets)
     for wish in wishes:
@@ -331,6 +340,6 @@ def targets_of(start: Start, wishes: Iterable[WishFrom]) -> Mapping[int, Target]
     return targets
 
 
-def pulled_by(start: Start, wishes: Iterable[WishFrom]) -> frozenset[int]:
+def find_changed_handles(start: DragStart, wishes: Iterable[TargetChange]) -> frozenset[int]:
     """Return the ids of the handles of which some wishes say anything."""
     return frozenset(identity for wish in wishes for identity in wish(start, start.targets))

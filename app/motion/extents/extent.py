@@ -78,7 +78,7 @@ def measure_extent(
         own = corrected.get(layer) if corrected else None
         correction = own.at(clips[layer], frame) if own else None
         positions = stores[layer].positions(clips[layer], frame, correction)
-        return None if positions is None else joints.placement(layer, frame).on(positions)
+        return None if positions is None else joints.placement(layer, frame).apply(positions)
 
     box = motion_bounding_box(document, frames, place)
     if box is None:

@@ -71,4 +71,4 @@ class Animation:
         if correction is None:
             return self.base.frame(frame)
         inbetweens, time = self.base.segment_at(frame)
-        return inbetweens.corrected(correction.series, self.sampler.basis).frame(time)
+        return inbetweens.with_correction(correction.series, self.sampler.basis).frame(time)

@@ -56,7 +56,7 @@ class AutoPins:
         """Return the in-betweens of a segment at the points of a sampler."""
         base = self._base(number, sampler)
         pins = self.series(number)
-        return base if pins is None else base.corrected(pins)
+        return base if pins is None else base.with_correction(pins)
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return one of these; of a variant that makes single frames."""

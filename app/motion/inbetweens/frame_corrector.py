@@ -20,8 +20,8 @@ from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTar
 from app.motion.inbetweens.segment_keys import segment_key, segment_poses
 from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes, Floats
-from engine.deform.correction import Targets
-from engine.interpolation import BaseAt, base_at, correct_frame
+from engine.deform.correction import PointTargets
+from engine.interpolation import CorrectionBase, correct_frame, evaluate_base
 
 KEPT = 2**26  # bytes of corrections of one outline that are kept
 FORCE = 8.0  # per L: the largest pull of a track; within the limits hardly anything takes more
@@ -147,12 +147,12 @@ class FrameCorrector:
         """Return where the handles are at a frame before springs and tracks, (h,)."""
         return self._motion.frame(frame).positions[: len(self._points)]
 
-    def _base(self, frame: float) -> BaseAt:
+    def _base(self, frame: float) -> CorrectionBase:
         inbetweens, time = self._motion.segment_at(frame)
-        return base_at(inbetweens, self._corrector, time)
+        return evaluate_base(inbetweens, self._corrector, time)
 
     def _solve_correction(
-        self, frame: float, base: BaseAt, wanted: SecondaryTargets
+        self, frame: float, base: CorrectionBase, wanted: SecondaryTargets
     ) -> SecondaryCorrection:
         """Return the correction by which handles go their own ways."""
         targets, bounds = self._targets(base, wanted), self.clip.layer.bounds
@@ -165,15 +165,15 @@ class FrameCorrector:
             reached = DistortionRange(*found.reached)
             return SecondaryCorrection(
                 series=found.known,
-                target_errors={handles[i].id: float(found.misses[i]) for i in tracked},
+                target_errors={handles[i].id: float(found.target_errors[i]) for i in tracked},
                 targets={handles[i].id: complex(wanted.positions[i]) for i in tracked},
-                limits=reached.reached(bounds) if found.is_held_back else (),
+                limits=reached.reached(bounds) if found.is_limited else (),
                 steps=found.steps,
             )
 
         return self._remembered((*self._content_key(frame), *_content(wanted)), solve)
 
-    def _targets(self, base: BaseAt, wanted: SecondaryTargets) -> Targets:
+    def _targets(self, base: CorrectionBase, wanted: SecondaryTargets) -> PointTargets:
         """Return the targets of handles with tracks and springs; the others stay.
 
         Those beside them, and those beside an anchor that stays, give way: held as firmly, they
@@ -187,15 +187,15 @@ class FrameCorrector:
         # The rest of the outline is held the more, the less far a track reaches.
         held = HELD_BY * (1.0 - wanted.reach) ** 2
         give = more * size**2 / max(held, LEAST_HELD)
-        return Targets(
-            moves=np.append(wanted.positions - base.places[:count], np.zeros(more)),
+        return PointTargets(
+            offsets=np.append(wanted.positions - base.places[:count], np.zeros(more)),
             weights=np.append(weights, np.ones(more)),
             is_anchored=self._is_anchored,
-            forces=np.append(
+            max_forces=np.append(
                 np.where(wanted.has_target, FORCE / size, np.inf), np.full(more, np.inf)
             ),
-            turns=np.append(wanted.rotations, np.full(more, np.nan)),
-            give=np.append(np.zeros(count), np.full(more, give)),
+            rotations=np.append(wanted.rotations, np.full(more, np.nan)),
+            compliances=np.append(np.zeros(count), np.full(more, give)),
         )
 
     def _away_from(self, others: Complexes) -> Floats:

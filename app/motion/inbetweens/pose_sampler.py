@@ -12,27 +12,27 @@ from app.errors import report_progress
 from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.segment_keys import SegmentKey
-from engine.arrays import Complexes, freeze, held_bytes
-from engine.deform.correction import PointCorrector, corrector_of
+from engine.arrays import Complexes, freeze, nbytes_of
+from engine.deform.correction import PointCorrector, build_corrector
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import MeshedDomain
 from engine.interpolation import (
     BLENDS,
     CorrectionSeries,
-    Course,
-    End,
+    EndCondition,
     Frame,
     Inbetweens,
-    Interval,
-    Joint,
+    InteriorKnot,
+    KeyframeBlend,
     KeyframeSamples,
-    Passage,
-    Sites,
+    KeyframeSegment,
+    SampledDomain,
     SpanBasis,
     Tangent,
+    TimeWeights,
     frame_at,
     prepare_inbetweens,
-    prepare_sites,
+    sample_domain,
     sample_keyframes,
     value_points_for_corrections,
 )
@@ -60,7 +60,7 @@ def _nbytes(value: _Sized | None) -> int:
 def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
     """Return what corrects frames of a domain with targets for points (m,)."""
     content = digest(*boundary.loops, *boundary.span.cages, boundary.weights, points)
-    make = partial(corrector_of, boundary, anchor, points)
+    make = partial(build_corrector, boundary, anchor, points)
     return _SAMPLED.find(("corrector", content, anchor), make, _nbytes)
 
 
@@ -114,7 +114,7 @@ class OutlineCache:
         self._transform: HilbertTransform | None = None
         self.nbytes = 0
         self.corrections: dict[object, SecondaryCorrection] = {}
-        self.tangents: dict[tuple[tuple[Pose, ...], Joint, Bounds, Variant], Tangent] = {}
+        self.tangents: dict[tuple[tuple[Pose, ...], InteriorKnot, Bounds, Variant], Tangent] = {}
         self.guard = threading.Lock()
         # With the poses that keep the identities in their keys.
         self._pins: dict[SegmentKey, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
@@ -175,7 +175,7 @@ class PoseSampler:
 
     Attributes
     ----------
-    sites : Sites
+    sites : SampledDomain
     known : OutlineCache
     extension_bytes : int
         The bytes that `forget_extension` lets go.
@@ -200,8 +200,8 @@ class PoseSampler:
         self._content = content, anchor
         known = None if sibling is None else sibling.sites.boundary
 
-        def prepare() -> Sites:
-            return prepare_sites(
+        def prepare() -> SampledDomain:
+            return sample_domain(
                 known or Boundary.sample(domain),
                 points,
                 triangles=triangles,
@@ -209,8 +209,8 @@ class PoseSampler:
                 values_at=() if values_at is None else values_at,
             )
 
-        self.sites: Sites = _SAMPLED.find(
-            ("sites", *self._content), prepare, partial(held_bytes, but=(known,))
+        self.sites: SampledDomain = _SAMPLED.find(
+            ("sites", *self._content), prepare, partial(nbytes_of, but=(known,))
         )
         self._lock = threading.RLock()
         self._samples: dict[Pose, KeyframeSamples] = {}
@@ -269,7 +269,7 @@ class PoseSampler:
         """Return the in-betweens of two poses alone, with whole turns beyond the shorter way."""
         samples = [self.samples(first), self.samples(second)]
         sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), (turns,))
-        interval = self._interval(Passage.of(samples, sheets), variant, Bounds())
+        interval = self._interval(KeyframeBlend.of(samples, sheets), variant, Bounds())
         return self._prepared(interval, variant)
 
     def still_inbetweens(self, pose: Pose, variant: Variant) -> Inbetweens:
@@ -326,21 +326,21 @@ class PoseSampler:
         From 0, a stop, to 1, which it is too where the motion does not pass through.
         """
         start, end = (
-            end.kept if isinstance(end, Tangent) else 1.0
+            end.velocity_share if isinstance(end, Tangent) else 1.0
             for end in self._ends(transit, bounds, variant)
         )
         return start, end
 
-    def _ends(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> list[End]:
+    def _ends(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> list[EndCondition]:
         return [
             self._tangent([transit.keys[index].pose for index in window], end, bounds, variant)
-            if isinstance(end, Joint)
+            if isinstance(end, InteriorKnot)
             else end
             for end, window in zip((transit.start, transit.end), transit.windows, strict=True)
         ]
 
     def _tangent(
-        self, poses: Sequence[Pose], joint: Joint, bounds: Bounds, variant: Variant
+        self, poses: Sequence[Pose], joint: InteriorKnot, bounds: Bounds, variant: Variant
     ) -> Tangent:
         key = tuple(poses), joint, bounds, variant
         with self.known.guard:
@@ -352,13 +352,15 @@ class PoseSampler:
                 self.known.tangents[key] = found
         return found
 
-    def _engine_interval(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> Interval:
+    def _engine_interval(
+        self, transit: PoseSegment, bounds: Bounds, variant: Variant
+    ) -> KeyframeSegment:
         samples = [self.samples(key.pose) for key in transit.keys]
         anchors = np.array([sample.anchor_fz for sample in samples])
         if not transit.has_smooth_tangent:
-            passage = Passage.of(samples, root_sheets(anchors, transit.revolutions))
+            passage = KeyframeBlend.of(samples, root_sheets(anchors, transit.revolutions))
             return self._interval(passage, variant, Bounds())
-        course = Course.between(*self._ends(transit, bounds, variant), apart=transit.apart)
+        course = TimeWeights.between(*self._ends(transit, bounds, variant), apart=transit.apart)
         count = len(samples) - sum(transit.apart)
         sheets = [*root_sheets(anchors[:count], transit.revolutions[: count - 1])]
         # Those apart are reached from the key in the middle of their windows.
@@ -371,33 +373,38 @@ class PoseSampler:
                 pair = [middle, other] if side == 0 else [other, middle]
                 change = int(root_sheets(anchors[pair], (turns,))[1])
                 sheets.append(sheets[middle] + (change if side == 0 else -change))
-        passage = Passage.of(samples, freeze(np.array(sheets, np.int32)), course)
+        passage = KeyframeBlend.of(samples, freeze(np.array(sheets, np.int32)), course)
         return self._interval(passage, variant, bounds)
 
-    def _prepared(self, interval: Interval, variant: Variant) -> Inbetweens:
+    def _prepared(self, interval: KeyframeSegment, variant: Variant) -> Inbetweens:
         """Prepare in-betweens; what is solved on the boundary serves all samplers of the domain."""
         if not variant.needs_transform:
             return prepare_inbetweens(variant, interval)
-        course, maps = interval.passage.course, [key.map for key in interval.passage.keyframes]
+        course, maps = (
+            interval.keyframe_blend.time_weights,
+            [key.map for key in interval.keyframe_blend.keyframes],
+        )
         content = digest(
             *self.domain.loops,
             *self.domain.cages,
             *(each for f in maps for each in (f.phi, f.psi, f.logs)),
         )
-        key = "residual", content, course.ends, course.apart, interval.bounds
+        key = "residual", content, course.ends, course.one_sided, interval.bounds
         solve = partial(BLENDS[variant].on_boundary, interval)
         residual = _SAMPLED.find(key, solve, _nbytes)
         return prepare_inbetweens(variant, interval._replace(residual=residual))
 
-    def _interval(self, passage: Passage, variant: Variant, bounds: Bounds) -> Interval:
-        return Interval(
-            sites=self.sites,
-            passage=passage,
+    def _interval(
+        self, passage: KeyframeBlend, variant: Variant, bounds: Bounds
+    ) -> KeyframeSegment:
+        return KeyframeSegment(
+            sampled_domain=self.sites,
+            keyframe_blend=passage,
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )
 
 
-def _sampled(f: HarmonicMap, sites: Sites) -> KeyframeSamples:
+def _sampled(f: HarmonicMap, sites: SampledDomain) -> KeyframeSamples:
     (samples,) = sample_keyframes([f], sites)
     return samples

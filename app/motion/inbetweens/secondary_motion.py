@@ -7,7 +7,7 @@ import numpy as np
 from app.document import Clip, Track, TrackSample, track_at
 from app.motion.inbetweens.spring_offsets import ParentMotion, PositionsAt, SpringOffsets
 from engine.arrays import Booleans, Complexes, Floats
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 TURNED = 50.0  # pixels that count as much as a turn by one radian
 
@@ -122,7 +122,7 @@ class SecondaryMotion:
         return SecondaryTargets(wanted, self._is_own, turns, reach, frozenset(tracked))
 
     def _parent_transform(self, frame: float) -> RigidMotion:
-        return self._carried(frame) if self._carried else HERE
+        return self._carried(frame) if self._carried else IDENTITY_MOTION
 
     def _offset(
         self, track: Track, at: TrackSample, frame: float, place: complex, fz: complex
@@ -130,4 +130,4 @@ class SecondaryMotion:
         """Return by how much a track moves its handles."""
         if not track.is_scene_space:
             return at.place * fz / abs(fz)
-        return self._parent_transform(frame).back(at.place) - place
+        return self._parent_transform(frame).apply_inverse(at.place) - place

@@ -8,8 +8,14 @@ import numpy as np
 
 from app.document import Clip, Spring, segment_time_at, spring_root
 from engine.arrays import Complexes
-from engine.geometry import HERE, RigidMotion, diameter
-from engine.geometry.kinematics import FADE, Swing, frames_to_settle, swing, turn_arm
+from engine.geometry import IDENTITY_MOTION, RigidMotion, diameter
+from engine.geometry.kinematics import (
+    FADE_FRAMES,
+    SpringResponse,
+    frames_to_settle,
+    simulate_spring,
+    turn_arm,
+)
 
 MAX_SPRING_OFFSET: Final = 0.3  # of the layer's diameter
 PIECE: Final = 64  # frames of a swing, at least
@@ -31,8 +37,8 @@ class _Piece(NamedTuple):
 
     first: int
     last: int
-    free: Swing
-    about: Swing | None  # in arcs
+    free: SpringResponse
+    about: SpringResponse | None  # in arcs
 
 
 class SpringOffsets:
@@ -81,7 +87,7 @@ class SpringOffsets:
             Returns the same at any frame.
         """
         piece, time = self._piece(spring, frame, at)
-        hung = self._carried(frame) if self._carried else HERE
+        hung = self._carried(frame) if self._carried else IDENTITY_MOTION
         free = complex(piece.free.at(time)) * hung.factor.conjugate()
         if piece.about is None:
             return free
@@ -106,12 +112,12 @@ class SpringOffsets:
                 length *= 2
             start, end = number * size - settling, number * size + min(length, size)
             # A fade depends on what comes after it.
-            frames = range(start, end + FADE + 1)
+            frames = range(start, end + FADE_FRAMES + 1)
             if is_whole:
                 start, end, frames = 0, self._count, range(self._count)
             elif not is_loop:
                 start = max(start, 0)
-                frames = range(start, min(end + FADE + 1, self._count))
+                frames = range(start, min(end + FADE_FRAMES + 1, self._count))
             own = [i % last if is_loop and not is_whole else i for i in frames]
             free, about = self._swung(spring, own, at, loop=is_whole)
             known = _Piece(start, end, free, about)
@@ -120,11 +126,11 @@ class SpringOffsets:
 
     def _swung(
         self, spring: Spring, frames: list[int], at: PositionsAt, *, loop: bool
-    ) -> tuple[Swing, Swing | None]:
+    ) -> tuple[SpringResponse, SpringResponse | None]:
         clip, root = self._clip, self.roots.get(spring.handle)
         places = np.array([self._driving(clip.frames.first + frame, at) for frame in frames]).T
         swung = partial(
-            swing,
+            simulate_spring,
             places[self._index[spring.handle]],
             clip.fps,
             frequency=spring.frequency,
@@ -140,7 +146,7 @@ class SpringOffsets:
         key = frame if self._carried else segment_time_at(self._clip, frame)
         found = self._places.get(key)
         if found is None:
-            found = (self._carried(frame) if self._carried else HERE).on(at(frame))
+            found = (self._carried(frame) if self._carried else IDENTITY_MOTION).apply(at(frame))
             _keep(self._places, key, found, KEPT_PLACES)
         return found
 

@@ -60,10 +60,12 @@ def attach_in_place(
     if place is None:
         others = [joint for joint in own.attachments if joint is not held]
         anchor = anchor_or_default(own) if others else _common_point(joints, own, other, frame)
-        place = complex(here.on(np.array([_pivot_frame(joints, own, anchor, frame).position]))[0])
+        place = complex(
+            here.apply(np.array([_pivot_frame(joints, own, anchor, frame).position]))[0]
+        )
     else:
-        anchor = _source(joints, own, here.back(place), frame)
-    at, away = _point_near(joints, other, there.back(place), frame)
+        anchor = _source(joints, own, here.apply_inverse(place), frame)
+    at, away = _point_near(joints, other, there.apply_inverse(place), frame)
     turn = there.factor * _pivot_frame(joints, other, at, frame).rotation
     return anchor, Attachment(
         parent=parent,
@@ -85,10 +87,10 @@ def reparent_in_place(
     """
     own, other = joints.document.layer(child), joints.document.layer(parent)
     here, there = joints.placement(child, frame, before=True), joints.placement(parent, frame)
-    place = here.on(np.array([_pivot_frame(joints, own, anchor_or_default(own), frame).position]))[
-        0
-    ]
-    at, _ = _point_near(joints, other, there.back(complex(place)), frame)
+    place = here.apply(
+        np.array([_pivot_frame(joints, own, anchor_or_default(own), frame).position])
+    )[0]
+    at, _ = _point_near(joints, other, there.apply_inverse(complex(place)), frame)
     return Attachment(
         parent=parent,
         parent_point=at,
@@ -128,8 +130,8 @@ def _common_point(joints: ParentTransforms, child: Layer, parent: Layer, frame: 
     anchor = anchor_or_default(child)
     points = np.array([anchor, *_middles(child)])
     here, there = (joints.placement(each.id, frame) for each in (child, parent))
-    places = here.on(_moved(joints, child, points, frame).positions)
-    border = there.on(_moved(joints, parent, parent.domain.outline, frame).positions)
+    places = here.apply(_moved(joints, child, points, frame).positions)
+    border = there.apply(_moved(joints, parent, parent.domain.outline, frame).positions)
     common = contains(border, places)
     if common[0] or not common.any():
         return anchor

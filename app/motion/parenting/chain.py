@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Attachment, Document, Layer, transform_at
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 
 class PivotFrame(NamedTuple):
@@ -36,11 +36,11 @@ def parent_links(
     at = document.loop_frame(frame)
     links = []
     for each in chain:
-        joint, movement = document.attachment_at(each, at, before=before), HERE
+        joint, movement = document.attachment_at(each, at, before=before), IDENTITY_MOTION
         if joint is None or joint.parent is None:
             movement = transform_at(document, each, at)
         if joint is not None and joint.parent is None and joint.keep_world_transform:
-            movement = movement.after(transform_at(document, each, joint.kept_from).inverse)
+            movement = movement.compose(transform_at(document, each, joint.kept_from).inverse)
         links.append(ChainLink(each, joint, movement))
     return tuple(links)
 
@@ -64,7 +64,7 @@ def compose_chain(
     """
     last, released, placement = chain[-1]
     if released is not None and released.keep_world_transform:
-        placement = placement.after(kept(last, released))
+        placement = placement.compose(kept(last, released))
     for (child, joint, _), (parent, _, _) in zip(chain[-2::-1], chain[:0:-1], strict=True):
         if joint is None:
             raise ValueError("only the last carrier hangs on nothing")

@@ -174,7 +174,7 @@ class ParentTransforms:
         )
         if joint.parent is None:
             by = parent_links(self.document, layer.id, frame, before=True)[-1].transform
-            return here if before else by.inverse.after(here)
+            return here if before else by.inverse.compose(here)
         there = compose_chain(
             parent_links(self.document, joint.parent, frame, before=not before), hinge, kept
         )
@@ -275,7 +275,7 @@ class HungAnimation:
     def positions(self, frame: float) -> Complexes:
         """Return where the points (m,) are at a frame, which may lie between two numbers."""
         placement = self._joints.placement(self._animation.clip.layer.id, frame)
-        return placement.on(self._animation.positions(frame))
+        return placement.apply(self._animation.positions(frame))
 
 
 def parenting_key(document: Document) -> tuple[object, ...]:

@@ -10,7 +10,7 @@ from app.errors import LissomError
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
 from engine.arrays import Complexes, Integers, Singles, readonly
-from engine.domain import Seam
+from engine.domain import ClosedCuts
 
 Attribute = tuple[moderngl.Buffer, str, str]
 """A buffer, its format, and the attribute of the shader that it feeds."""
@@ -97,7 +97,7 @@ class GpuMesh:
         The undeformed vertices in pixels of the picture, y up from its lower left corner.
     triangles : int32, shape (m, 3)
         In the order in which a pose paints them as long as it is told no other.
-    seam : Seam, optional
+    seam : ClosedCuts, optional
         How slits are closed.
     """
 
@@ -108,14 +108,14 @@ class GpuMesh:
         *,
         rest: Complexes,
         triangles: Integers,
-        seam: Seam | None = None,
+        seam: ClosedCuts | None = None,
     ) -> None:
         self.programs = programs
         self.picture = picture
         self.count = len(rest)
         self.seam = seam
         if seam is not None:
-            rest = seam.closed(rest)
+            rest = seam.close_cuts(rest)
         context = programs.context
         width, height = picture.size
         uv = np.column_stack([rest.real / width, rest.imag / height])

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.errors import LissomError
 from app.render.gpu.mesh import VertexSource
-from engine.domain import Seam
+from engine.domain import ClosedCuts
 from engine.streaming import Series, SeriesPiece
 
 _RESERVED: Final = 2  # attributes of a mesh that are not the series'
@@ -29,7 +29,7 @@ class SeriesBuffer(VertexSource):
         Number of vertices, v.
     rows : int
         The most rows that a piece may have.
-    seam : Seam, optional
+    seam : ClosedCuts, optional
         How slits are closed.
 
     Raises
@@ -39,7 +39,7 @@ class SeriesBuffer(VertexSource):
     """
 
     def __init__(
-        self, context: moderngl.Context, count: int, rows: int, *, seam: Seam | None = None
+        self, context: moderngl.Context, count: int, rows: int, *, seam: ClosedCuts | None = None
     ) -> None:
         if rows > max_series_rows(context):
             raise LissomError(
@@ -82,7 +82,7 @@ class SeriesBuffer(VertexSource):
         interleaved = np.zeros((count, 2 * self._pairs, 2), dtype=np.float32)
         interleaved[:, :rows] = piece.rows.reshape(rows, count, 2).transpose(1, 0, 2)
         if self._seam is not None:
-            interleaved = self._seam.closed(interleaved)
+            interleaved = self._seam.close_cuts(interleaved)
         self._buffer.write(interleaved.data)
         self._piece = piece
 

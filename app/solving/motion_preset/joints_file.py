@@ -6,7 +6,7 @@ from pathlib import Path
 
 from app.errors import LissomError
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
-from engine.geometry.motions import kind_named
+from engine.geometry.motions import find_kind
 
 SCHEMA = 1
 LARGEST = 1024 * 1024  # bytes
@@ -44,7 +44,7 @@ def _parsed(content: object) -> JointsFile:
         raise LissomError(f"schema must be {SCHEMA}, not {repr_for_error(schema)}")
     kind = None if told.get("kind") is None else as_text(told["kind"], "kind")
     if kind is not None:
-        kind_named(kind)
+        find_kind(kind)
     joints = {
         name: as_point(place, f"joints.{name}")
         for name, place in as_object(told.get("joints", {}), "joints").items()

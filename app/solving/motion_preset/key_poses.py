@@ -32,14 +32,14 @@ def find_key_poses(
     motion, parameters = order.preset, order.parameters
     period = (given.last - given.start) // given.repeat_count
     # Feet that go on the ground are keyed in every frame: in between they would slide.
-    steps = motion.course(order.kind).travels
+    steps = motion.template_for(order.kind).can_travel
     count = period if steps else min(period, motion.keys)
     offsets = [round(number * period / count) for number in range(count)]
     if parameters.travel:
         offsets = [
             turn * period + offset for turn in range(given.repeat_count) for offset in offsets
         ] + [given.repeat_count * period]
-    postures = motion.moments(body, parameters, [offset / period for offset in offsets])
+    postures = motion.poses_at(body, parameters, [offset / period for offset in offsets])
     standing = frozenset(given.joints[name] for each in postures for name in each.standing)
     return tuple(
         JointKeyPose(

@@ -11,8 +11,8 @@ from app.document import (
     Document,
     Layer,
     handle_commands,
-    material_commands,
     shape_commands,
+    stiffness_commands,
     with_number,
 )
 from app.errors import LissomError
@@ -20,7 +20,7 @@ from app.solving.motion_preset.rigid_points import find_rigid_points
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import diameter
-from engine.geometry.motions import Body, Motion, Parameters, facing_of, kind_named, motion_named
+from engine.geometry.motions import Body, Motion, Parameters, find_kind, find_motion, guess_facing
 from engine.maps import Bounds
 
 # Of the diameter of the drawing: a joint is the handle that is so near to it, and one that is so
@@ -56,20 +56,20 @@ class MotionRequest:
     limits: Bounds | None = RUBBERY.bounds
 
     def __post_init__(self) -> None:
-        self.preset.course(self.kind)
+        self.preset.template_for(self.kind)
 
     @property
     def preset(self) -> Motion:
         """The motion itself."""
-        kind_named(self.kind)
-        return motion_named(self.motion)
+        find_kind(self.kind)
+        return find_motion(self.motion)
 
 
 def find_facing(layer: Layer, order: MotionRequest) -> int:
     """Return which way a layer looks: 1 to the right, -1 to the left."""
     if order.facing is not None:
         return order.facing
-    return facing_of(kind_named(order.kind), order.joints, layer.domain.outline)
+    return guess_facing(find_kind(order.kind), order.joints, layer.domain.outline)
 
 
 def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
@@ -80,7 +80,7 @@ def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
     LissomError, EngineError
         If a joint is not on the drawing, or the kind has no such joint.
     """
-    outline, kind = layer.domain.outline, kind_named(order.kind)
+    outline, kind = layer.domain.outline, find_kind(order.kind)
     x, y = outline.real, outline.imag
     joints = dict(order.joints) if kind.parents else find_rigid_points(layer.domain)
     if kind.parents:
@@ -129,7 +129,7 @@ def with_handles_at_joints(
             continue
         # Where the way between two joints leaves the drawing, the limb bends as it likes.
         with suppress(EngineError):
-            document = material_commands.add_bone(identity, ends, amount)(document)
+            document = stiffness_commands.add_bone(identity, ends, amount)(document)
     if order.stiff and "head" in joints:
         document = _with_stiff_head(document, identity, body.joints["head"])
     return document, joints
@@ -163,7 +163,7 @@ def _with_stiff_head(document: Document, identity: int, head: complex) -> Docume
     """Return a document whose layer's head keeps its shape."""
     outline = document.layer(identity).domain.outline
     radius = HEAD * float(np.abs(outline - head).min())
-    return material_commands.paint_stiffness(identity, [head], radius=radius, amount=STIFF_HEAD)(
+    return stiffness_commands.paint_stiffness(identity, [head], radius=radius, amount=STIFF_HEAD)(
         document
     )
 

@@ -47,7 +47,7 @@ def lock(descriptor: int) -> bool:
     """
     try:
         if sys.platform == "win32":
-            with beyond_content(descriptor):
+            with at_lock_byte(descriptor):
                 msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
         else:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

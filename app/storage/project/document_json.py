@@ -69,7 +69,7 @@ from app.storage.json_values import (
 from app.storage.pictures import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
-from engine.domain import CutOut, Domain, Slit, Stroke
+from engine.domain import CutLine, CutOut, Domain, Stroke
 from engine.geometry.motions import Parameters
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
@@ -80,7 +80,7 @@ RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
 
 
-def _counts(lines: Sequence[Stroke] | Sequence[Slit]) -> tuple[int, ...]:
+def _counts(lines: Sequence[Stroke] | Sequence[CutLine]) -> tuple[int, ...]:
     """Return how many points each of some lines has."""
     return tuple(len(line.points) for line in lines)
 
@@ -286,7 +286,7 @@ DOMAIN = nested_record(
     Field("strokes", list_of(STROKE), attrgetter("cut_out.strokes"), legacy_default=()),
     Field("holes", TEXT, attrgetter("cut_out.holes"), legacy_default="fill"),
     Field("swapped", list_of(POINT), attrgetter("cut_out.swapped"), legacy_default=()),
-    Field("slits", list_of(WHOLE), lambda layer: _counts(layer.cut_out.slits), default=()),
+    Field("slits", list_of(WHOLE), lambda layer: _counts(layer.cut_out.cut_lines), default=()),
     Field("parted", FLAG, lambda layer: layer.domain.closed is not None, default=False),
     Field("stale", FLAG, attrgetter("is_stale"), legacy_default=False),
 )
@@ -524,7 +524,7 @@ def _prover(domain: Domain, bounds: Bounds) -> Callable[[HarmonicMap], Certifica
 
 def _unproven(_: HarmonicMap) -> Certificate:
     """Return the certificate of a map of which nothing is said."""
-    return Certificate(k=inf, sigma_a=inf, sigma_b=-inf, winding=None, certified=False)
+    return Certificate(k=inf, sigma_a=inf, sigma_b=-inf, winding=None, is_certified=False)
 
 
 def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int]) -> CutOut:
@@ -537,6 +537,6 @@ def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int
             "strokes": tuple(
                 Stroke(points=way, **stroke) for stroke, way in zip(strokes, ways, strict=True)
             ),
-            "slits": tuple(Slit(points=way) for way in members.lines("slits", fields["slits"])),
+            "slits": tuple(CutLine(points=way) for way in members.lines("slits", fields["slits"])),
         }
     )

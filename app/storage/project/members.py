@@ -49,8 +49,8 @@ def layer_members(layer: Layer) -> dict[str, bytes]:
         arrays["mask.npy"] = cut_out.mask.bits
     if cut_out.strokes:
         arrays["strokes.npy"] = np.concatenate([stroke.points for stroke in cut_out.strokes])
-    if cut_out.slits:
-        arrays["slits.npy"] = np.concatenate([slit.points for slit in cut_out.slits])
+    if cut_out.cut_lines:
+        arrays["slits.npy"] = np.concatenate([slit.points for slit in cut_out.cut_lines])
     if layer.domain.closed is not None:
         arrays[CLOSED] = layer.domain.closed
     if layer.stiffness is not None:

@@ -70,7 +70,7 @@ def _path_reaches(session: Session) -> list[Action]:
         return []
     current = session.preferences.path_reach
     actions = [
-        do(viewing.reach_paths, reach)
+        do(viewing.set_path_range, reach)
         for reach, name in PATH_REACHES.items()
         if imgui.menu_item(name, "", reach == current)[0]
     ]
@@ -83,7 +83,7 @@ def _new_keys(session: Session) -> list[Action]:
     if not imgui.begin_menu("Easing of new keys"):
         return []
     actions = [
-        do(keys.ease_new_keys, preset)
+        do(keys.set_default_easing, preset)
         for name, preset in PRESETS.items()
         if imgui.menu_item(name.capitalize(), "", preset == session.preferences.easing)[0]
     ]
@@ -113,7 +113,7 @@ def _recent(session: Session) -> list[Action]:
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         note = "" if is_there else "not found"
         if imgui.menu_item(f"{display_name(path.name)}###recent {index}", note, False)[0]:  # noqa: FBT003
-            actions.append(do(files.open_recent, path))
+            actions.append(do(files.open_recent_file, path))
         imgui.pop_style_color()
         draw_tooltip(display_name(path))
     imgui.end_menu()

@@ -14,12 +14,12 @@ def draw_method_menu(project: Project) -> list[Action]:
     actions: list[Action] = []
     for variant, text in VARIANTS.items():
         if imgui.menu_item(text.title, "", variant == project.layer.variant)[0]:
-            actions.append(do(keys.set_variant, variant))
+            actions.append(do(keys.set_inbetween_method, variant))
         draw_tooltip(text.what)
     imgui.separator()
     stays = project.layer.has_auto_pins
     if imgui.menu_item("Handles stay between keys", "", stays)[0]:
         command = shape_commands.set_auto_pins(project.active, stillness=not stays)
-        actions.append(do(editing.edit, command))
+        actions.append(do(editing.edit_document, command))
     draw_tooltip("Handles stay in between where two keys have them at one place")
     return actions

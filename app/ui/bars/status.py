@@ -6,8 +6,8 @@ from typing import NamedTuple
 from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
 from app.document import DistortionRange, measure_target_errors, misses_target, relax_limits
-from app.editor import Action, Kind, Project, Session, do, promises
-from app.editor.actions import exporting, rebuilding, upkeep
+from app.editor import Action, JobKind, Project, Session, do, pending_changes
+from app.editor.actions import exporting, resolving, upkeep
 from app.errors import display_name
 from app.ui.style import Look, draw_tooltip, shorten_text
 
@@ -26,10 +26,11 @@ class WarningAction(NamedTuple):
 
 
 RELAX_POSE_LIMITS = WarningAction(
-    rebuilding.loosen, "Let this drawing stretch further, and pull the handles again"
+    resolving.relax_limits_and_solve,
+    "Let this drawing stretch further, and pull the handles again",
 )
 RELAX_MOTION_LIMITS = WarningAction(
-    rebuilding.loosen_bounds,
+    resolving.relax_motion_limits,
     "Let this drawing stretch further between its keys, so that the motion can go on through them",
 )
 
@@ -59,14 +60,14 @@ def draw_status_bar(session: Session, look: Look) -> list[Action]:
         imgui.same_line(0, gap)
     hint = session.hint if held_back or slowed else session.hint or "Ready"
     room = end - imgui.get_cursor_pos_x() - gap
-    waiting = promises.waits_for(session.project) if session.project else ""
+    waiting = pending_changes.deferred_label(session.project) if session.project else ""
     exported = _export(session)
     if exported:
         _spinner(look)
         imgui.text_unformatted(shorten_text(exported, max(room - 6 * look.em, 0.0)))
         imgui.same_line(0, 0.8 * look.em)
         if imgui.small_button("Cancel"):
-            actions.append(do(exporting.cancel))
+            actions.append(do(exporting.cancel_export))
         draw_tooltip("Give the export up")
     elif slow or waiting:
         _spinner(look)
@@ -91,7 +92,7 @@ def describe_pose_limit(session: Session) -> str:
     It is wanted elsewhere by the pose, or by its track.
     """
     project = session.project
-    shown = project.puppet.shown if project else None
+    shown = project.layer_runtime.shown if project else None
     if project is None or shown is None or project.playhead.since is not None:
         return ""
     layer, correction, lags = shown.clip.layer, shown.correction, dict[int, float]()
@@ -115,9 +116,9 @@ def describe_motion_limit(session: Session) -> str:
     if project is None or project.is_posing or project.playhead.since is not None:
         return ""
     # It changes with what the worker has delivered.
-    known, source = project.timing.slowed, (project.clip, session.jobs.delivered)
+    known, source = project.timeline.slowed, (project.clip, session.jobs.delivered)
     if not known.follows(source):
-        shares = project.puppet.store.velocity_shares(project.clip)
+        shares = project.layer_runtime.store.velocity_shares(project.clip)
         known.set(source, {at: share for at, share in shares.items() if share < SLOWED})
     slowed = sorted(known.value)
     stopped = [frame for frame in slowed if known.value[frame] < STOPPED]
@@ -143,7 +144,7 @@ def _export(session: Session) -> str:
     return f"Exporting {name}: {run.done} of {total}" if run.done < total else f"Finishing {name}…"
 
 
-def _cancel(session: Session, look: Look, slow: Sequence[Kind]) -> list[Action]:
+def _cancel(session: Session, look: Look, slow: Sequence[JobKind]) -> list[Action]:
     """Offer to end what runs for so long that it may never end, or tells how far it is."""
     telling = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
     endless = session.jobs.running_for(ENDLESS) or telling
@@ -188,7 +189,7 @@ def list_status_items(session: Session) -> list[StatusItem]:
 
 def _distortion(project: Project) -> StatusItem | None:
     """Return the largest distortion that is shown, of the kind that is nearest to its bound."""
-    shown, curves = project.puppet.shown, project.curves.value
+    shown, curves = project.layer_runtime.shown, project.curves.value
     if shown is None:
         return None
     if shown.pose is not None:

@@ -11,13 +11,13 @@ from app.editor import (
     FileDialog,
     ProblemReport,
     Question,
-    Recovery,
+    RecoveryDialog,
     Session,
     ShortcutSheet,
     do,
-    failures,
+    error_reports,
 )
-from app.editor.actions import answer, browse, close_dialog, use_own_dialogs
+from app.editor.actions import answer_dialog, browse_files, close_dialog, use_own_file_browser
 from app.errors import display_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
@@ -27,7 +27,11 @@ from app.ui.shortcuts import MENUS, POINTER_HELP
 from app.ui.style import Look, heading, main_button
 
 HEADING = 2  # rows that the heading of a group takes
-GOING_ON = (browse, use_own_dialogs, failures.word_report)  # with the dialog that is open
+GOING_ON = (
+    browse_files,
+    use_own_file_browser,
+    error_reports.edit_report_text,
+)  # with the dialog that is open
 
 
 class Dialogs:
@@ -41,7 +45,7 @@ class Dialogs:
         """Draw the open dialog, if there is one."""
         self._follow_session(session)
         dialog = session.dialog
-        _use_keyboard(is_used=isinstance(dialog, (Question, Recovery)))
+        _use_keyboard(is_used=isinstance(dialog, (Question, RecoveryDialog)))
         if dialog is None:
             return []
         title = _title(dialog)
@@ -90,7 +94,7 @@ class Dialogs:
                 return [*_waiting(look), *self._native.poll(session.clock())]
             case FileDialog():
                 return self._browser.draw(dialog, session, look, thumbnail)
-            case Recovery():
+            case RecoveryDialog():
                 return draw_recovery_dialog(dialog, look)
             case ProblemReport():
                 return draw_problem_dialog(dialog, look)
@@ -101,7 +105,7 @@ class Dialogs:
 
 def _title(dialog: Dialog) -> str:
     match dialog:
-        case Recovery():
+        case RecoveryDialog():
             return "Unsaved work"
         case ProblemReport():
             return "Report a problem"
@@ -127,7 +131,7 @@ def _waiting(look: Look) -> list[Action]:
     imgui.text_unformatted("Choose in the dialog of the system, which has a window of its own.")
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     if imgui.button("Use Lissom's own dialog"):
-        return [do(use_own_dialogs)]
+        return [do(use_own_file_browser)]
     imgui.same_line()
     if imgui.button("Cancel"):
         return [do(close_dialog)]
@@ -147,7 +151,7 @@ def _question(question: Question, look: Look) -> list[Action]:
             imgui.same_line()
         is_main = index == 0
         if main_button(look, text) if is_main else imgui.button(text):
-            actions.append(do(answer, action))
+            actions.append(do(answer_dialog, action))
         if is_main:
             imgui.set_item_default_focus()
     imgui.same_line()

@@ -8,7 +8,7 @@ from typing import Any
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, FileDialog, Session, do
-from app.editor.actions import browse, choose, close_dialog
+from app.editor.actions import browse_files, choose_file, close_dialog
 from app.errors import display_name
 from app.render import Thumbnail
 from app.storage import home_folder
@@ -107,8 +107,8 @@ class FileBrowser:
         if is_accepted and folder is not None:
             now = _enter(now, folder)
         elif is_accepted and path is not None:
-            return [do(choose, now, path)]
-        return [] if now is dialog else [do(browse, now)]
+            return [do(choose_file, now, path)]
+        return [] if now is dialog else [do(browse_files, now)]
 
     def _step(self, dialog: FileDialog) -> tuple[FileDialog, bool]:
         """Mark the entry that the arrow keys lead to; return whether they were used."""

@@ -8,7 +8,7 @@ from typing import Final
 from imgui_bundle import portable_file_dialogs
 
 from app.editor import Action, FileDialog, Question, do
-from app.editor.actions import choose, close_dialog, show_dialog, use_own_dialogs
+from app.editor.actions import choose_file, close_dialog, show_dialog, use_own_file_browser
 from app.errors import display_name
 from app.export import choose_frame_folder
 
@@ -44,11 +44,11 @@ class NativeDialog:
             result = self._running.result()
         except UnicodeDecodeError:
             # A name that is not UTF-8, of which it knows no other form.
-            return [do(use_own_dialogs)]
+            return [do(use_own_file_browser)]
         chosen = result if isinstance(result, str) else next(iter(result), "")
         if chosen:
             return [_follow(self.dialog, Path(chosen))]
-        return [do(use_own_dialogs if now - self._opened < TOO_SOON else close_dialog)]
+        return [do(use_own_file_browser if now - self._opened < TOO_SOON else close_dialog)]
 
     def close(self) -> None:
         """Take the dialog away if it is still there."""
@@ -84,14 +84,14 @@ def _filters(suffixes: tuple[str, ...]) -> list[str]:
 
 def _follow(dialog: FileDialog, chosen: Path) -> Action:
     if dialog.wants_folder:
-        return do(choose, dialog, choose_frame_folder(chosen, dialog.name, dialog.is_frame))
+        return do(choose_file, dialog, choose_frame_folder(chosen, dialog.name, dialog.is_frame))
     path = dialog.path_of(str(chosen))
     if path == chosen or not path.exists():
-        return do(choose, dialog, path)
+        return do(choose_file, dialog, path)
     # The system has asked about the name without its suffix only.
     question = Question(
         title=REPLACE,
         text=f"{path.name} is there already.",
-        answers=(("Replace", do(choose, dialog, path)),),
+        answers=(("Replace", do(choose_file, dialog, path)),),
     )
     return do(show_dialog, question)

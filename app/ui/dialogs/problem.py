@@ -2,7 +2,7 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, ProblemReport, do, failures
+from app.editor import Action, ProblemReport, do, error_reports
 from app.editor.actions import close_dialog
 from app.ui.style import Look, main_button
 
@@ -25,16 +25,16 @@ def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
     height = min(HEIGHT * look.em, 0.9 * room.y - 2.5 * MARGIN * look.em)
     changed, text = imgui.input_text_multiline("##report", report.text, ImVec2(width, height))
     if changed:
-        actions.append(do(failures.word_report, report, text))
+        actions.append(do(error_reports.edit_report_text, report, text))
     if main_button(look, "Save as…"):
-        actions.append(do(failures.choose_report_file, report))
+        actions.append(do(error_reports.ask_report_path, report))
     imgui.same_line()
     if imgui.button("Copy"):
         imgui.set_clipboard_text(report.text)
     imgui.same_line()
     if report.is_kept:
         if imgui.button("Discard"):
-            actions.append(do(failures.discard_report, report))
+            actions.append(do(error_reports.discard_report, report))
         imgui.same_line()
     if imgui.button("Close"):
         actions.append(do(close_dialog))

@@ -2,8 +2,8 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Action, Leftover, Recovery, do, failures
-from app.editor.actions import answer, close_dialog, files
+from app.editor import Action, RecoverableFile, RecoveryDialog, do, error_reports
+from app.editor.actions import answer_dialog, close_dialog, files
 from app.errors import display_name
 from app.ui.dialogs.folder_listing import Entry
 from app.ui.style import Look, draw_tooltip, main_button, shorten_text
@@ -13,7 +13,7 @@ WIDTH, SUMMARY_AT, BUTTONS_AT = 36.0, 14.5, 27.5  # em
 TALLEST = 20.0  # em, of all rows; the others are scrolled to
 
 
-def draw_recovery_dialog(recovery: Recovery, look: Look) -> list[Action]:
+def draw_recovery_dialog(recovery: RecoveryDialog, look: Look) -> list[Action]:
     """Draw what there is, each with what can be done with it."""
     actions: list[Action] = []
     imgui.push_text_wrap_pos(30 * look.em)
@@ -36,11 +36,11 @@ def draw_recovery_dialog(recovery: Recovery, look: Look) -> list[Action]:
         actions.append(do(close_dialog))
     imgui.same_line()
     if imgui.button("Report a problem…"):
-        actions.append(do(failures.ask_report))
+        actions.append(do(error_reports.show_kept_or_new_report))
     return actions
 
 
-def _row(leftover: Leftover, look: Look, *, is_main: bool) -> list[Action]:
+def _row(leftover: RecoverableFile, look: Look, *, is_main: bool) -> list[Action]:
     actions: list[Action] = []
     entry = Entry(path=leftover.path, is_folder=False, size=leftover.size, changed=leftover.kept)
     imgui.align_text_to_frame_padding()
@@ -51,10 +51,10 @@ def _row(leftover: Leftover, look: Look, *, is_main: bool) -> list[Action]:
     imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
     imgui.same_line(BUTTONS_AT * look.em)
     if main_button(look, "Open") if is_main else imgui.button("Open"):
-        actions.append(do(answer, do(files.recover, leftover.path)))
+        actions.append(do(answer_dialog, do(files.recover_file, leftover.path)))
     if is_main:
         imgui.set_item_default_focus()
     imgui.same_line()
     if imgui.button("Discard"):
-        actions.append(do(answer, do(files.throw_away, leftover.path)))
+        actions.append(do(answer_dialog, do(files.discard_recoverable_file, leftover.path)))
     return actions

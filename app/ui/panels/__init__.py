@@ -11,6 +11,6 @@ from app.ui.panels import (
     export as export,
     handle as handle,
     layers as layers,
-    motion_preset as motion,
+    motion_preset as motion_preset,
     poses as poses,
 )

@@ -13,7 +13,7 @@ from app.document import (
     segment_time_at,
 )
 from app.editor import Action, Project, Session, do
-from app.editor.actions import playback, rebuilding
+from app.editor.actions import playback, resolving
 from app.ui.style import (
     FIELD,
     FILL,
@@ -80,7 +80,7 @@ LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest bounds on 
 
 def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the bounds with what the pose makes of them, the solver's state, and all keys."""
-    if project.puppet.shown is None:
+    if project.layer_runtime.shown is None:
         return []
     bounds = _wanted_bounds(project)
     actions = _stretch(look, bounds)
@@ -97,14 +97,14 @@ def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Ac
 
 
 def _wanted_bounds(project: Project) -> Bounds:
-    if project.drafted_bounds is not None:
-        return project.drafted_bounds
-    return project.layer.bounds if project.renewal is None else project.renewal.bounds
+    if project.previewed_limits is not None:
+        return project.previewed_limits
+    return project.layer.bounds if project.key_resolver is None else project.key_resolver.bounds
 
 
 def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
     """Return the certificates of the pose that is shown, or of the two keys around it."""
-    shown, clip = project.puppet.shown, project.clip
+    shown, clip = project.layer_runtime.shown, project.clip
     if shown is not None and shown.pose is not None:
         return (shown.pose.certificate,), "this pose"
     pair = segment_keys(clip)[segment_time_at(clip, shown.frame if shown else 0).segment]
@@ -118,7 +118,7 @@ def _stretch(look: Look, bounds: Bounds) -> list[Action]:
     words = [(stretch.name, stretch.name) for stretch in LIMIT_PRESETS]
     chosen = option_buttons(look, "stretch", words, present.name if present else "")
     small_text(look, f"{present.hint}." if present else "Limits of your own, under “Details”.")
-    return [do(rebuilding.choose_bounds, s.bounds) for s in LIMIT_PRESETS if s.name == chosen]
+    return [do(resolving.set_limits, s.bounds) for s in LIMIT_PRESETS if s.name == chosen]
 
 
 def _limit(
@@ -155,13 +155,13 @@ def _limit(
     draw_tooltip(f"{limit.hint}: drag its limit")
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     if entered is not None:
-        return [do(rebuilding.enter_bound, bounds, limit.field, entered)]
+        return [do(resolving.set_limit, bounds, limit.field, entered)]
     if moved is None:
         return []
     strictest, widest = LEAST[limit.field], limit.scale.right
     value = min(max(moved.value, min(strictest, widest)), max(strictest, widest))
     wanted = replace(bounds, **{limit.field: round(value, 2)})
-    return [do(rebuilding.choose_bounds if moved.is_final else rebuilding.draft_bounds, wanted)]
+    return [do(resolving.set_limits if moved.is_final else resolving.preview_limits, wanted)]
 
 
 def _colour(look: Look, limit: LimitRow, used: float, bound: float) -> imgui.ImVec4:
@@ -171,7 +171,7 @@ def _colour(look: Look, limit: LimitRow, used: float, bound: float) -> imgui.ImV
 
 
 def _solver(session: Session, look: Look, project: Project) -> None:
-    palette, shown = look.palette, project.puppet.shown
+    palette, shown = look.palette, project.layer_runtime.shown
     pose = None if shown is None else shown.pose
     if project.pull is not None and not project.pull.is_at_rest:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
@@ -244,12 +244,14 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _solving(project: Project) -> list[Action]:
-    renewal = project.renewal
+    renewal = project.key_resolver
     if renewal is not None and renewal.new_layer is None:
         return (
-            [do(rebuilding.cancel)] if progress_bar(renewal.progress, renewal.status_text) else []
+            [do(resolving.cancel_solving_keys)]
+            if progress_bar(renewal.progress, renewal.status_text)
+            else []
         )
     is_possible = renewal is None and bool(project.layer.handles)
     hint = "Pull the handles of every key to their targets again, within the limits"
     is_pressed = text_button("Pose all keys again", FILL, hint, enabled=is_possible)
-    return [do(rebuilding.solve_again)] if is_pressed else []
+    return [do(resolving.solve_keys_again)] if is_pressed else []

@@ -16,7 +16,7 @@ def draw_depth_settings(
 ) -> list[Action]:
     """Draw the depth of a handle, its extent, and from which key on it holds."""
     heading(look, "In front")
-    layer, frame = project.layer, playback.posed_frame(session, project)
+    layer, frame = project.layer, playback.edited_frame(session, project)
     key = layer.key(frame) if frame in layer.key_frames else None
     imgui.begin_group()
     actions = _depth(session, look, project, handle) + _extent(look, layer, handle)
@@ -28,14 +28,14 @@ def draw_depth_settings(
         imgui.HoveredFlags_.allow_when_blocked_by_active_item
     )
     if is_pointed != (session.tint == "depth"):
-        actions.append(do(viewing.tint, "depth" if is_pointed else None))
+        actions.append(do(viewing.set_tint, "depth" if is_pointed else None))
     return actions
 
 
 def _depth(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     label(look, "Depth")
     hint = "Where the drawing lies over itself: −1 paints this part behind, 1 in front"
-    front = editing.depth_now(session, project, handle)
+    front = editing.depth_at_playhead(session, project, handle)
     entered = slider(look, "depth", front, DEPTHS, text="%.2f", hint=hint)
     if entered is None:
         return []

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui, implot
 
-from app.editor import Action, CurveKind, HeatMap, Project, Session, Twin, do
+from app.editor import Action, ComparisonRuntime, CurveKind, HeatMap, Project, Session, do
 from app.editor.actions import playback, saving, viewing
 from app.motion import DisplayedFrame
 from app.render import heat_colormap
@@ -53,7 +53,7 @@ QUIET = (
 
 def draw_distortion_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the choice of the heat map, the histogram, and the curves."""
-    if project.puppet.shown is None:
+    if project.layer_runtime.shown is None:
         return []
     _style_plots(look)
     heading(look, "On the drawing")
@@ -62,7 +62,7 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
     match option_buttons(look, "heat map", HEAT_MAPS, heat_map):
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
-    _spread(look, project, project.puppet.shown, "k" if heat_map == "none" else heat_map)
+    _spread(look, project, project.layer_runtime.shown, "k" if heat_map == "none" else heat_map)
     heading(look, "Compare")
     actions += _compare(session, look)
     heading(look, "Over time")
@@ -75,23 +75,25 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
 def _compare(session: Session, look: Look) -> list[Action]:
     """Choose what the viewport shows beside the drawing's own method, and how."""
     actions: list[Action] = []
-    split = session.split
+    split = session.compare_view
     imgui.set_next_item_width(-1)
     shown = "Nothing" if split is None else METHODS[split.method].name
     if imgui.begin_combo("##compared", shown):
         if imgui.selectable("Nothing", split is None)[0]:
-            actions.append(do(viewing.compare_with, None))
+            actions.append(do(viewing.compare_with_method, None))
         for method, text in METHODS.items():
             is_chosen = split is not None and split.method == method
             if imgui.selectable(text.title, is_chosen)[0]:
-                actions.append(do(viewing.compare_with, method))
+                actions.append(do(viewing.compare_with_method, method))
             draw_tooltip(text.what)
         imgui.end_combo()
     draw_tooltip("The same keys by another method, beside this drawing's own")
     if split is not None:
-        chosen = option_buttons(look, "split", SPLITS, "beside" if split.beside else "divider")
-        if chosen is not None and (chosen == "beside") != split.beside:
-            actions.append(do(viewing.lay_beside, chosen == "beside"))
+        chosen = option_buttons(
+            look, "split", SPLITS, "beside" if split.is_side_by_side else "divider"
+        )
+        if chosen is not None and (chosen == "beside") != split.is_side_by_side:
+            actions.append(do(viewing.set_side_by_side, chosen == "beside"))
     return actions
 
 
@@ -201,7 +203,7 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     bounds = project.layer.bounds
     upper, lower = _plots(session.curves, curves, bounds)
     other_upper, other_lower = None, None
-    twin, twin_curves = project.puppet.twin, project.twin_curves
+    twin, twin_curves = project.layer_runtime.comparison, project.comparison_curves
     if twin is not None and twin_curves.value is not None:
         if twin_curves.follows(twin.clip(project.document)):
             other_upper, other_lower = _plots(session.curves, twin_curves.value, bounds)
@@ -271,7 +273,9 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
     return frames[:, kept].ravel(), lines[:, kept].ravel()
 
 
-def _draw_comparison_tooltip(look: Look, twin: Twin, own: Curves, other: Curves) -> None:
+def _draw_comparison_tooltip(
+    look: Look, twin: ComparisonRuntime, own: Curves, other: Curves
+) -> None:
     """Tell which curves are whose, and how far each goes."""
     if (other.clip.layer, other.clip.baseline or twin.method) != (twin.layer, twin.method):
         small_text(look, "Measuring the other method…")

@@ -48,14 +48,14 @@ PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
 
 def draw_export_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the settings of the export with a preview of its frame, or its progress."""
-    if project.puppet.shown is None:
+    if project.layer_runtime.shown is None:
         return []
     settings = project.document.export
-    motion = project.extent.value or bounding_box(project.puppet.shown.positions)
+    motion = project.extent.value or bounding_box(project.layer_runtime.shown.positions)
     view = frame_view(settings, project.document, motion)
     box = find_shown_box(view)
     # The camera's frame is shown at all times.
-    actions = [] if project.document.camera else [do(exporting.show_frame, box)]
+    actions = [] if project.document.camera else [do(exporting.preview_export_frame, box)]
     heading(look, "Picture")
     chosen = _format(look, settings)
     if EXPORT_FORMATS[settings.format].has_frame:
@@ -74,7 +74,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     else:
         chosen = _frames(look, project, chosen)
     if chosen != settings:
-        actions.append(do(exporting.set_export, chosen))
+        actions.append(do(exporting.set_export_settings, chosen))
     heading(look, "Output")
     return actions + _output(session, look, project)
 
@@ -179,10 +179,10 @@ def _size(
     room = 2 * (1.15 * imgui.get_frame_height() + gap)
     entered = draw_size_fields("", view.size, room)
     imgui.same_line(0, gap)
-    keeps = session.keeps_aspect
+    keeps = session.is_aspect_locked
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
     if icon_button(look, icon, "keep ratio", "Keep the ratio of width and height", active=keeps):
-        actions.append(do(exporting.keep_aspect, not keeps))
+        actions.append(do(exporting.set_aspect_locked, not keeps))
     imgui.same_line(0, gap)
     if icon_button(
         look,
@@ -212,10 +212,12 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     hint = "Back to the size of the picture behind all others"
     is_own = document.canvas != document.layers[0].picture.size
     if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
-        return [do(editing.edit, scene_commands.set_canvas(document.layers[0].picture.size))]
+        return [
+            do(editing.edit_document, scene_commands.set_canvas(document.layers[0].picture.size))
+        ]
     if entered is None or entered.size == document.canvas:
         return []
-    return [do(editing.edit, scene_commands.set_canvas(entered.size))]
+    return [do(editing.edit_document, scene_commands.set_canvas(entered.size))]
 
 
 def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
@@ -252,7 +254,7 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
 
 def _output(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    out = exporting.destination(project)
+    out = exporting.export_destination(project)
     label(look, "File" if EXPORT_FORMATS[project.document.export.format].suffixes else "Folder")
     button = 1.15 * imgui.get_frame_height()
     gap = imgui.get_style().item_inner_spacing.x
@@ -263,18 +265,18 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     draw_tooltip(display_name(out) if out else "Choose where to")
     imgui.same_line(0, gap)
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
-        actions.append(do(exporting.choose))
+        actions.append(do(exporting.ask_export_destination))
     run = session.export
-    if exporting.is_under_way(session):
+    if exporting.is_export_under_way(session):
         # Below zero, a bar only shows that something goes on.
         share, text = -0.5 * imgui.get_time(), "Preparing…"
         if run is not None:
             total = len(run.plan.times)
             share = run.done / total
             text = f"{run.done} of {total}" if run.done < total else "Finishing…"
-        return [*actions, do(exporting.cancel)] if progress_bar(share, text) else actions
+        return [*actions, do(exporting.cancel_export)] if progress_bar(share, text) else actions
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
-        actions.append(do(exporting.repeat))
+        actions.append(do(exporting.repeat_export))
     look.note_place("start export")
     draw_tooltip("Export now", BINDINGS["export again"].shown_keys)
     if EXPORT_FORMATS[project.document.export.format].is_still:
@@ -318,9 +320,9 @@ def _preview(
     is_clear = settings.background == "transparent"
     colour = palette.raised if is_clear else rgb(settings.background)
     draw_list.add_rect_filled(*ends(frame), colour_u32(colour))
-    if project.puppet.shown is not None:
-        count = len(project.puppet.shown.mesh.domain.outline)
-        for point in project.puppet.shown.positions[:count]:
+    if project.layer_runtime.shown is not None:
+        count = len(project.layer_runtime.shown.mesh.domain.outline)
+        for point in project.layer_runtime.shown.positions[:count]:
             draw_list.path_line_to(place(complex(point)))
         draw_list.path_stroke(colour_u32(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
     draw_list.add_rect(*ends(canvas), colour_u32(palette.dim, 0.6))

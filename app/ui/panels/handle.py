@@ -52,7 +52,7 @@ WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 
 def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the list of handles and the one that is selected."""
-    if project.puppet.shown is None:
+    if project.layer_runtime.shown is None:
         return []
     layer = project.layer
     if not layer.handles:
@@ -64,7 +64,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
         return [suggest.action] if is_pressed else []
     actions = _heading_with_delete(session, look, project)
     actions += _list(look, project)
-    chosen = [handle for handle in layer.handles if handle.id in project.selected]
+    chosen = [handle for handle in layer.handles if handle.id in project.selected_handles]
     if len(chosen) == 1:
         actions += _details(session, look, project, chosen[0])
     elif chosen:
@@ -77,7 +77,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
     else:
         small_text(look, "Select a handle to see its settings.")
     if len(chosen) != 1 and session.tint == "depth":
-        actions.append(do(viewing.tint, None))
+        actions.append(do(viewing.set_tint, None))
     heading(look, "Anchor")
     return actions + _anchor(look, project, chosen)
 
@@ -93,9 +93,9 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
         "delete handles",
         "Delete the selected handles; the pose stays",
         keys="Del",
-        enabled=bool(project.selected),
+        enabled=bool(project.selected_handles),
     ):
-        actions.append(do(posing.remove_handles, project.selected))
+        actions.append(do(posing.remove_handles, project.selected_handles))
     return actions
 
 
@@ -123,13 +123,15 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
     is_anchor = handle.position == project.layer.anchor
     clicked, _ = imgui.selectable(
         f"###handle {handle.id}",
-        handle.id in project.selected,
+        handle.id in project.selected_handles,
         imgui.SelectableFlags_.allow_overlap,
     )
     if clicked:
         chosen = frozenset({handle.id})
         keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
-        actions.append(do(editing.select, project.selected ^ chosen if keeps else chosen))
+        actions.append(
+            do(editing.select_handles, project.selected_handles ^ chosen if keeps else chosen)
+        )
     imgui.same_line(0.8 * look.em)
     usual = icons.ICON_FA_LOCK if handle.locked else icons.ICON_FA_CIRCLE_DOT
     icon = icons.ICON_FA_ANCHOR if is_anchor else usual
@@ -147,7 +149,7 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
 
 def _find_target_errors(project: Project) -> TargetErrors:
     """Return which handles fall short in the pose that is shown; of an in-between none."""
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     if shown is None or shown.pose is None:
         return TargetErrors(errors={}, at_limits=False)
     return measure_target_errors(shown.clip.layer, shown.pose)
@@ -205,7 +207,7 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
 def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     """Draw where the pose wants a handle; as many lines between keys, where it wants nothing."""
     actions: list[Action] = []
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     identities = [each.id for each in shown.clip.layer.handles] if shown else []
     if shown is None or handle.id not in identities:
         return actions
@@ -216,7 +218,7 @@ def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     hint = "Where this pose wants it, in pixels from the upper left corner"
     wished = _point(look, project, "Target", target.position, hint)
     if wished is not None:
-        actions.append(do(posing.wish, {handle.id: replace(target, position=wished)}))
+        actions.append(do(posing.set_targets, {handle.id: replace(target, position=wished)}))
     actions += _draw_rotation(look, project, handle, target)
     shortfall = _find_target_errors(project)
     lag = shortfall.errors.get(handle.id)
@@ -241,11 +243,11 @@ def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target)
     changed, turns = imgui.checkbox("##turns", is_turned)
     draw_tooltip("Turn the shape at this handle by an angle, or let it turn freely")
     if changed and not turns:
-        return [do(posing.free_turn, handle.id)]
-    if changed and project.puppet.shown is not None:
+        return [do(posing.free_rotation, handle.id)]
+    if changed and project.layer_runtime.shown is not None:
         index = [other.id for other in project.layer.handles].index(handle.id)
-        now = project.puppet.shown.handle_rotations[index]
-        return [do(posing.wish, {handle.id: replace(target, rotation=now)})]
+        now = project.layer_runtime.shown.handle_rotations[index]
+        return [do(posing.set_targets, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
     if target.rotation is None:
         imgui.text_colored(look.palette.dim, "freely")
@@ -255,7 +257,7 @@ def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target)
     draw_tooltip("Counter-clockwise, in degrees; drag the ring around the handle to turn it")
     if entered is None:
         return []
-    return [do(posing.wish, {handle.id: replace(target, rotation=math.radians(entered))})]
+    return [do(posing.set_targets, {handle.id: replace(target, rotation=math.radians(entered))})]
 
 
 def _point(look: Look, project: Project, text: str, place: complex, hint: str) -> complex | None:
@@ -292,7 +294,7 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
     hint, keys = "Let this point stay calm between keys", format_modified(CTRL, "click")
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
-        actions.append(do(posing.anchor_at, chosen[0].id))
+        actions.append(do(posing.toggle_anchor_at_handle, chosen[0].id))
     has_own = layer.anchor is not None
     if text_button("Automatic anchor###clear anchor", next(halves), enabled=has_own):
         actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))

@@ -40,12 +40,12 @@ def draw_poses_panel(
     session: Session, look: Look, project: Project, pictures: Pictures
 ) -> list[Action]:
     """Draw the poses that are kept, each as a picture of some pixels a side, and flipping them."""
-    if project.puppet.shown is None:
+    if project.layer_runtime.shown is None:
         return []
     heading(look, "Poses", framed=True)
     align_right(1.15 * imgui.get_frame_height())
     actions = draw_action_button(session, look, "keep pose")
-    offers = library.offers(project)
+    offers = library.list_library_poses(project)
     if offers:
         actions += _libraries(look, project, offers, pictures)
         small_text(
@@ -103,7 +103,7 @@ def _tiles(
             taken = (other.name for other in owner.library if other is not kept)
             name = name_popup(look, "name", kept.name, taken, "pose")
             if name is not None:
-                actions.append(do(library.rename, kept.name, name))
+                actions.append(do(library.rename_library_pose, kept.name, name))
         imgui.pop_id()
         imgui.end_group()
     return actions
@@ -118,7 +118,7 @@ def _tile(
     low = imgui.get_cursor_screen_pos()
     size = ImVec2(TILE * em, (TILE + 1.1) * em)
     if imgui.invisible_button(f"pose {kept.name}", size):
-        actions.append(do(library.apply, kept.name, owner.id))
+        actions.append(do(library.apply_library_pose, kept.name, owner.id))
     hot = imgui.is_item_hovered()
     high = low + ImVec2(TILE * em, TILE * em)
     draw_list.add_rect_filled(low, high, colour_u32(palette.desk), 0.4 * em)
@@ -158,7 +158,7 @@ def _show(texture: int, low: ImVec2, high: ImVec2, rounding: float) -> None:
 
 
 def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float) -> list[Action]:
-    begun, name, owner = project.blend, offer.kept.name, offer.owner.id
+    begun, name, owner = project.blend_preview, offer.kept.name, offer.owner.id
     is_this = begun is not None and (begun.name, begun.owner) == (name, owner)
     share = begun.share if begun is not None and is_this else 0.0
     # Near the name above it.
@@ -169,8 +169,8 @@ def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float)
     )
     if moved is None:
         return []
-    actions = [do(library.blend, name, moved.value, owner)]
-    return [*actions, do(library.end_blend)] if moved.is_final else actions
+    actions = [do(library.blend_library_pose, name, moved.value, owner)]
+    return [*actions, do(library.end_pose_blend)] if moved.is_final else actions
 
 
 def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
@@ -178,10 +178,10 @@ def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
     asks = False
     if imgui.begin_popup_context_item("menu"):
         if imgui.menu_item_simple("Use at this frame", "Click"):
-            actions.append(do(library.apply, kept.name, owner))
+            actions.append(do(library.apply_library_pose, kept.name, owner))
         asks = is_own and imgui.menu_item_simple("Rename…")
         if is_own and imgui.menu_item_simple("Delete"):
-            actions.append(do(library.delete, kept.name))
+            actions.append(do(library.delete_library_pose, kept.name))
         imgui.end_popup()
     if asks:
         imgui.open_popup("name")
@@ -195,7 +195,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
         actions += draw_action_text_button(session, name, next(widths))
     label(look, "Axis")
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
-        actions.append(do(viewing.toggle, "mirror"))
+        actions.append(do(viewing.toggle_overlay, "mirror"))
     draw_tooltip("Show in the viewport where poses are flipped; drag it by its grip")
     imgui.same_line()
     button = 6 * look.em
@@ -204,15 +204,15 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     placed = number_field("axis x", layer.axis, "%.1f")
     draw_tooltip("In pixels from the left edge")
     if placed is not None:
-        actions.append(do(flipping.place_axis, placed))
+        actions.append(do(flipping.set_mirror_axis, placed))
     imgui.same_line(0, gap)
     hint = "Put the axis in the middle of the pairs of handles, or of the shape"
     if text_button("Middle", button, hint, enabled=layer.mirror is not None):
-        actions.append(do(flipping.place_axis, None))
+        actions.append(do(flipping.set_mirror_axis, None))
     label(look, "Pairs")
     _, text = imgui.input_text("##pairs", format_pairs(project.document.pairs))
     if imgui.is_item_deactivated_after_edit():
-        actions.append(do(pasting.set_pairs, text))
+        actions.append(do(pasting.set_mirror_names, text))
     draw_tooltip(
         "Words that tell two sides apart, or two whole names, with a slash between: L/R, near/far"
     )

@@ -4,7 +4,7 @@ from imgui_bundle import imgui
 
 from app.editor import Action, Session, do
 from app.editor.actions import playback, posing, viewing
-from app.editor.tools import moving
+from app.editor.tools import move_tool
 from app.ui.shortcuts.keys import CTRL
 from app.ui.shortcuts.table import BINDINGS
 
@@ -22,7 +22,9 @@ def collect_key_actions(session: Session) -> list[Action]:
     actions = _follow_focus(session)
     for binding in BINDINGS.values():
         # What is typed during a drag is for the tool in hand.
-        keys = [key for key in binding.chords() if session.pointer is None or not _is_typed(key)]
+        keys = [
+            key for key in binding.chords() if session.active_tool is None or not _is_typed(key)
+        ]
         flags = imgui.InputFlags_.route_always
         if binding.repeats_while_held:
             flags |= imgui.InputFlags_.repeat
@@ -31,7 +33,7 @@ def collect_key_actions(session: Session) -> list[Action]:
         if binding.is_possible(session):
             actions.append(binding.action)
         elif reason := binding.disabled_reason(session):
-            actions.append(do(Session.tell, reason))
+            actions.append(do(Session.show_notice, reason))
     return actions + _nudges(session) + _space(session)
 
 
@@ -42,7 +44,11 @@ def _follow_focus(session: Session) -> list[Action]:
         title = window.root_window.name.rpartition("###")[2] if window is not None else ""
         if title in {"Timeline", "Viewport"}:
             in_timeline = title == "Timeline"
-            return [do(viewing.attend, in_timeline)] if in_timeline != session.in_timeline else []
+            return (
+                [do(viewing.focus_timeline, in_timeline)]
+                if in_timeline != session.is_timeline_focused
+                else []
+            )
     return []
 
 
@@ -66,9 +72,9 @@ def _close_menu() -> bool:
 
 
 def _nudges(session: Session) -> list[Action]:
-    if session.project is None or not (session.moves or session.project.selected):
+    if session.project is None or not (session.moves or session.project.selected_handles):
         return []
-    nudge = moving.nudge if session.moves else posing.nudge
+    nudge = move_tool.nudge_layer if session.moves else posing.nudge_handles
     step = 10.0 if imgui.get_io().key_shift else 1.0
     return [
         do(nudge, step * direction)
@@ -81,4 +87,4 @@ def _space(session: Session) -> list[Action]:
     """Return playing where Space was tapped, and not held to move the view."""
     if session.project is None or not imgui.is_key_released(Key.space):
         return []
-    return [do(playback.tap_space)]
+    return [do(playback.toggle_play_on_space)]

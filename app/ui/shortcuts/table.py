@@ -6,39 +6,39 @@ from typing import Any
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
-from app.editor import Project, Session, do, failures, layering, with_project
+from app.editor import Project, Session, do, error_reports, layering, with_project
 from app.editor.actions import (
     OverlayName,
-    cutting,
+    apply_motion,
+    cut_out_editing,
     cycles,
-    drafting,
     editing,
     exporting,
     files,
-    giving,
-    guiding,
+    joint_placement,
     keys,
-    material,
-    placing,
     playback,
     posing,
+    preset_setup,
     saving,
-    timeline_pointing,
+    stiffness_editing,
+    timeline_drag,
     tracking,
     tracks,
+    tutorials,
     viewing,
 )
-from app.editor.poses import copying, library, pasting, receiving
-from app.editor.tools import moving
+from app.editor.poses import copying, library, paste_destinations, pasting
+from app.editor.tools import move_tool
 from app.ui.panel import bring_to_front
 from app.ui.shortcuts.action_spec import ActionSpec
 from app.ui.shortcuts.manual import open_manual_page
 
 
 def _undo_label(_: Session, project: Project) -> str:
-    if project.draft is not None and project.draft.past:
+    if project.motion_setup is not None and project.motion_setup.past:
         return "“Move a joint”"
-    label = "Give a motion" if project.errand is not None else project.history.undo_label
+    label = "Give a motion" if project.motion_job is not None else project.history.undo_label
     return "" if label is None else f"“{label}”"
 
 
@@ -48,88 +48,95 @@ def _redo_label(_: Session, project: Project) -> str:
 
 
 def _looks_through(session: Session) -> bool:
-    return session.project is not None and session.project.looks_through
+    return session.project is not None and session.project.is_camera_view
 
 
 def _copied(session: Session, project: Project) -> str:
-    if copying.copies_keys(session, project):
-        return f"{project.count_chosen} keys" if project.count_chosen > 1 else "pose"
+    if copying.is_copying_keys(session, project):
+        return f"{project.selected_key_count} keys" if project.selected_key_count > 1 else "pose"
     layers = len(project.selected_layers)
     return f"poses of {layers} layers" if layers > 1 else "pose"
 
 
 def _stretch(_: Session, project: Project) -> str:
-    stretch = cycles.chosen_stretch(project)
+    stretch = cycles.selected_range(project)
     return "" if stretch is None else f"frames {stretch[0]} to {stretch[1]}"
 
 
-def _onto(session: Session, project: Project, way: receiving.PasteWay) -> str:
+def _onto(session: Session, project: Project, way: paste_destinations.PasteMode) -> str:
     """Tell onto which layers is pasted, where that is not the one that is posed alone."""
-    onto = [each.layer for each in receiving.landings(session, project, way)]
+    onto = [
+        each.layer for each in paste_destinations.find_paste_destinations(session, project, way)
+    ]
     if len(onto) > 1:
         return f"onto {len(onto)} layers"
     return "".join(f"onto {layer.name}" for layer in onto if layer.id != project.active)
 
 
 def _all(session: Session, _: Project) -> str:
-    return "keys" if session.in_timeline else "handles"
+    return "keys" if session.is_timeline_focused else "handles"
 
 
 def _is_idle(session: Session, project: Project) -> bool:
     """Tell whether nothing is under way that Esc ends first."""
-    in_hand = session.pointer or not session.poses or project.timing.gesture or project.errand
+    in_hand = (
+        session.active_tool
+        or not session.is_posing
+        or project.timeline.gesture
+        or project.motion_job
+    )
     return not (in_hand or _records(session, project))
 
 
 def _can_deselect(session: Session, project: Project) -> bool:
-    is_chosen = bool(project.selected or project.chosen_of)
-    return is_chosen and _is_idle(session, project) and not guiding.is_led(session)
+    is_chosen = bool(project.selected_handles or project.selected_keys)
+    return is_chosen and _is_idle(session, project) and not tutorials.is_tutorial_shown(session)
 
 
 def _can_leave(session: Session, project: Project) -> bool:
-    return guiding.is_led(session) and _is_idle(session, project)
+    return tutorials.is_tutorial_shown(session) and _is_idle(session, project)
 
 
 def _records(session: Session, project: Project) -> bool:
     """Tell whether a drag is to be recorded, or was and is not kept yet."""
-    return session.pointer is None and (session.records or project.take is not None)
+    return session.active_tool is None and (session.records or project.recording is not None)
 
 
 def _gives(session: Session, project: Project) -> bool:
     """Tell whether a motion is on its way, and nothing is in hand that Esc ends first."""
-    return project.errand is not None and session.pointer is None and session.poses
+    return project.motion_job is not None and session.active_tool is None and session.is_posing
 
 
 def _has_sides(_: Session, project: Project) -> bool:
     """Tell whether a motion is drafted for a body that is seen from the front."""
-    return project.draft is not None and project.draft.kind == "biped-front"
+    return project.motion_setup is not None and project.motion_setup.kind == "biped-front"
 
 
 def _selected(_: Session, project: Project) -> bool:
-    return bool(project.selected)
+    return bool(project.selected_handles)
 
 
 def _frees_arrows(session: Session, project: Project) -> bool:
-    return not (session.moves or project.selected)
+    return not (session.moves or project.selected_handles)
 
 
 def _can_delete(_: Session, project: Project) -> bool:
     """Tell whether something is selected: keys, handles, or a joint of a motion."""
-    joint = project.draft is not None and project.draft.chosen
-    return bool(joint or project.selected or project.chosen_of)
+    joint = project.motion_setup is not None and project.motion_setup.selected_joint
+    return bool(joint or project.selected_handles or project.selected_keys)
 
 
 def _can_pose(session: Session, _: Project) -> bool:
-    return not session.poses and session.pointer is None
+    return not session.is_posing and session.active_tool is None
 
 
 def _grouped(_: Session, project: Project) -> bool:
-    return any(h.group for h in project.layer.handles if h.id in project.selected)
+    return any(h.group for h in project.layer.handles if h.id in project.selected_handles)
 
 
 def _all_locked(session: Session) -> bool:
     project = session.project
-    selected = project.selected if project else frozenset[int]()
+    selected = project.selected_handles if project else frozenset[int]()
     return bool(project and selected and all(map(project.layer.is_locked, selected)))
 
 
@@ -146,20 +153,20 @@ def _plays(session: Session) -> bool:
 
 
 def _brushes(session: Session, _: Project) -> bool:
-    return session.cutting in {"keep", "remove"} or session.material in material.BRUSHES
+    return session.cutting in {"keep", "remove"} or session.material in stiffness_editing.BRUSHES
 
 
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     """Ask for the name of the layer that is posed, in the list of layers."""
     bring_to_front("Layers")
-    layering.ask_name(session, project.active)
+    layering.ask_layer_name(session, project.active)
 
 
 def _export(session: Session) -> None:
     """Show what the export makes; where that is seen already, ask where to and begin."""
     if bring_to_front("Export"):
-        exporting.ask(session)
+        exporting.ask_destination_and_export(session)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpec:
@@ -168,7 +175,7 @@ def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpe
     def is_shown(session: Session) -> bool:
         return bool(getattr(session.overlays, name))
 
-    return ActionSpec(label, do(viewing.toggle, name), keys, active=is_shown, **more)
+    return ActionSpec(label, do(viewing.toggle_overlay, name), keys, active=is_shown, **more)
 
 
 def _reset_layout(_: Session) -> None:
@@ -178,17 +185,17 @@ def _reset_layout(_: Session) -> None:
 
 MENUS: dict[str, dict[str, ActionSpec]] = {
     "File": {
-        "open": ActionSpec("Open…", do(files.ask_open), "Ctrl+O", needs_project=False),
+        "open": ActionSpec("Open…", do(files.ask_file_to_open), "Ctrl+O", needs_project=False),
         "save": ActionSpec("Save", do(saving.save), "Ctrl+S", has_separator=True),
         "save as": ActionSpec("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
         "export": ActionSpec("Export…", do(_export), "Ctrl+E", has_separator=True),
-        "export again": ActionSpec("Export again", do(exporting.repeat), "Ctrl+Shift+E"),
+        "export again": ActionSpec("Export again", do(exporting.repeat_export), "Ctrl+Shift+E"),
         "copy picture": ActionSpec("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
         "unsaved work": ActionSpec(
             "Unsaved work…", do(files.show_recovery), has_separator=True, needs_project=False
         ),
-        "close": ActionSpec("Close", do(saving.close), "Ctrl+W", has_separator=True),
-        "quit": ActionSpec("Quit", do(saving.quit_lissom), "Ctrl+Q", needs_project=False),
+        "close": ActionSpec("Close", do(saving.close_project), "Ctrl+W", has_separator=True),
+        "quit": ActionSpec("Quit", do(saving.request_quit), "Ctrl+Q", needs_project=False),
     },
     "Edit": {
         "undo": ActionSpec(
@@ -207,54 +214,56 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             repeats_while_held=True,
             detail=_redo_label,
         ),
-        "copy": ActionSpec("Copy", do(copying.copy), "Ctrl+C", has_separator=True, detail=_copied),
+        "copy": ActionSpec(
+            "Copy", do(copying.copy_pose_or_keys), "Ctrl+C", has_separator=True, detail=_copied
+        ),
         "copy all": ActionSpec(
             "Copy poses of all layers",
-            do(copying.copy_all),
+            do(copying.copy_all_poses),
             "Ctrl+Alt+C",
             condition=lambda _, project: len(project.document.layers) > 1,
         ),
         "paste": ActionSpec(
             "Paste",
-            do(pasting.paste),
+            do(pasting.paste_copied),
             "Ctrl+V",
             detail=partial(_onto, way="as it is"),
-            explain_disabled=partial(pasting.why_not, way="as it is"),
+            explain_disabled=partial(pasting.paste_disabled_reason, way="as it is"),
         ),
         "paste flipped": ActionSpec(
             "Paste flipped",
-            do(pasting.paste, "flipped"),
+            do(pasting.paste_copied, "flipped"),
             "Ctrl+Shift+V",
             icon=icons.ICON_FA_PASTE,
             hint="Put what was copied in a key at this frame, mirrored: left and right exchange",
             detail=partial(_onto, way="flipped"),
-            explain_disabled=partial(pasting.why_not, way="flipped"),
+            explain_disabled=partial(pasting.paste_disabled_reason, way="flipped"),
         ),
         "paste swapped": ActionSpec(
             "Paste swapped",
-            do(pasting.paste, "swapped"),
+            do(pasting.paste_copied, "swapped"),
             "Ctrl+Shift+X",
             icon=icons.ICON_FA_RIGHT_LEFT,
             hint="Put what was copied in a key at this frame: near and far, or left and right, "
             "exchange, and nothing is mirrored",
             detail=partial(_onto, way="swapped"),
-            explain_disabled=partial(pasting.why_not, way="swapped"),
+            explain_disabled=partial(pasting.paste_disabled_reason, way="swapped"),
         ),
         "paste on selected": ActionSpec(
             "Paste on selected handles",
             do(pasting.paste_on_selected),
             "Ctrl+Alt+V",
-            explain_disabled=partial(pasting.why_not_on_selected, way="as it is"),
+            explain_disabled=partial(pasting.paste_on_selected_disabled_reason, way="as it is"),
         ),
         "flip on selected": ActionSpec(
             "Paste flipped on selected",
             do(pasting.paste_on_selected, "flipped"),
             "Ctrl+Alt+Shift+V",
-            explain_disabled=partial(pasting.why_not_on_selected, way="flipped"),
+            explain_disabled=partial(pasting.paste_on_selected_disabled_reason, way="flipped"),
         ),
         "keep pose": ActionSpec(
             "Keep pose",
-            do(library.keep),
+            do(library.save_pose_to_library),
             "Shift+K",
             icon=icons.ICON_FA_PLUS,
             hint="Put this pose into the library of poses",
@@ -262,10 +271,12 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "select all": ActionSpec(
             "Select all", do(editing.select_all), "Ctrl+A", has_separator=True, detail=_all
         ),
-        "deselect": ActionSpec("Deselect", do(editing.deselect), "Escape", condition=_can_deselect),
+        "deselect": ActionSpec(
+            "Deselect", do(editing.deselect_all), "Escape", condition=_can_deselect
+        ),
         "move": ActionSpec(
             "Move the whole layer",
-            do(moving.take_up),
+            do(move_tool.toggle_move_tool),
             "V",
             icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,
             hint="Drags and arrows move all of the layer, as it is, in this frame",
@@ -274,28 +285,30 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "cut out": ActionSpec(
             "Cut out by a brush",
-            do(cutting.begin_or_swap),
+            do(cut_out_editing.toggle_cut_brush),
             "X",
             active=lambda session: session.cutting is not None,
         ),
         "smaller brush": ActionSpec(
             "Smaller brush",
-            do(cutting.shrink_brush),
+            do(cut_out_editing.shrink_brush),
             "LeftBracket",
             condition=_brushes,
             repeats_while_held=True,
         ),
         "larger brush": ActionSpec(
             "Larger brush",
-            do(cutting.enlarge_brush),
+            do(cut_out_editing.enlarge_brush),
             "RightBracket",
             condition=_brushes,
             repeats_while_held=True,
         ),
-        "pose": ActionSpec("Back to posing", do(moving.pose), "Escape", condition=_can_pose),
+        "pose": ActionSpec(
+            "Back to posing", do(move_tool.return_to_posing), "Escape", condition=_can_pose
+        ),
         "delete": ActionSpec(
             "Delete",
-            do(editing.delete),
+            do(editing.delete_selection),
             "Delete, Backspace",
             condition=_can_delete,
         ),
@@ -310,7 +323,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "pin here": ActionSpec(
             "Pin here",
-            do(posing.pin_here),
+            do(posing.pin_selected_handles),
             "P",
             icon=icons.ICON_FA_THUMBTACK,
             hint="Let the selected handles stay where they are in this frame",
@@ -319,7 +332,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "lock": ActionSpec(
             "Lock",
-            do(editing.lock),
+            do(editing.toggle_handles_locked),
             "Shift+L",
             icon=icons.ICON_FA_LOCK,
             hint="Locked handles hold their places and are not dragged",
@@ -328,7 +341,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "key handle": ActionSpec(
             "Key this handle only",
-            do(tracks.key_selected),
+            do(tracks.key_selected_handles),
             "Shift+I",
             icon=icons.ICON_FA_KEY,
             hint="Give it a key of its own in this frame: it gets a track beside the keys of poses",
@@ -337,16 +350,16 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "stiffen": ActionSpec(
             "Make parts stiff",
-            do(material.take_up, "stiff"),
+            do(stiffness_editing.toggle_stiffness_tool, "stiff"),
             "G",
             icon=icons.ICON_FA_CUBE,
             hint="Brush over what is to bend and stretch less than the rest",
-            active=lambda session: session.material in material.BRUSHES,
+            active=lambda session: session.material in stiffness_editing.BRUSHES,
             has_separator=True,
         ),
         "bone": ActionSpec(
             "Draw bones",
-            do(material.take_up, "bone"),
+            do(stiffness_editing.toggle_stiffness_tool, "bone"),
             "Shift+B",
             icon=icons.ICON_FA_BONE,
             hint="Drag from a handle to another one: the limb between them is stiff",
@@ -354,21 +367,21 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "bone between": ActionSpec(
             "Bone between two handles",
-            do(material.bone_between),
-            condition=lambda _, project: len(project.selected) == 2,
+            do(stiffness_editing.add_bone_between_selected),
+            condition=lambda _, project: len(project.selected_handles) == 2,
         ),
         "group": ActionSpec(
             "Group",
-            do(editing.group),
+            do(editing.group_handles),
             "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
             hint="Select and drag these handles together from now on",
-            condition=lambda _, project: len(project.selected) > 1,
+            condition=lambda _, project: len(project.selected_handles) > 1,
             has_separator=True,
         ),
         "ungroup": ActionSpec(
             "Ungroup",
-            do(editing.ungroup),
+            do(editing.ungroup_handles),
             "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
             hint="Let each of these handles be dragged alone",
@@ -394,16 +407,16 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
     "Motion": {
         "give motion": ActionSpec(
             "Give it a motion…",
-            do(drafting.begin),
+            do(preset_setup.begin_motion_setup),
             "A",
             icon=icons.ICON_FA_PERSON_WALKING,
             hint="Let it walk, wave or breathe: say where its joints are, and which motion it is",
-            explain_disabled=drafting.why_not,
-            active=lambda session: session.project is not None and session.project.draft,
+            explain_disabled=preset_setup.motion_disabled_reason,
+            active=lambda session: session.project is not None and session.project.motion_setup,
         ),
         "mirror joints": ActionSpec(
             "Mirror the joints",
-            do(placing.mirror),
+            do(joint_placement.mirror_joints),
             icon=icons.ICON_FA_LEFT_RIGHT,
             hint="Put the joints of one side where those of the other one are, seen in a mirror",
             condition=_has_sides,
@@ -411,14 +424,16 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "find joints": ActionSpec(
             "Find the joints again",
-            do(placing.suggest_again),
+            do(joint_placement.reset_joints),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
             hint="Put all joints back where they were found",
-            condition=lambda _, project: project.draft is not None and project.draft.suggested,
+            condition=lambda _, project: (
+                project.motion_setup is not None and project.motion_setup.suggested
+            ),
         ),
         "no motion": ActionSpec(
             "Stop giving the motion",
-            do(giving.cancel),
+            do(apply_motion.cancel_motion_job),
             "Escape",
             condition=_gives,
             has_separator=True,
@@ -427,18 +442,18 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
     "View": {
         "fit": ActionSpec(
             "Fit pose",
-            do(viewing.fit_pose),
+            do(viewing.zoom_to_pose),
             "Home",
             icon=icons.ICON_FA_EXPAND,
             hint="Show all of the shape as it is in this frame",
         ),
-        "fit motion": ActionSpec("Fit motion", do(viewing.fit_motion), "Shift+Home"),
-        "fit selection": ActionSpec("Fit selection", do(viewing.fit_selection), "F"),
-        "fit picture": ActionSpec("Fit picture", do(viewing.look_from, None)),
-        "actual size": ActionSpec("Actual size", do(viewing.actual_size), "1"),
+        "fit motion": ActionSpec("Fit motion", do(viewing.zoom_to_motion), "Shift+Home"),
+        "fit selection": ActionSpec("Fit selection", do(viewing.zoom_to_selection), "F"),
+        "fit picture": ActionSpec("Fit picture", do(viewing.set_view, None)),
+        "actual size": ActionSpec("Actual size", do(viewing.zoom_to_actual_size), "1"),
         "look through": ActionSpec(
             "Look through the camera",
-            do(layering.look_through),
+            do(layering.toggle_camera_view),
             hint="Show what the camera shows in each frame, until you look elsewhere",
             condition=lambda _, project: bool(project.document.camera),
             active=_looks_through,
@@ -475,11 +490,11 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "split view": ActionSpec(
             "Split view",
-            do(viewing.toggle_split),
+            do(viewing.toggle_comparison),
             "U",
             icon=icons.ICON_FA_TABLE_COLUMNS,
             hint="Compare with another method, under a divider that can be dragged",
-            active=lambda session: session.split is not None,
+            active=lambda session: session.compare_view is not None,
         ),
         "onion skin": _overlay(
             "Onion skin",
@@ -501,13 +516,13 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "larger": ActionSpec(
             "Larger interface",
-            do(viewing.scale_up),
+            do(viewing.enlarge_interface),
             "Ctrl+Equal, Ctrl+KeypadAdd",
             needs_project=False,
         ),
         "smaller": ActionSpec(
             "Smaller interface",
-            do(viewing.scale_down),
+            do(viewing.shrink_interface),
             "Ctrl+Minus, Ctrl+KeypadSubtract",
             needs_project=False,
         ),
@@ -525,42 +540,42 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             key_text="Space",
         ),
         "start": ActionSpec(
-            "First frame", do(playback.to_start), "Ctrl+PageUp", icon=icons.ICON_FA_BACKWARD_FAST
+            "First frame", do(playback.go_to_start), "Ctrl+PageUp", icon=icons.ICON_FA_BACKWARD_FAST
         ),
         "end": ActionSpec(
-            "Last frame", do(playback.to_end), "Ctrl+PageDown", icon=icons.ICON_FA_FORWARD_FAST
+            "Last frame", do(playback.go_to_end), "Ctrl+PageDown", icon=icons.ICON_FA_FORWARD_FAST
         ),
         "back": ActionSpec(
             "Previous frame",
-            do(playback.step, -1),
+            do(playback.step_frames, -1),
             "PageUp",
             icon=icons.ICON_FA_BACKWARD_STEP,
             repeats_while_held=True,
         ),
         "on": ActionSpec(
             "Next frame",
-            do(playback.step, 1),
+            do(playback.step_frames, 1),
             "PageDown",
             icon=icons.ICON_FA_FORWARD_STEP,
             repeats_while_held=True,
         ),
         "previous key": ActionSpec(
             "Previous key",
-            do(playback.to_key, -1),
+            do(playback.go_to_key, -1),
             "DownArrow",
             condition=_frees_arrows,
             repeats_while_held=True,
         ),
         "next key": ActionSpec(
             "Next key",
-            do(playback.to_key, 1),
+            do(playback.go_to_key, 1),
             "UpArrow",
             condition=_frees_arrows,
             repeats_while_held=True,
         ),
         "insert key": ActionSpec(
             "Insert key",
-            do(keys.insert),
+            do(keys.insert_key_in_row),
             "I",
             icon=icons.ICON_FA_DIAMOND,
             hint="Keep this pose in a key",
@@ -584,7 +599,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "record": ActionSpec(
             "Record a drag",
-            do(tracking.take_up),
+            do(tracking.toggle_recording_armed),
             "R",
             icon=icons.ICON_FA_CIRCLE,
             hint="Record how the next handle is dragged, while the timeline plays",
@@ -592,19 +607,21 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             active=lambda session: session.records,
         ),
         "record nothing": ActionSpec(
-            "Give the recording up", do(tracking.give_up), "Escape", condition=_records
+            "Give the recording up", do(tracking.discard_recording), "Escape", condition=_records
         ),
         "preview start": ActionSpec(
-            "Start preview range here", do(keys.start_preview_here), "B", has_separator=True
+            "Start preview range here", do(keys.start_preview_at_playhead), "B", has_separator=True
         ),
-        "preview end": ActionSpec("End preview range here", do(keys.end_preview_here), "N"),
+        "preview end": ActionSpec("End preview range here", do(keys.end_preview_at_playhead), "N"),
         "preview none": ActionSpec(
             "Play all frames",
-            do(keys.play_all),
+            do(keys.clear_preview_range),
             "Alt+P",
             condition=lambda _, project: project.document.preview is not None,
         ),
-        "marker": ActionSpec("Add marker", do(keys.mark_here), "M", has_separator=True),
+        "marker": ActionSpec(
+            "Add marker", do(keys.add_marker_at_playhead), "M", has_separator=True
+        ),
         "key camera": ActionSpec(
             "Key the camera",
             do(layering.key_camera),
@@ -612,37 +629,42 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             hint="From here on frames show what the viewport shows now",
         ),
         "previous marker": ActionSpec(
-            "Previous marker", do(playback.to_marker, -1), "Shift+PageUp", repeats_while_held=True
+            "Previous marker",
+            do(playback.go_to_marker, -1),
+            "Shift+PageUp",
+            repeats_while_held=True,
         ),
         "next marker": ActionSpec(
-            "Next marker", do(playback.to_marker, 1), "Shift+PageDown", repeats_while_held=True
+            "Next marker", do(playback.go_to_marker, 1), "Shift+PageDown", repeats_while_held=True
         ),
         "fit time": ActionSpec(
             "Fit timeline",
-            do(timeline_pointing.fit),
+            do(timeline_drag.fit_timeline),
             "Ctrl+Home",
             icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
             hint="Show all frames",
         ),
     },
     "Keys": {
-        "pass": ActionSpec("Pass keys otherwise", do(keys.pass_otherwise), "T"),
-        "ease": ActionSpec("Ease in and out", do(keys.ease, PRESETS["in-out"]), "F9"),
-        "ease in": ActionSpec("Ease in", do(keys.ease, PRESETS["in"]), "Shift+F9"),
-        "ease out": ActionSpec("Ease out", do(keys.ease, PRESETS["out"]), "Ctrl+Shift+F9"),
-        "ease not": ActionSpec("Linear", do(keys.ease, LINEAR), "Alt+F9"),
+        "pass": ActionSpec("Pass keys otherwise", do(keys.use_next_tangent_mode), "T"),
+        "ease": ActionSpec("Ease in and out", do(keys.ease_selected_keys, PRESETS["in-out"]), "F9"),
+        "ease in": ActionSpec("Ease in", do(keys.ease_selected_keys, PRESETS["in"]), "Shift+F9"),
+        "ease out": ActionSpec(
+            "Ease out", do(keys.ease_selected_keys, PRESETS["out"]), "Ctrl+Shift+F9"
+        ),
+        "ease not": ActionSpec("Linear", do(keys.ease_selected_keys, LINEAR), "Alt+F9"),
         "repeat": ActionSpec(
             "Repeat",
-            do(cycles.repeat),
+            do(cycles.create_cycle),
             detail=_stretch,
-            condition=lambda _, project: cycles.chosen_stretch(project),
+            condition=lambda _, project: cycles.selected_range(project),
             has_separator=True,
         ),
         "repeats into keys": ActionSpec(
-            "Make repeats into keys", do(cycles.make_keys), condition=cycles.cycle_here
+            "Make repeats into keys", do(cycles.bake_cycle), condition=cycles.cycle_at_playhead
         ),
         "repeat no more": ActionSpec(
-            "Stop repeating", do(cycles.stop), condition=cycles.cycle_here
+            "Stop repeating", do(cycles.end_cycle), condition=cycles.cycle_at_playhead
         ),
     },
     "Help": {
@@ -651,14 +673,19 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             "Keys and mouse", do(viewing.show_shortcuts), "Shift+F1", needs_project=False
         ),
         "first animation": ActionSpec(
-            "Make a giraffe bow", do(guiding.begin), needs_project=False, has_separator=True
+            "Make a giraffe bow",
+            do(tutorials.begin_tutorial),
+            needs_project=False,
+            has_separator=True,
         ),
         "leave guide": ActionSpec(
-            "Leave the guide", do(guiding.leave), "Escape", condition=_can_leave
+            "Leave the guide", do(tutorials.end_tutorial), "Escape", condition=_can_leave
         ),
-        "report": ActionSpec("Report a problem…", do(failures.ask_report), needs_project=False),
+        "report": ActionSpec(
+            "Report a problem…", do(error_reports.show_kept_or_new_report), needs_project=False
+        ),
         "import": ActionSpec(
-            "What opening it told", do(files.show_summary), condition=_has_summary
+            "What opening it told", do(files.show_import_log), condition=_has_summary
         ),
     },
 }

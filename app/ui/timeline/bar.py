@@ -70,7 +70,7 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
     imgui.set_next_item_width(4.6 * look.em)
     if imgui.begin_combo("##recording", f"{session.recording_speed:.0%}"):
         actions += [
-            do(tracking.set_speed, speed)
+            do(tracking.set_recording_speed, speed)
             for speed in tracking.RECORDING_SPEEDS
             if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
         ]
@@ -85,13 +85,13 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     actions += _to_key(look, *previous)
     imgui.same_line(0, TIGHT * look.em)
     frame = playback.current_frame(session, project)
-    if project.chosen_track is None:
-        frame = playback.posed_frame(session, project)
-    is_free = project.unkeyed is not None or not playback.is_keyed(project, frame)
+    if project.selected_track is None:
+        frame = playback.edited_frame(session, project)
+    is_free = project.unkeyed_pose is not None or not playback.is_frame_keyed(project, frame)
     imgui.begin_disabled(not is_free)
     actions += draw_action_button(session, look, "insert key")
     imgui.end_disabled()
-    if project.unkeyed is not None:
+    if project.unkeyed_pose is not None:
         high = imgui.get_item_rect_max()
         imgui.get_window_draw_list().add_circle_filled(
             ImVec2(high.x - 0.4 * look.em, high.y - 1.3 * look.em),
@@ -184,7 +184,7 @@ def _speed(project: Project) -> list[Action]:
     current = project.playhead.speed
     if imgui.begin_combo("##speed", f"{current:g}×"):
         actions += [
-            do(playback.set_speed, speed)
+            do(playback.set_playback_speed, speed)
             for speed in playback.SPEEDS
             if imgui.selectable(f"{speed:g}×", speed == current)[0]
         ]
@@ -216,11 +216,11 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
         imgui.set_next_item_width(8 * look.em)
         values[index] = imgui.slider_int(name, values[index], low, high)[1]
     if values != before:
-        actions.append(do(viewing.set_ghosts, *values))
+        actions.append(do(viewing.set_onion_skin, *values))
     changed, in_front = imgui.checkbox("In front of the drawing", preferences.ghosts_in_front)
     draw_tooltip("Over all layers, and not behind those that are posed")
     if changed:
-        actions.append(do(viewing.put_ghosts_in_front, in_front))
+        actions.append(do(viewing.set_onion_skin_in_front, in_front))
     imgui.end_popup()
     return actions
 

@@ -14,7 +14,7 @@ def accept_dropped_pose(bands: TimelineLayout) -> list[Action]:
     payload = imgui.get_drag_drop_payload_py_id()
     if payload is None or payload.type != POSE_PAYLOAD:
         return []
-    offers = library.offers(bands.project)
+    offers = library.list_library_poses(bands.project)
     if payload.data_id >= len(offers):
         return []
     if imgui.is_key_pressed(imgui.Key.escape):
@@ -31,5 +31,5 @@ def accept_dropped_pose(bands: TimelineLayout) -> list[Action]:
     draw_time_tag(bands, x, f"{frame}")
     if imgui.is_mouse_released(imgui.MouseButton_.left):
         owner, kept = offers[payload.data_id]
-        return [do(library.apply_at, kept.name, frame, owner.id)]
+        return [do(library.apply_library_pose_at, kept.name, frame, owner.id)]
     return []

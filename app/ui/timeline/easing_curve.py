@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.document import MAX_REVOLUTIONS, PRESETS, Easing, Keyframe
-from app.editor import Action, KeysOf, Project, do
+from app.editor import Action, KeysByRow, Project, do
 from app.editor.actions import keys
 from app.ui.style import (
     SMALL,
@@ -86,7 +86,7 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
         actions.append(do(keys.set_easing, taken, chosen))
     actions += _draw_revolutions(look, key, taken)
     if imgui.button("Use for new keys"):
-        actions.append(do(keys.ease_new_keys, key.easing))
+        actions.append(do(keys.set_default_easing, key.easing))
     draw_tooltip("Ways from keys that are made later begin like this one")
     imgui.end_popup()
     return actions
@@ -197,14 +197,14 @@ def _numbers(look: Look, easing: Easing) -> Easing | None:
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
-def _draw_revolutions(look: Look, key: Keyframe, taken: KeysOf) -> list[Action]:
+def _draw_revolutions(look: Look, key: Keyframe, taken: KeysByRow) -> list[Action]:
     label(look, "Whole turns")
     changed, turns = imgui.input_int("##turns", key.revolutions, 1, 1)
     draw_tooltip(
         "Full turns on the way to the next key, counter-clockwise; negative ones go clockwise"
     )
     turns = min(max(turns, -MAX_REVOLUTIONS), MAX_REVOLUTIONS)
-    return [do(keys.set_turns, taken, turns)] if changed and turns != key.revolutions else []
+    return [do(keys.set_revolutions, taken, turns)] if changed and turns != key.revolutions else []
 
 
 def _curve(values: list[float], current: tuple[float, float, float, float]) -> Easing | None:

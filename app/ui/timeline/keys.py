@@ -8,7 +8,7 @@ from app.editor import (
     KeyBox,
     KeyDrag,
     KeyRow,
-    KeysOf,
+    KeysByRow,
     Project,
     TimeGesture,
     TrackRow,
@@ -16,7 +16,7 @@ from app.editor import (
     layer_of,
     layering,
 )
-from app.editor.actions import editing, keys, timeline_pointing, tracks
+from app.editor.actions import editing, keys, timeline_drag, tracks
 from app.ui.shortcuts import CTRL, format_modified
 from app.ui.style import begin_tooltip, colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import (
@@ -62,12 +62,12 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
         actions += select_row(bands.pointed_keys, {})
     twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     row, lane = bands.pointed_keys, bands.pointed_row
-    if isinstance(lane, TrackLane) and bands.project.timing.gesture is None:
+    if isinstance(lane, TrackLane) and bands.project.timeline.gesture is None:
         miss = describe_residual(bands.project, lane.layer, lane.track, round(bands.pointed))
         if miss:
             draw_tooltip(miss)
     if twice and round(bands.pointed) in bands.project.document.frames:
-        actions.append(do(keys.insert_at, round(bands.pointed)))
+        actions.append(do(keys.insert_key_in_row_at, round(bands.pointed)))
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         if row != bands.project.row:
             actions += select_row(row, {})
@@ -75,20 +75,20 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
     return actions + draw_track_menu(bands)
 
 
-def select_row(row: KeyRow, chosen_of: KeysOf) -> list[Action]:
+def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
     """Let the layer of a row be the active one, choose the row, and choose keys."""
     return [
-        do(layering.choose, layer_of(row)),
-        do(tracks.choose, row.handle if isinstance(row, TrackRow) else None),
-        do(editing.choose_keys_of, chosen_of),
+        do(layering.set_active_layer, layer_of(row)),
+        do(tracks.select_track, row.handle if isinstance(row, TrackRow) else None),
+        do(editing.select_keys_in_rows, chosen_of),
     ]
 
 
 def begin_key_box(bands: TimelineLayout) -> list[Action]:
     """Begin to choose keys by a box; with Shift besides those that are chosen."""
-    keeps = bands.project.chosen_of if imgui.get_io().key_shift else {}
+    keeps = bands.project.selected_keys if imgui.get_io().key_shift else {}
     box = KeyBox(start=bands.pointed, row=bands.pointed_keys, keeps=keeps)
-    return [do(timeline_pointing.begin, box, bands.time_view)]
+    return [do(timeline_drag.begin_timeline_drag, box, bands.time_view)]
 
 
 def is_plain_click() -> bool:
@@ -99,7 +99,7 @@ def is_plain_click() -> bool:
 
 def draw_key_box(bands: TimelineLayout) -> None:
     """Draw the box that the pointer spans."""
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     if not isinstance(gesture, KeyBox) or not was_dragged():
         return
     draw_list, accent = imgui.get_window_draw_list(), bands.look.palette.accent
@@ -131,7 +131,7 @@ def _draw_row(bands: TimelineLayout, row: LayerRow) -> list[Action]:
     actions: list[Action] = []
     radius = _radius(bands, row)
     grip = GRIP * radius
-    gesture, identity = bands.project.timing.gesture, row.layer.id
+    gesture, identity = bands.project.timeline.gesture, row.layer.id
     for index in bands.in_view(row.layer.keys):
         key = row.layer.keys[index]
         x = bands.x(key.frame)
@@ -175,7 +175,7 @@ def begin_key_drag(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Actio
     """Take what the pointer does to the last item, the key of a row at a frame."""
     actions = _press(bands, row, frame) if is_pressed() else []
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        chosen_of = bands.project.chosen_of
+        chosen_of = bands.project.selected_keys
         if frame not in chosen_of.get(row, ()):
             actions += select_row(row, {row: frozenset({frame})})
         elif row != bands.project.row:
@@ -185,10 +185,10 @@ def begin_key_drag(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Actio
 
 
 def _press(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
-    chosen_of, io = bands.project.chosen_of, imgui.get_io()
+    chosen_of, io = bands.project.selected_keys, imgui.get_io()
     chosen = chosen_of.get(row, frozenset())
     if io.key_shift:
-        return [do(editing.choose_keys_of, {**chosen_of, row: chosen ^ {frame}})]
+        return [do(editing.select_keys_in_rows, {**chosen_of, row: chosen ^ {frame}})]
     if frame not in chosen:
         chosen_of = {row: frozenset({frame})}
     drag = KeyDrag(
@@ -200,13 +200,16 @@ def _press(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
         before=bands.project.document,
         after=bands.project.document,
     )
-    return [*select_row(row, chosen_of), do(timeline_pointing.begin, drag, bands.time_view)]
+    return [
+        *select_row(row, chosen_of),
+        do(timeline_drag.begin_timeline_drag, drag, bands.time_view),
+    ]
 
 
 def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x, y = bands.x(key.frame), row.middle
-    chosen = key.frame in bands.project.chosen_of.get(row.layer.id, ())
+    chosen = key.frame in bands.project.selected_keys.get(row.layer.id, ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
     passing, centre = key.shown_tangent_mode, ImVec2(x, y)
@@ -226,14 +229,14 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
 def _warning(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> ImVec4 | None:
     """Return the colour of a key's warning if there is one."""
     palette = bands.look.palette
-    if not key.pose.certificate.certified:
+    if not key.pose.certificate.is_certified:
         return palette.danger
     return palette.warning if row.is_active and describe_target_errors(bands.project, key) else None
 
 
 def label_dragged_key(bands: TimelineLayout, row: KeyRow, frame: int, x: float) -> None:
     """Write beside a key to which frame it is dragged, if it is."""
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     if isinstance(gesture, KeyDrag) and gesture.by and is_key_dragged(gesture, row, frame):
         draw_time_tag(bands, x, f"{frame}  ({gesture.by:+d})")
 
@@ -272,7 +275,7 @@ def draw_key_mark(passing: TangentMode, centre: ImVec2, radius: float, colour: i
 
 def describe_target_errors(project: Project, key: Keyframe) -> list[str]:
     """Return which handles fall short of their targets in a key of the active layer, in words."""
-    short = project.timing.shortfalls.value.get(key.pose, {})
+    short = project.timeline.target_errors.value.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.layer.handles}
     return [
         f"{names[identity]} is {lag:.0f} px short of its target"
@@ -291,7 +294,7 @@ def _draw_key_tooltip(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> No
     imgui.text_disabled(format_seconds(key.frame, document.fps))
     name, hint = TANGENT_MODES[key.shown_tangent_mode]
     imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
-    if not key.pose.certificate.certified:
+    if not key.pose.certificate.is_certified:
         imgui.text_colored(
             palette.danger,
             f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Beyond the limits: in-betweens may fold here",

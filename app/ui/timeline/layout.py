@@ -9,7 +9,7 @@ from typing import Protocol, TypeVar
 from imgui_bundle import ImVec2, imgui
 
 from app.document import LAST_FRAME, Layer, Track, TreeRow, memoized_on
-from app.editor import KeyRow, Project, Session, Strip, row_of, seen_at
+from app.editor import KeyRow, Project, Session, TimeRangeView, display_frame, row_of
 from app.ui.style import Look, draw_tag, tag_size
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
@@ -102,7 +102,7 @@ class TimelineLayout:
         self.markers_top = self.ruler_top + RULER * look.em
         self.camera_top = self.markers_top + bool(project.document.markers) * marks * look.em
         self.track_top = self.camera_top + bool(project.document.camera) * THIN * look.em
-        is_whole = self.is_cramped or project.timing.strip is None
+        is_whole = self.is_cramped or project.timeline.time_range is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.rows: list[LayerRow] = []
         self.track_rows: list[TrackLane] = []
@@ -113,9 +113,9 @@ class TimelineLayout:
         share = CRAMPED_SHARE if self.is_cramped else BAR_SHARE
         height = min(BAR * look.em, share * (self.row.bottom - self.row.top))
         self.bar_top, self.bar_bottom = self.middle - height / 2, self.middle + height / 2
-        timing = project.timing
-        fitting = Strip.fitting(project.document.frames, self.width)
-        self.time_view = timing.gesture_strip or timing.strip or fitting
+        timing = project.timeline
+        fitting = TimeRangeView.fitting(project.document.frames, self.width)
+        self.time_view = timing.gesture_time_range or timing.time_range or fitting
 
     def _lay_rows(self, tree: Sequence[TreeRow]) -> float:
         """Lay a row for each group, choice and layer, and below a layer's those of its tracks.
@@ -129,7 +129,7 @@ class TimelineLayout:
         least, most = (EVEN * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
         tall = min(max((room - others) / len(shown), least), most)
         overflow = max(others + len(shown) * tall - room, 0.0)
-        top = self.track_top - min(self.project.timing.scrolled * em, overflow)
+        top = self.track_top - min(self.project.timeline.scrolled * em, overflow)
         chosen = self.project.row
         for row in tree:
             layer = row.layer
@@ -159,7 +159,7 @@ class TimelineLayout:
 
     def _shown_tracks(self, layer: Layer) -> tuple[Track, ...]:
         """Return the tracks of a layer that have rows."""
-        return layer.tracks if layer.id in self.project.timing.unfolded else ()
+        return layer.tracks if layer.id in self.project.timeline.expanded_layers else ()
 
     @property
     def pointed_row(self) -> LayerRow | TrackLane:
@@ -205,7 +205,7 @@ class TimelineLayout:
 
     def x_of(self, track: Track | None, frame: int) -> float:
         """Return where a key is drawn: a track's is later by its delay."""
-        return self.x(seen_at(self.project.document, track, frame))
+        return self.x(display_frame(self.project.document, track, frame))
 
     @property
     def pointed(self) -> float:

@@ -3,7 +3,7 @@
 from imgui_bundle import imgui
 
 from app.document import PRESETS, Keyframe, TangentMode, TrackKey, track_commands
-from app.editor import Action, KeyRow, Project, Session, TrackRow, do, frames_in, seen_at
+from app.editor import Action, KeyRow, Project, Session, TrackRow, display_frame, do, frames_in
 from app.editor.actions import cycles, editing, keys, playback, tracks
 from app.editor.poses import copying
 from app.ui.shortcuts import BINDINGS, draw_action_item
@@ -35,7 +35,7 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
         actions.append(delete.action)
     if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].shown_keys):
         actions.append(do(copying.copy_keys))
-    seen = seen_at(project.document, project.track_in(row), key.frame)
+    seen = display_frame(project.document, project.track_in(row), key.frame)
     actions += _paste_items(bands.session, seen)
     imgui.separator()
     if imgui.menu_item_simple("Go to this key", "Click"):
@@ -44,7 +44,7 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
         for passing, (name, hint) in TANGENT_MODES.items():
             chosen = key.shown_tangent_mode is passing
             if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
-                actions.append(do(keys.set_passing, taken, passing))
+                actions.append(do(keys.set_tangent_mode, taken, passing))
             draw_tooltip(hint)
         imgui.end_menu()
     if imgui.begin_menu("Easing"):
@@ -78,11 +78,14 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
     frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
     row = bands.project.row
     if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
-        actions.append(do(keys.insert_at, frame))
+        actions.append(do(keys.insert_key_in_row_at, frame))
     track = bands.project.track_in(row)
     if track is not None and not track.is_scene_space:
         if imgui.menu_item_simple(f"Insert key in the pose at frame {frame}###Insert in pose"):
-            actions += [do(playback.scrub, frame), do(tracks.put, track.handles[0], 0j, 0.0)]
+            actions += [
+                do(playback.scrub, frame),
+                do(tracks.set_handle_value, track.handles[0], 0j, 0.0),
+            ]
         draw_tooltip(
             "Where the pose has the handle: the track begins and ends there without a jump"
         )
@@ -112,24 +115,24 @@ def draw_time_menu(session: Session, look: Look, project: Project) -> list[Actio
 def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw what can be done with what repeats at a frame."""
     actions: list[Action] = []
-    cycle = cycles.cycle_here(bands.session, bands.project, frame)
+    cycle = cycles.cycle_at_playhead(bands.session, bands.project, frame)
     if cycle is None or isinstance(bands.project.row, TrackRow):
         return actions
     imgui.separator()
     if imgui.menu_item_simple("Make repeats into keys"):
-        actions.append(do(cycles.make_keys, frame))
+        actions.append(do(cycles.bake_cycle, frame))
     draw_tooltip(
         f"{cycle.description.capitalize()} are edited in one place; then each repeat is by itself"
     )
     if imgui.menu_item_simple("Stop repeating"):
-        actions.append(do(cycles.stop, frame))
+        actions.append(do(cycles.end_cycle, frame))
     return actions
 
 
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     actions += draw_action_item(session, "repeat")
-    count, chosen = len(frames_in(project.document, project.row)), project.count_chosen
+    count, chosen = len(frames_in(project.document, project.row)), project.selected_key_count
     several = f"{chosen} keys" if chosen > 1 else "all keys"
     # The time of a scene is scaled as a whole, but not reversed.
     is_scene = chosen < 2 and len(project.document.layers) > 1
@@ -137,10 +140,12 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
         f"{several} of {shorten_text(project.layer.name, NAME * look.em)}" if is_scene else several
     )
     if imgui.menu_item_simple(f"Reverse {whose}###Reverse", enabled=max(count, chosen) > 1):
-        actions.append(do(keys.reverse))
+        actions.append(do(keys.reverse_selected_keys))
     if imgui.begin_menu(f"Scale time of {several}###Scale time"):
         actions += [
-            do(keys.scale, factor) for factor, name in FACTORS if imgui.menu_item_simple(name)
+            do(keys.scale_selected_keys, factor)
+            for factor, name in FACTORS
+            if imgui.menu_item_simple(name)
         ]
         imgui.set_next_item_width(5 * look.em)
         entered, percent = imgui.input_float(
@@ -152,11 +157,11 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
             imgui.InputTextFlags_.enter_returns_true,
         )
         if entered:
-            actions.append(do(keys.scale, percent / 100))
+            actions.append(do(keys.scale_selected_keys, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
     if imgui.menu_item_simple("Copy first pose to last key", enabled=len(project.layer.keys) > 1):
-        actions.append(do(keys.match_ends))
+        actions.append(do(keys.match_loop_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):
         actions += draw_action_item(session, name)

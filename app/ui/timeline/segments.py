@@ -22,7 +22,7 @@ from app.document import (
     pose_segments,
 )
 from app.editor import Action, CycleDrag, do
-from app.editor.actions import timeline_pointing, tracks
+from app.editor.actions import timeline_drag, tracks
 from app.ui.style import (
     SMALL,
     begin_tooltip,
@@ -148,14 +148,14 @@ def _draw_segment(
     if is_pressed():
         actions += begin_key_box(bands)
     if clicked and is_plain_click():
-        actions.append(do(tracks.choose, None))
+        actions.append(do(tracks.select_track, None))
         imgui.open_popup(popup)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        actions.append(do(tracks.choose, None))
+        actions.append(do(tracks.select_track, None))
         imgui.open_popup("menu of track")
     is_open = imgui.is_popup_open(popup)
-    hot = is_open or (is_hovered_or_held() and bands.project.timing.gesture is None)
-    if bands.project.timing.gesture is None and not is_open:
+    hot = is_open or (is_hovered_or_held() and bands.project.timeline.gesture is None)
+    if bands.project.timeline.gesture is None and not is_open:
         draw_tooltip(f"{bar.easing_text.capitalize()}: click to change how time runs here")
     _draw_bar(bands, bar, low, high, hot=hot)
     _label(bands, bar.easing_text, bar.key.revolutions, low, high)
@@ -169,7 +169,7 @@ def _draw_bar(
 ) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     rounding = ROUNDING / 2 * em
-    chosen = bar.key.frame in bands.project.chosen
+    chosen = bar.key.frame in bands.project.selected_frames
     colour = palette.accent if hot or chosen else palette.dim
     if bar.key.easing == HOLD:
         draw_list.add_rect_filled(low, high, colour_u32(palette.raised, 0.35), rounding)
@@ -279,7 +279,7 @@ def _end_of_cycle(
     x, half = bands.x(end), GRIP * bands.look.em
     if not bands.shows(x - half, x + half):
         return []
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     is_dragged = isinstance(gesture, CycleDrag) and (gesture.first, gesture.is_stretch) == (
         cycle.first,
         is_stretch,
@@ -314,4 +314,4 @@ def _end_of_cycle(
         before=bands.project.document,
         after=bands.project.document,
     )
-    return [do(timeline_pointing.begin, drag, bands.time_view)]
+    return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]

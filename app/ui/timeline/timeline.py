@@ -8,18 +8,18 @@ from app.editor import (
     KeyDrag,
     MarkerDrag,
     Project,
-    Scrub,
+    ScrubDrag,
     Session,
     SwitchDrag,
     TimeDrag,
     TimeGesture,
     TurnDrag,
+    display_frame,
     do,
     layering,
-    seen_at,
 )
-from app.editor.actions import editing, playback, timeline_pointing
-from app.editor.tools import pointing
+from app.editor.actions import editing, playback, timeline_drag
+from app.editor.tools import tool_pointer
 from app.ui.shortcuts import CTRL, format_modified
 from app.ui.style import Look
 from app.ui.timeline.bar import draw_transport_bar
@@ -74,8 +74,8 @@ def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
     actions += _go_on(bands)
     actions += accept_dropped_pose(bands)
     actions += _follow(bands, frame) + _follow_active(bands)
-    if imgui.is_window_hovered() or bands.project.timing.gesture is not None:
-        actions.append(do(pointing.explain, _hint(bands)))
+    if imgui.is_window_hovered() or bands.project.timeline.gesture is not None:
+        actions.append(do(tool_pointer.show_hint, _hint(bands)))
     imgui.set_cursor_screen_pos(bands.corner)
     imgui.dummy(ImVec2(0, 0))
     return actions
@@ -90,8 +90,8 @@ def _navigate(bands: TimelineLayout) -> list[Action]:
     strip = bands.time_view
     wheels_rows = imgui.get_mouse_pos().x < bands.left and not io.key_ctrl
     if wheels_rows and io.mouse_wheel:
-        to = bands.project.timing.scrolled - THIN * io.mouse_wheel
-        return [do(timeline_pointing.scroll_rows, min(max(to, 0.0), bands.overflow / em))]
+        to = bands.project.timeline.scrolled - THIN * io.mouse_wheel
+        return [do(timeline_drag.scroll_rows, min(max(to, 0.0), bands.overflow / em))]
     if io.key_ctrl and io.mouse_wheel:
         place = (imgui.get_mouse_pos().x - bands.left) / em
         strip = strip.zoomed(ZOOM_STEP**io.mouse_wheel, place)
@@ -101,43 +101,43 @@ def _navigate(bands: TimelineLayout) -> list[Action]:
         strip = strip.panned(-io.mouse_delta.x / em)
     if strip is bands.time_view:
         return []
-    return [do(timeline_pointing.look_at, strip.kept_near(frames, bands.width))]
+    return [do(timeline_drag.set_time_range, strip.kept_near(frames, bands.width))]
 
 
 def _go_on(bands: TimelineLayout) -> list[Action]:
     """Follow the pointer in what it began; end it where the button is let go."""
-    timeline = bands.project.timing
+    timeline = bands.project.timeline
     gesture = timeline.gesture
     if gesture is None:
         return []
     if imgui.is_key_pressed(imgui.Key.escape):
-        return [do(timeline_pointing.cancel)]
+        return [do(timeline_drag.cancel_timeline_drag)]
     # A press that does not go on is a click; only the playhead is there at once.
-    goes_on = isinstance(gesture, Scrub) or was_dragged()
+    goes_on = isinstance(gesture, ScrubDrag) or was_dragged()
     keys = bands.pointed_keys
-    moves = [do(timeline_pointing.move, bands.pointed, keys)] if goes_on else []
+    moves = [do(timeline_drag.move_timeline_drag, bands.pointed, keys)] if goes_on else []
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_scroll_beyond_edges(bands)] if goes_on else []
     if not was_dragged():
         moves += _click(bands, gesture)
-    return [*moves, do(timeline_pointing.end)]
+    return [*moves, do(timeline_drag.end_timeline_drag)]
 
 
 def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
     """Return what a press on something does that is let go where it was."""
     match gesture:
-        case Scrub():
+        case ScrubDrag():
             return [do(editing.deselect_keys)]
         case KeyDrag(row=row, pressed=frame, copies=False):
             # The key alone, and what it shows.
             track = bands.project.track_in(row)
-            seen = bands.project.document.frames.clamp(seen_at(gesture.before, track, frame))
+            seen = bands.project.document.frames.clamp(display_frame(gesture.before, track, frame))
             chosen = {row: frozenset({frame})}
-            return [do(editing.choose_keys_of, chosen), do(playback.scrub, seen)]
+            return [do(editing.select_keys_in_rows, chosen), do(playback.scrub, seen)]
         case MarkerDrag(marker=frame) | CameraDrag(key=frame) | TurnDrag(turn=frame):
             return [do(playback.scrub, frame)]
         case SwitchDrag(layer=layer, switch=frame):
-            return [do(layering.choose, layer), do(playback.scrub, frame)]
+            return [do(layering.set_active_layer, layer), do(playback.scrub, frame)]
         case _:
             return []
 
@@ -149,29 +149,38 @@ def _scroll_beyond_edges(bands: TimelineLayout) -> list[Action]:
     if not beyond:
         return []
     strip = bands.time_view.panned(PULL * beyond / bands.look.em)
-    if isinstance(bands.project.timing.gesture, TimeDrag):
-        return [do(timeline_pointing.look_at, strip)] if strip.frame(bands.width / 2) > 0 else []
+    if isinstance(bands.project.timeline.gesture, TimeDrag):
+        return [do(timeline_drag.set_time_range, strip)] if strip.frame(bands.width / 2) > 0 else []
     return [
-        do(timeline_pointing.look_at, strip.kept_near(bands.project.document.frames, bands.width))
+        do(
+            timeline_drag.set_time_range,
+            strip.kept_near(bands.project.document.frames, bands.width),
+        )
     ]
 
 
 def _follow(bands: TimelineLayout, frame: int) -> list[Action]:
     """Keep the playhead on the screen where it moves by itself."""
-    timeline = bands.project.timing
-    if frame == timeline.seen:
+    timeline = bands.project.timeline
+    if frame == timeline.last_shown_frame:
         return []
     strip = bands.time_view
-    if timeline.gesture is None and timeline.strip is not None:
+    if timeline.gesture is None and timeline.time_range is not None:
         is_playing = bands.project.playhead.since is not None
         strip = strip.showing(frame, bands.width, turns=is_playing)
-    return [do(timeline_pointing.follow, frame, strip if strip is not bands.time_view else None)]
+    return [
+        do(
+            timeline_drag.scroll_to_playhead,
+            frame,
+            strip if strip is not bands.time_view else None,
+        )
+    ]
 
 
 def _follow_active(bands: TimelineLayout) -> list[Action]:
     """Scroll the rows to one that has come to be chosen, or to the tracks that have come to it."""
-    timing, row, em = bands.project.timing, bands.row, bands.look.em
-    if timing.seen_rows == (bands.project.row, timing.unfolded):
+    timing, row, em = bands.project.timeline, bands.row, bands.look.em
+    if timing.last_shown_rows == (bands.project.row, timing.expanded_layers):
         return []
     own = [lane for lane in bands.track_rows if lane.layer is row.layer]
     chosen = next((lane for lane in own if lane.is_chosen), None)
@@ -180,11 +189,11 @@ def _follow_active(bands: TimelineLayout) -> list[Action]:
     bottom = bottom if chosen is None else chosen.bottom
     by = min(max(bottom - bands.track_bottom, 0.0), top - bands.track_top)
     scrolled = min(timing.scrolled, bands.overflow / em)
-    return [do(timeline_pointing.scroll_rows, scrolled + by / em)]
+    return [do(timeline_drag.scroll_rows, scrolled + by / em)]
 
 
 def _hint(bands: TimelineLayout) -> str:
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     if isinstance(gesture, KeyDrag):
         what = "Copied" if gesture.copies else "Moved"
         seconds = format_seconds(gesture.by, bands.project.document.fps)

@@ -8,7 +8,7 @@ from app.editor import Project
 
 def find_residuals(project: Project, layer: Layer, track: Track) -> Mapping[int, float]:
     """Return by how many pixels a track is missed, by the frames in which it is out of reach."""
-    corrected = project.puppets[layer.id].corrected
+    corrected = project.layer_runtimes[layer.id].corrected
     if corrected is None or not track.enabled:
         return {}
     lacks = {
@@ -23,7 +23,7 @@ def describe_residual(project: Project, layer: Layer, track: Track, frame: int) 
     miss = find_residuals(project, layer, track).get(frame)
     if miss is None:
         return ""
-    corrected = project.puppets[layer.id].corrected
+    corrected = project.layer_runtimes[layer.id].corrected
     correction = corrected.at(corrected.clip, frame) if corrected else None
     limits = correction.limits if correction else ()
     if len(limits) > 1:

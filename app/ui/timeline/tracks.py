@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
-from app.editor.actions import editing, timeline_pointing
+from app.editor.actions import editing, timeline_drag
 from app.ui.shortcuts import CTRL, format_modified
 from app.ui.style import (
     CHOSEN,
@@ -62,7 +62,7 @@ def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Act
         ImVec2(left + EXPANDER_WIDTH * em, row.middle + half),
     )
     clicked = bands.button(f"fold {layer.id}", low, high)
-    is_open = layer.id in bands.project.timing.unfolded
+    is_open = layer.id in bands.project.timeline.expanded_layers
     many = f"{len(layer.tracks)} tracks" if len(layer.tracks) > 1 else "its track"
     draw_tooltip(f"Fold {many} away" if is_open else f"Show {many}")
     palette = bands.look.palette
@@ -70,7 +70,7 @@ def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Act
     top = row.middle - imgui.get_text_line_height() / 2
     colour = colour_u32(palette.text if is_hovered_or_held() else palette.dim)
     imgui.get_window_draw_list().add_text(ImVec2(left + 0.3 * em, top), colour, icon)
-    return [do(timeline_pointing.unfold, layer.id)] if clicked else []
+    return [do(timeline_drag.toggle_track_rows, layer.id)] if clicked else []
 
 
 def draw_track_names(bands: TimelineLayout) -> list[Action]:
@@ -91,7 +91,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
     actions: list[Action] = []
     if bands.button("name", low, high):
         actions += select_row(row, {})
-        actions.append(do(editing.select, frozenset(track.handles)))
+        actions.append(do(editing.select_handles, frozenset(track.handles)))
     if lane.is_chosen or is_hovered_or_held():
         colour = (
             colour_u32(palette.accent, CHOSEN) if lane.is_chosen else colour_u32(palette.hovered)
@@ -114,7 +114,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
         draw_list.add_text(ImVec2(switch + 0.3 * em, top), colour, icon)
     if clicked:
         command = track_commands.enable_track(layer.id, track.handles[0], enabled=not track.enabled)
-        actions.append(do(editing.edit, command))
+        actions.append(do(editing.edit_document, command))
     return actions
 
 
@@ -202,7 +202,7 @@ def _in_view(bands: TimelineLayout, track: Track) -> list[int]:
 
 
 def _key(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> list[Action]:
-    em, gesture = bands.look.em, bands.project.timing.gesture
+    em, gesture = bands.look.em, bands.project.timeline.gesture
     row = TrackRow(lane.layer.id, lane.track.handles[0])
     gap = find_least_gap(lane.layer, lane.track.handles[0])
     room = max(0.48 * gap * bands.time_view.scale, 0.24)
@@ -226,7 +226,7 @@ def _draw_key(
 ) -> None:
     palette, em, passing = bands.look.palette, bands.look.em, key.shown_tangent_mode
     row = TrackRow(lane.layer.id, lane.track.handles[0])
-    is_chosen = key.frame in bands.project.chosen_of.get(row, ())
+    is_chosen = key.frame in bands.project.selected_keys.get(row, ())
     colour = palette.text if lane.track.enabled else palette.dim
     if is_chosen:
         draw_key_mark(passing, centre, radius + 0.2 * em, colour_u32(palette.accent, 0.35))

@@ -15,7 +15,7 @@ from app.document import (
     segment_time_at,
     without_foreign_clips,
 )
-from app.editor import HeatMap, Project, Puppet, Session
+from app.editor import HeatMap, LayerRuntime, Project, Session
 from app.motion import DeformMesh, DisplayedFrame
 from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
 from app.render.gpu import PosedMesh, RenderTarget
@@ -65,10 +65,10 @@ class Canvas:
     def draw(self, session: Session, *, paints: bool = True) -> None:
         """Draw the project of a session as it is shown now; without `paints`, the next time."""
         project = session.project
-        if project is None or project.puppet.shown is None:
+        if project is None or project.layer_runtime.shown is None:
             self.pose_pictures.release()
             return
-        twins = [puppet.twin for puppet in project.puppets.values()]
+        twins = [puppet.comparison for puppet in project.layer_runtimes.values()]
         is_split = all(twin is not None and twin.shown is not None for twin in twins)
         is_split &= session.cutting is None
         self._fit_targets(session.screen, 1 + is_split)
@@ -79,7 +79,7 @@ class Canvas:
         inputs = _inputs(session, project)
         if paints and inputs != self._drawn:
             view = project.view(session.screen)
-            scene = _scene(session, project, project.puppet.shown, self.resources)
+            scene = _scene(session, project, project.layer_runtime.shown, self.resources)
             self._renderer.draw(self._targets[0], view, scene)
             if is_split:
                 twin = _comparison_scene(session, project, scene, self.resources)
@@ -115,25 +115,33 @@ class Canvas:
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all that the picture depends on: while it stays the same, so does the picture."""
     return (
-        *(puppet.shown for puppet in project.puppets.values()),
-        *(puppet.cut.value for puppet in project.puppets.values()),
-        *(puppet.twin.shown for puppet in project.puppets.values() if puppet.twin),
-        *(puppet.store.whole for puppet in project.puppets.values() if session.overlays.onion),
-        project.puppet.store.sampler,
+        *(puppet.shown for puppet in project.layer_runtimes.values()),
+        *(puppet.cut.value for puppet in project.layer_runtimes.values()),
+        *(
+            puppet.comparison.shown
+            for puppet in project.layer_runtimes.values()
+            if puppet.comparison
+        ),
+        *(
+            puppet.store.whole
+            for puppet in project.layer_runtimes.values()
+            if session.overlays.onion
+        ),
+        project.layer_runtime.store.sampler,
         project.paths.value if session.overlays.paths else None,
-        project.joints.value,
+        project.parent_transforms.value,
         project.pull.targets if project.pull else None,
-        project.chosen_track,
-        project.puppet.corrected.count_grounds if project.puppet.corrected else 0,
-        project.take,
-        len(project.take.samples) if project.take else 0,
+        project.selected_track,
+        project.layer_runtime.corrected.count_grounds if project.layer_runtime.corrected else 0,
+        project.recording,
+        len(project.recording.samples) if project.recording else 0,
         project.active,
-        project.selected,
+        project.selected_handles,
         project.view(session.screen),
         project.playhead.since is None,
         session.hovered,
         session.cutting,
-        project.draft is None,
+        project.motion_setup is None,
         project.layer.cut_out if session.cutting else None,
         session.tint,
         project.document.layers,
@@ -164,7 +172,7 @@ def _scene(
 ) -> Scene:
     palette = PALETTES[session.preferences.theme]
     overlays = session.overlays
-    puppets = project.puppets.values()
+    puppets = project.layer_runtimes.values()
     drawing.release_but({mesh for puppet in puppets for mesh in _meshes(puppet)})
     drawing.refresh()
     if session.cutting is not None:
@@ -176,7 +184,7 @@ def _scene(
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
         )
-    shows = {layer: puppet.shown for layer, puppet in project.puppets.items()}
+    shows = {layer: puppet.shown for layer, puppet in project.layer_runtimes.items()}
     heat = None
     if session.tint is not None:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
@@ -204,11 +212,15 @@ def _comparison_scene(
     session: Session, project: Project, scene: Scene, drawing: GpuResources
 ) -> Scene:
     """Return the same scene by the method that is compared, without the poses around."""
-    shows = {layer: puppet.twin.shown for layer, puppet in project.puppets.items() if puppet.twin}
+    shows = {
+        layer: puppet.comparison.shown
+        for layer, puppet in project.layer_runtimes.items()
+        if puppet.comparison
+    }
     meshes = _posed(session, project, shows, drawing, number=COMPARISON)
     twin = replace(scene, meshes=meshes, ghosts=())
     # Handles are where the drawing's own method has them: beside it they would mark nothing.
-    is_beside = session.split is not None and session.split.beside
+    is_beside = session.compare_view is not None and session.compare_view.is_side_by_side
     return replace(twin, lines=(), discs=()) if is_beside else twin
 
 
@@ -254,19 +266,19 @@ def _tinted(
     return shown.mesh.order.depths(shown.clip, shown.frame)
 
 
-def _meshes(puppet: Puppet) -> set[DeformMesh]:
+def _meshes(puppet: LayerRuntime) -> set[DeformMesh]:
     """Return the meshes on which a layer is shown, or may be soon."""
     meshes = {store.mesh for store in (puppet.store, puppet.fine) if store is not None}
-    twin = puppet.twin
+    twin = puppet.comparison
     shows = (puppet.shown, None if twin is None else twin.shown)
     return meshes | {shown.mesh for shown in shows if shown is not None}
 
 
 def _ghosts(session: Session, project: Project, drawing: GpuResources) -> tuple[Ghost, ...]:
     """Return the poses before and after, of all layers that are seen then and look otherwise."""
-    if project.playhead.since is not None or project.puppet.shown is None:
+    if project.playhead.since is not None or project.layer_runtime.shown is None:
         return ()
-    choice, now = session.preferences, project.puppet.shown.frame
+    choice, now = session.preferences, project.layer_runtime.shown.frame
     ghosts = []
     sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
     number = 0
@@ -292,7 +304,7 @@ def _ghost(
 
     Where it hangs on what has moved just now, it is left out until it is known where it is.
     """
-    document, puppet = project.document, project.puppets[layer.id]
+    document, puppet = project.document, project.layer_runtimes[layer.id]
     # While the hand moves, in-betweens come a moment later: until then the last ones stay.
     known = puppet.store.whole
     if known is None or (at not in known.frames and not known.loop):
@@ -322,7 +334,7 @@ def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
     """Return how many of the meshes are behind the ghosts: all, or those of a background."""
     if session.preferences.ghosts_in_front:
         return meshes
-    document, shows = project.document, project.puppets
+    document, shows = project.document, project.layer_runtimes
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
         each.id: each.still and not each.transform_keys

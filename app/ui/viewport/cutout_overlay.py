@@ -10,7 +10,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.editor import Project, Session
-from app.editor.actions import cutting, material
+from app.editor.actions import cut_out_editing, stiffness_editing
 from app.render import Disc, Renderer
 from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, to_float32_points
 from app.storage import CutOutResult
@@ -59,7 +59,7 @@ class CutView:
     """
 
     def __init__(self, renderer: Renderer, project: Project, layer: int) -> None:
-        self.runtime = project.puppets[layer]
+        self.runtime = project.layer_runtimes[layer]
         self._cut = self.runtime.cut.value
         picture = self.runtime.picture
         corners = project.document.layer(layer).corner + _corners(*picture.size)
@@ -82,10 +82,10 @@ class CutView:
 
 def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, ...]:
     """Return a mark for each hole: a ring in one that stays open, a disc in one that is filled."""
-    layer, holes = project.layer, project.puppet.cut.value.holes
+    layer, holes = project.layer, project.layer_runtime.cut.value.holes
     if holes is None:
         return ()
-    swapped = {holes.number_at(point) for point in layer.cut_out.swapped}
+    swapped = {holes.number_at(point) for point in layer.cut_out.toggled_holes}
     return tuple(
         Disc(
             centre=middle + layer.corner,
@@ -109,11 +109,11 @@ def draw_brush_ring(session: Session, look: Look, at: ImVec2, scale: float) -> N
         return
     if session.cutting in {"keep", "remove"}:
         keeps = (session.cutting == "keep") != imgui.get_io().key_alt
-    elif session.material in material.BRUSHES:
-        keeps = material.BRUSHES[session.material]
+    elif session.material in stiffness_editing.BRUSHES:
+        keeps = stiffness_editing.BRUSHES[session.material]
     else:
         return
-    radius = cutting.brush_radius(session.project) * scale
+    radius = cut_out_editing.brush_radius(session.project) * scale
     draw_list = imgui.get_window_draw_list()
     colour = colour_u32(find_stroke_colour(look, keeps=keeps))
     for tone, width in outline_strokes(look, colour, 0.1):

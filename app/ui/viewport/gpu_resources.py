@@ -14,7 +14,7 @@ from app.ui.viewport.backdrop import measure_brightness
 from app.ui.viewport.cutout_overlay import CutView
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 from engine.arrays import Bytes, Floats
-from engine.domain import find_seam
+from engine.domain import find_closed_cuts
 from engine.maps import distortion
 
 
@@ -51,7 +51,7 @@ class GpuResources:
     def brightness(self) -> Floats:
         """That of the picture behind all others, as it is cut out: the backdrop must differ."""
         (first, *_) = self.project.document.layers
-        texture = self.project.puppets[first.id].cut.value.texture
+        texture = self.project.layer_runtimes[first.id].cut.value.texture
         if self._measured is None or self._measured[0] is not texture:
             self._measured = texture, measure_brightness(texture)
         return self._measured[1]
@@ -91,10 +91,10 @@ class GpuResources:
 
     def refresh(self) -> None:
         """Bring the pictures up to what is cut out of them now."""
-        used = {self._key(layer): layer for layer in self.project.puppets}
+        used = {self._key(layer): layer for layer in self.project.layer_runtimes}
         for key in list(self._pictures):
             if key in used:
-                self._pictures[key].write(self.project.puppets[used[key]].cut.value.texture)
+                self._pictures[key].write(self.project.layer_runtimes[used[key]].cut.value.texture)
             else:
                 # Undo brings it back; it has no mesh any more.
                 self._pictures.pop(key).release()
@@ -130,7 +130,7 @@ class GpuResources:
 
     def cut_view(self) -> CutView:
         """Return what is drawn of the active layer while it is cut out."""
-        if self._cut_view is None or self._cut_view.runtime is not self.project.puppet:
+        if self._cut_view is None or self._cut_view.runtime is not self.project.layer_runtime:
             self._forget_cut_view()
             self._cut_view = CutView(self._renderer, self.project, self.project.active)
         return self._cut_view
@@ -155,7 +155,7 @@ class GpuResources:
                 self.picture(layer),
                 rest=drawn.vertices - self.project.document.layer(layer).corner,
                 triangles=drawn.triangles,
-                seam=find_seam(mesh.domain),
+                seam=find_closed_cuts(mesh.domain),
             )
         return self._meshes[mesh]
 
@@ -168,13 +168,13 @@ class GpuResources:
         """Return a layer's picture on the graphics card; uncut layers of one file share it."""
         key = self._key(layer)
         if key not in self._pictures:
-            texture = self.project.puppets[layer].cut.value.texture
+            texture = self.project.layer_runtimes[layer].cut.value.texture
             context = self._renderer.programs.context
             self._pictures[key] = GpuPicture(context, texture, is_for_screen=True)
             release_pages(texture)
         return self._pictures[key]
 
     def _key(self, layer: int) -> tuple[int | None, Picture]:
-        puppet = self.project.puppets[layer]
+        puppet = self.project.layer_runtimes[layer]
         is_whole = puppet.cut.value.texture is puppet.picture.rgba
         return None if is_whole else layer, puppet.picture

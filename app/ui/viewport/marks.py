@@ -45,14 +45,14 @@ def mark_all(
     if session.overlays.paths and project.playhead.since is None:
         path_lines, dots = _paths(session, project, palette, scale)
         lines += path_lines
-    if project.playhead.since is None or project.take is not None:
+    if project.playhead.since is None or project.recording is not None:
         colours = to_rgba(palette.accent), to_rgba(palette.text), to_rgba(palette.desk, 0.8)
         path_lines, path_dots = mark_path(project, *colours, scale)
         lines, dots = [*lines, *path_lines], (*dots, *path_dots)
     if session.export_frame is not None:
         lines.append(_frame(session.export_frame, palette, scale))
-    is_playing = project.playhead.since is not None and project.take is None
-    if not session.overlays.handles or is_playing or project.draft is not None:
+    is_playing = project.playhead.since is not None and project.recording is None
+    if not session.overlays.handles or is_playing or project.motion_setup is not None:
         return tuple(lines), dots
     handle_lines, discs = mark_handles(_handles(session, project, shown), scale=scale)
     anchor = find_anchor(project, shown)
@@ -69,7 +69,7 @@ def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[
             place=_on(shown, place),
             target=_on(shown, wishes[handle.id]) if handle.id in wishes else None,
             anchor=handle.position == layer.anchor,
-            selected=handle.id in project.selected,
+            selected=handle.id in project.selected_handles,
             hovered=handle.id == session.hovered,
             locked=handle.locked,
         )
@@ -84,8 +84,8 @@ def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, comple
     """
     layer, targets = shown.clip.layer, shown.pose.targets if shown.pose else {}
     own = {handle for track in _acting(shown) for handle in track.handles} | layer.sprung_handles
-    if project.pull and project.pull.asked is not None:
-        targets = project.pull.asked
+    if project.pull and project.pull.world_targets is not None:
+        targets = project.pull.world_targets
     places = zip(layer.handles, shown.handle_positions.tolist(), strict=True)
     wanted = ((handle.id, targets.get(handle.id), place) for handle, place in places)
     short = {
@@ -115,7 +115,7 @@ def _acting(shown: DisplayedFrame) -> list[Track]:
 
 def find_anchor(project: Project, shown: DisplayedFrame) -> complex | None:
     """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
-    layer, sampler = shown.clip.layer, project.puppet.store.sampler
+    layer, sampler = shown.clip.layer, project.layer_runtime.store.sampler
     rest = layer.anchor
     if rest is None and sampler is not None and sampler.anchor is None:
         rest = sampler.sites.anchor
@@ -185,15 +185,15 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
     """Return faint marks of the handles of the layers that are not posed."""
     return tuple(
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
-        for layer, puppet in project.puppets.items()
+        for layer, puppet in project.layer_runtimes.items()
         if layer != project.active and puppet.shown is not None
-        for place in puppet.shown.placement.on(puppet.shown.handle_positions)
+        for place in puppet.shown.placement.apply(puppet.shown.handle_positions)
     )
 
 
 def _on(shown: DisplayedFrame, place: complex) -> complex:
     """Return where a place of the layer by itself is in the scene."""
-    return complex(shown.placement.on(np.array([place]))[0])
+    return complex(shown.placement.apply(np.array([place]))[0])
 
 
 def transform_loops(shown: DisplayedFrame) -> list[Complexes]:
@@ -225,12 +225,12 @@ def _paths(
     if placements is None or np.count_nonzero(frames) < 2:
         return [], ()
     rows = zip(placements, paths.positions[frames], strict=True)
-    places = np.array([placement.on(row) for placement, row in rows])
+    places = np.array([placement.apply(row) for placement, row in rows])
     keys = np.isin(paths.frames[frames], [key.frame for key in project.layer.keys])
     lines, discs = [], []
     for handle, path in zip(paths.clip.layer.handles, places.T, strict=True):
         # What does not move would only be a blot on its handle.
-        if handle.id not in project.selected or np.abs(path - path[0]).max() <= STILL:
+        if handle.id not in project.selected_handles or np.abs(path - path[0]).max() <= STILL:
             continue
         lines.append(Line(points=path, colour=to_rgba(palette.accent, 0.55), width=1.2 * scale))
         discs += [
@@ -249,7 +249,7 @@ def _paths(
 def _outlines(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
     return [
         Line(
-            points=shown.placement.on(points),
+            points=shown.placement.apply(points),
             colour=to_rgba(palette.accent),
             width=1.5 * scale,
             closed=True,
@@ -262,7 +262,7 @@ def _cages(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
     """Return the cages, which stay around the shape at rest and in its holes, where it hangs."""
     return [
         Line(
-            points=shown.placement.on(cage),
+            points=shown.placement.apply(cage),
             colour=to_rgba(palette.warning, 0.8),
             width=1.5 * scale,
             dash=5.0 * scale,

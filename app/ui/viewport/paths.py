@@ -3,7 +3,7 @@
 import numpy as np
 
 from app.document import Track
-from app.editor import Project, seen_at
+from app.editor import Project, display_frame
 from app.editor.actions import tracking
 from app.render import Colour, Disc, Line
 from engine.arrays import Complexes
@@ -21,7 +21,7 @@ def find_path_keys(project: Project) -> list[tuple[int, Complexes]]:
     if track is None:
         return []
     document = project.document
-    frames = {seen_at(document, track, key.frame) for key in track.keys}
+    frames = {display_frame(document, track, key.frame) for key in track.keys}
     return _places(project, track, sorted(frame for frame in frames if frame in document.frames))
 
 
@@ -29,7 +29,7 @@ def mark_path(
     project: Project, accent: Colour, key: Colour, rim: Colour, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
     """Return the path of the chosen track, and the trail of a drag that is recorded."""
-    lines, discs, track, take = list[Line](), list[Disc](), _chosen(project), project.take
+    lines, discs, track, take = list[Line](), list[Disc](), _chosen(project), project.recording
     if take is not None and len(take.samples) > 1:
         trail = np.array([sample.place for sample in take.samples])
         lines.append(Line(points=trail, colour=(*key[:3], 0.35 * key[3]), width=3.0 * scale))
@@ -56,22 +56,22 @@ def mark_path(
 
 
 def _chosen(project: Project) -> Track | None:
-    handle = project.chosen_track
+    handle = project.selected_track
     return None if handle is None else project.layer.track_of(handle)
 
 
 def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int, Complexes]]:
     """Return where in the scene a track wants its first handle, as far as that is known."""
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     if shown is None:
         return []
     if not track.is_scene_space and project.placed_at(project.active, frames) is None:
         return []
-    wished = [tracking.wished(project, track, frame) for frame in frames]
+    wished = [tracking.track_target(project, track, frame) for frame in frames]
     # Where a planted one is in the scene, it is wherever its layer is.
     placements = project.placements(frames, shown.placement)
     return [
-        (frame, placement.on(np.array([place])))
+        (frame, placement.apply(np.array([place])))
         for frame, place, placement in zip(frames, wished, placements, strict=True)
         if place is not None
     ]

@@ -39,9 +39,9 @@ class PosePictures:
         From `posable` comes a layer's mesh on the graphics card that can be posed.
         """
         meshes = {
-            layer: project.puppets[layer].store.mesh
+            layer: project.layer_runtimes[layer].store.mesh
             for layer, _ in self._wanted
-            if layer in project.puppets
+            if layer in project.layer_runtimes
         }
         kind = (meshes, self._side, session.preferences.theme)
         if kind != self._kind:

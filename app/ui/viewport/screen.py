@@ -4,7 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session, layering
-from app.editor.tools import Spot
+from app.editor.tools import PointerHit
 from app.motion import DisplayedFrame
 from app.ui.style import Look, pixel_density
 from app.ui.viewport.marks import find_anchor, transform_loops
@@ -37,7 +37,7 @@ class ScreenMapping:
     @property
     def pointer(self) -> complex:
         """The place under the pointer."""
-        return self.shown.placement.back(self._in_scene)
+        return self.shown.placement.apply_inverse(self._in_scene)
 
     @property
     def pixel(self) -> complex:
@@ -54,7 +54,7 @@ class ScreenMapping:
 
     def point(self, place: complex) -> ImVec2:
         """Return the point of the screen at a place."""
-        (point,) = self.points(self.shown.placement.on(np.array([place])))
+        (point,) = self.points(self.shown.placement.apply(np.array([place])))
         return point
 
     def points(self, in_scene: Complexes) -> list[ImVec2]:
@@ -62,11 +62,13 @@ class ScreenMapping:
         pixels = self.view.to_pixels(in_scene) / self.density + self._corner
         return [ImVec2(pixel.real, pixel.imag) for pixel in pixels.tolist()]
 
-    def hit_test(self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool) -> Spot:
+    def hit_test(
+        self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool
+    ) -> PointerHit:
         """Return where the pointer is, and what is under it, as far as that is not given."""
         io, place = imgui.get_io(), self.pointer
         outline, *holes = transform_loops(self.shown)
-        return Spot(
+        return PointerHit(
             place=place,
             handle=handle,
             on_axis=on_axis,

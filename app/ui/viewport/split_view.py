@@ -42,13 +42,13 @@ class SplitLayout(NamedTuple):
 
 def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayout:
     """Return how a viewport is divided."""
-    split = session.split
+    split = session.compare_view
     if split is None or session.cutting is not None:
         return SplitLayout(corner, room, corner.x + room.x)
-    if split.beside:
+    if split.is_side_by_side:
         half = ImVec2(room.x / 2, room.y)
         return SplitLayout(corner, half, corner.x + half.x)
-    return SplitLayout(corner, room, corner.x + split.place * room.x)
+    return SplitLayout(corner, room, corner.x + split.divider * room.x)
 
 
 def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
@@ -82,14 +82,14 @@ def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) 
 
     Before the canvas: what comes first gets the pointer.
     """
-    split, project = session.split, session.project
+    split, project = session.compare_view, session.project
     if split is None or project is None or session.cutting is not None:
         return []
     actions: list[Action] = []
     x, top, height = parts.divider, parts.corner.y, parts.room.y
     draw_list = imgui.get_window_draw_list()
     is_hot = False
-    if not split.beside:
+    if not split.is_side_by_side:
         imgui.set_cursor_screen_pos(ImVec2(x - GRIP * look.em, top))
         imgui.invisible_button("divider", ImVec2(2 * GRIP * look.em, height))
         is_hot = is_hovered_or_held()
@@ -97,13 +97,13 @@ def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) 
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         if imgui.is_item_active() and imgui.get_io().mouse_delta.x:
             place = (imgui.get_mouse_pos().x - parts.corner.x) / room
-            actions.append(do(viewing.move_divider, place))
+            actions.append(do(viewing.move_comparison_divider, place))
         draw_tooltip("Drag to compare")
     palette = look.palette
     colour = palette.accent if is_hot else palette.text
     for tone, width in outline_strokes(look, colour_u32(colour), LINE):
         draw_list.add_line(ImVec2(x, top), ImVec2(x, top + height), tone, width)
-    if not split.beside:
+    if not split.is_side_by_side:
         knob = ImVec2(x, top + height / 2)
         draw_knob(look, knob, KNOB, colour)
         draw_centred_text(knob, knob, icons.ICON_FA_LEFT_RIGHT, colour_u32(palette.on_accent))

@@ -7,13 +7,13 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from scipy.spatial import cKDTree
 
 from app.document import Layer, stiff_outline
-from app.editor.actions import material
+from app.editor.actions import stiffness_editing
 from app.motion import DeformMesh
 from app.ui.style import Look, colour_u32, outline_strokes
 from app.ui.viewport.screen import ScreenMapping
 from engine.arrays import Floats
 
-EXTENT = log(material.STRONGEST)  # what is so stiff has the last of the colours
+EXTENT = log(stiffness_editing.STRONGEST)  # what is so stiff has the last of the colours
 WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
 AROUND, TINY = 128, 1e-6  # points of the outline that colour a place inside
 MOST = 0.7  # em: how wide a bone is at most, to either side

@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 from app.document import WEIGHT_PRESETS, Handle, handle_commands
 from app.editor import Action, Project, Session, do, layering
 from app.editor.actions import editing, posing, viewing
-from app.editor.tools import Spot, pointing
+from app.editor.tools import PointerHit, tool_pointer
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import ALT, CTRL, draw_action_item, format_modified
 from app.ui.style import Look, is_hovered_or_held, is_pressed, pixel_density
@@ -62,7 +62,11 @@ def draw_viewport_pictures(
     Where the viewport is divided into two, `pictures` has the other method's picture, too.
     """
     parts = divide_viewport(session, imgui.get_window_pos(), imgui.get_window_size())
-    if project.puppet.shown is not None and pictures.own is not None and min(parts.room) >= 1:
+    if (
+        project.layer_runtime.shown is not None
+        and pictures.own is not None
+        and min(parts.room) >= 1
+    ):
         draw_split_pictures(parts, pictures.own, pictures.comparison)
     return _fit(session, parts.room)
 
@@ -73,9 +77,9 @@ def draw_viewport_panel(
     """Show what lies over the pictures, and take what the pointer does there."""
     corner, whole = imgui.get_window_pos(), imgui.get_window_size()
     parts, actions = divide_viewport(session, corner, whole), list[Action]()
-    if project.puppet.shown is None or pictures.own is None or min(parts.room) < 1:
+    if project.layer_runtime.shown is None or pictures.own is None or min(parts.room) < 1:
         return actions
-    screen = ScreenMapping(session, project, project.puppet.shown, corner)
+    screen = ScreenMapping(session, project, project.layer_runtime.shown, corner)
     if session.cutting is None:
         draw_camera_frame(look, project, screen, (corner, parts.room))
     # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
@@ -93,7 +97,7 @@ def draw_viewport_panel(
     spot = screen.hit_test(look, handles.hovered, on_ring=on_ring, on_axis=axis.is_hot)
     spot = replace(spot, at_target=handles.at_target, track_key=track_key)
     if handles.is_pressed or is_key_pressed or axis.is_pressed or _is_canvas_pressed():
-        actions.append(do(pointing.press, spot))
+        actions.append(do(tool_pointer.press_pointer, spot))
     actions += _canvas_menu(session, is_pointed=on_canvas and handles.hovered is None)
     actions += _navigate(screen)
     actions += handles.actions
@@ -102,23 +106,23 @@ def draw_viewport_panel(
     if session.moves and is_over and session.cutting is None:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
     if handles.hovered != session.hovered:
-        actions.append(do(pointing.hover, handles.hovered))
+        actions.append(do(tool_pointer.hover_handle, handles.hovered))
     draw_mirror_axis(look, axis)
     if ring is not None:
-        draw_rotation_gizmo(look, ring, is_pointed=on_ring and session.pointer is None)
+        draw_rotation_gizmo(look, ring, is_pointed=on_ring and session.active_tool is None)
     actions += _update_hint(session, screen, spot, is_over=is_over)
     if session.tint == "stiffness" and not is_in_front("Material"):
-        actions.append(do(viewing.tint, None))
+        actions.append(do(viewing.set_tint, None))
     if _shows_handles(session, project):
         draw_bones(look, screen)
     draw_joints(session, look, screen)
-    if session.material is not None and (on_canvas or session.pointer is not None):
+    if session.material is not None and (on_canvas or session.active_tool is not None):
         draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
     if session.cutting is None:
         return actions + draw_badges(session, look, project, corner, parts.room)
     draw_pending_strokes(look, screen)
     draw_cuts(look, screen)
-    if on_canvas or session.pointer is not None:
+    if on_canvas or session.active_tool is not None:
         draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
     return actions + draw_mode_badge(look, "Cutting out", corner, parts.room)
 
@@ -126,16 +130,18 @@ def draw_viewport_panel(
 def _fit(session: Session, room: ImVec2) -> list[Action]:
     """Let the picture have as many pixels as it has room for."""
     width, height = (max(1, round(side * pixel_density())) for side in room)
-    return [] if (width, height) == session.screen else [do(viewing.resize, width, height)]
+    return (
+        [] if (width, height) == session.screen else [do(viewing.set_viewport_size, width, height)]
+    )
 
 
 def _update_hint(
-    session: Session, screen: ScreenMapping, spot: Spot, *, is_over: bool
+    session: Session, screen: ScreenMapping, spot: PointerHit, *, is_over: bool
 ) -> list[Action]:
     """Say what can be done where the pointer is; none of the rows of layers is below it then."""
-    actions = [do(layering.tidy_rows)] if is_over and screen.project.lingering else []
+    actions = [do(layering.reset_tree_rows)] if is_over and screen.project.lingering else []
     hint = find_hint(session, screen, spot) if is_over else ""
-    return actions if hint == session.hint else [*actions, do(pointing.explain, hint)]
+    return actions if hint == session.hint else [*actions, do(tool_pointer.show_hint, hint)]
 
 
 def _is_canvas_pressed() -> bool:
@@ -151,11 +157,11 @@ def _navigate(screen: ScreenMapping) -> list[Action]:
     with_space = imgui.is_key_down(imgui.Key.space) and imgui.is_mouse_down(0)
     if imgui.is_mouse_down(imgui.MouseButton_.middle) or with_space:
         delta = complex(*io.mouse_delta) * screen.density
-        actions = [do(pointing.use_space)] if with_space else []
-        return [*actions, do(viewing.look_from, view.panned(delta))] if delta else actions
+        actions = [do(tool_pointer.note_space_used)] if with_space else []
+        return [*actions, do(viewing.set_view, view.panned(delta))] if delta else actions
     if io.mouse_wheel:
         scale = min(max(view.scale * ZOOM_STEP**io.mouse_wheel, SMALLEST_ZOOM), LARGEST_ZOOM)
-        return [do(viewing.look_from, view.zoomed(scale / view.scale, screen.pixel))]
+        return [do(viewing.set_view, view.zoomed(scale / view.scale, screen.pixel))]
     return []
 
 
@@ -173,7 +179,7 @@ def _shows_handles(session: Session, project: Project) -> bool:
 
     While a motion is drafted its joints are in their place.
     """
-    is_away = project.playhead.since is not None or project.draft is not None
+    is_away = project.playhead.since is not None or project.motion_setup is not None
     return session.overlays.handles and session.cutting is None and not is_away
 
 
@@ -188,7 +194,7 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
     grips = [("target", identity) for identity in targets]
     grips += [("handle", identity) for identity in identities]
     places = np.array([*targets.values(), *shown.handle_positions], np.complex128)
-    points = screen.points(shown.placement.on(places))
+    points = screen.points(shown.placement.apply(places))
     # The one that is drawn last lies on top.
     for (what, identity), point in reversed(list(zip(grips, points, strict=True))):
         imgui.set_cursor_screen_pos(point - radius)
@@ -196,10 +202,10 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
         if is_hovered_or_held():
             hovered, at_target = identity, what == "target"
         pressed = pressed or is_pressed()
-        if session.pointer is None and imgui.is_item_clicked(imgui.MouseButton_.right):
+        if session.active_tool is None and imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of handle {identity}")
-            if identity not in screen.project.selected:
-                actions.append(do(editing.select, frozenset({identity})))
+            if identity not in screen.project.selected_handles:
+                actions.append(do(editing.select_handles, frozenset({identity})))
     # What is shown may still be of a layer from before the last edit.
     for handle in screen.project.layer.handles:
         actions += _handle_menu(session, screen, handle)
@@ -208,7 +214,7 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
 
 def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
     """Draw the menu of the canvas, if it is open; a right click opens it where it is pointed."""
-    is_free = is_pointed and session.pointer is None and session.cutting is None
+    is_free = is_pointed and session.active_tool is None and session.cutting is None
     if is_free and imgui.is_mouse_clicked(imgui.MouseButton_.right):
         imgui.open_popup("menu of the canvas")
     actions: list[Action] = []
@@ -229,7 +235,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     layer, identity = screen.project.layer, handle.id
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
-    chosen = screen.project.selected | {identity}
+    chosen = screen.project.selected_handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
     if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, "click")):
@@ -240,10 +246,10 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     imgui.separator()
     label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, "click")):
-        actions.append(do(posing.anchor_at, identity))
+        actions.append(do(posing.toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
     if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
-        actions.append(do(posing.free_turn, identity))
+        actions.append(do(posing.free_rotation, identity))
     imgui.end_popup()
     return actions
 
@@ -266,7 +272,7 @@ def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Acti
     """Draw whether it is painted in front where the drawing lies over itself."""
     if not imgui.begin_menu("Depth"):
         return []
-    front = editing.depth_now(session, screen.project, handle)
+    front = editing.depth_at_playhead(session, screen.project, handle)
     actions = [
         do(editing.set_depth, handle.id, depth)
         for word, depth in DEPTHS.items()

@@ -31,7 +31,7 @@ class Exporter:
             self._draw(session, run)
         except Exception as error:  # noqa: BLE001 - reported, and the window lives on
             self.release()
-            exporting.fail(session, error)
+            exporting.report_failed_export(session, error)
 
     def release(self) -> None:
         """End the export that is under way; whole frames stay, and what is prepared is left."""
@@ -51,11 +51,11 @@ class Exporter:
         begun = session.clock()
         drawn = run.done
         for done in self._steps:
-            exporting.advance(session, run, done)
+            exporting.update_export_progress(session, run, done)
             # Nothing new: the other threads are at work.
             if done == drawn or session.clock() - begun >= BUDGET:
                 return
             drawn = done
         notices = self._maker.notices
         self.release()
-        exporting.finish(session, run, notices)
+        exporting.finish_export(session, run, notices)

@@ -6,7 +6,7 @@ from typing import Literal
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx, implot
 
-from app.editor import Action, Session, do, failures
+from app.editor import Action, Session, do, error_reports
 from app.ui.style import Look, draw_tooltip, small_text
 
 OWN_CLIPS = 2  # clip rectangles of a window itself
@@ -84,9 +84,11 @@ class WindowPart:
         self.failure = None
 
     def _fail(self, session: Session, error: Exception) -> None:
-        trace = failures.trace_of(session, error)
+        trace = error_reports.error_trace(session, error)
         if self.failure is None or self.failure.trace != trace:
-            failures.surprise(session, format_failure(self.name), error, topic="parts")
+            error_reports.report_unexpected_error(
+                session, format_failure(self.name), error, topic="parts"
+            )
         self.failure = _Failure(_state(session), session.clock(), trace)
 
     def _show_notice(self, failure: _Failure, look: Look) -> list[Action]:
@@ -128,7 +130,7 @@ class WindowPart:
             imgui.set_clipboard_text(failure.trace)
         imgui.same_line()
         if imgui.button(REPORT):
-            actions.append(do(failures.show_report))
+            actions.append(do(error_reports.show_problem_report))
         if self.dismissal is not None:
             imgui.same_line()
             if imgui.button(CLOSE):
@@ -197,15 +199,32 @@ def _state(session: Session) -> tuple[object, ...]:
     """Return all that parts of the window show, but for what the clock alone changes."""
     project = session.project
     own = (
-        *(session.dialog, session.preferences, session.overlays, session.split, session.tint),
+        *(
+            session.dialog,
+            session.preferences,
+            session.overlays,
+            session.compare_view,
+            session.tint,
+        ),
         *(session.cutting, session.material, session.moves, session.records, session.screen),
-        *(session.export, session.guide, session.curves, bool(session.jobs.kinds), project),
+        *(session.export, session.tutorial, session.curves, bool(session.jobs.kinds), project),
     )
     if project is None:
         return own
     return (
         *own,
         *(project.document, project.history.position, project.history.preview_pose, project.active),
-        *(project.selected, project.track_row, project.beside, project.toggled, project.solo),
-        *(project.draft, project.camera, project.playhead, tuple(project.chosen_of.items())),
+        *(
+            project.selected_handles,
+            project.track_row,
+            project.other_selected_layers,
+            project.toggled_rows,
+            project.solo,
+        ),
+        *(
+            project.motion_setup,
+            project.camera,
+            project.playhead,
+            tuple(project.selected_keys.items()),
+        ),
     )

@@ -40,7 +40,7 @@ class FreeMemory:
         elif self._due is not None and now >= self._due:
             self._due = None
             if project is not None:
-                project.make_room()
+                project.free_memory()
             self._give(now)
 
     def _give(self, now: float) -> None:

@@ -18,7 +18,7 @@ from PIL import Image
 import glfw  # isort: skip
 
 from app.document import Pose
-from app.editor import Action, FileDialog, Project, Session, do, failures, layering
+from app.editor import Action, FileDialog, Project, Session, do, error_reports, layering
 from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
@@ -211,13 +211,13 @@ class Window:
         session = self.session
         project = session.project
         kept = ""
-        if project is not None and saving.has_unsaved(project):
+        if project is not None and saving.has_unsaved_changes(project):
             kept = " Unsaved work was kept."
             try:
                 saving.autosave_now(session)
             except EXPECTED_ERRORS as reason:
                 kept = f" Unsaved work could not be kept ({reason})."
-        failures.surprise(
+        error_reports.report_unexpected_error(
             session,
             f"The picture cannot be drawn: {error}.{kept} If the picture does not come back, save "
             "and start Lissom again.",
@@ -284,7 +284,7 @@ class Window:
 
     def take_dropped(self, paths: list[Path]) -> None:
         """Open what was dropped on the window, or add it to what is open."""
-        self.queue_action(do(layering.drop, paths))
+        self.queue_action(do(layering.drop_files, paths))
 
     def _rename(self) -> None:
         """Name the window after what is open."""
@@ -294,7 +294,7 @@ class Window:
             glfw.set_window_title(glfw_utils.glfw_window_hello_imgui(), title)
 
     def _release(self) -> None:
-        exporting.cancel(self.session)
+        exporting.cancel_export(self.session)
         self.shell.release()
         owners = (self._exporter, self.canvas, self.thumbnails, self._layer_pictures)
         for owner in (*owners, self._renderer):

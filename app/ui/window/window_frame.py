@@ -6,20 +6,29 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, hello_imgui, imgui, implot
 
-from app.editor import Action, FileDialog, Project, Session, do, failures, promises, sentence
+from app.editor import (
+    Action,
+    FileDialog,
+    Project,
+    Session,
+    as_sentence,
+    do,
+    error_reports,
+    pending_changes,
+)
 from app.editor.actions import (
     close_dialog,
-    dismiss,
+    dismiss_toast,
     editing,
     exporting,
-    guiding,
     playback,
     saving,
-    timeline_pointing,
+    timeline_drag,
+    tutorials,
     upkeep,
     viewing,
 )
-from app.editor.tools import pointing
+from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
 from app.ui import bars, toasts, welcome
@@ -40,14 +49,14 @@ REPEATS = 2  # frames after which the next ones would show nothing new
 LEFT = imgui.MouseButton_.left
 # What comes of itself, frame by frame, and tells nothing of what the person did.
 UNLOGGED = {
-    dismiss,
-    editing.use_widget,
-    exporting.show_frame,
-    pointing.explain,
-    pointing.hover,
-    timeline_pointing.follow,
-    viewing.attend,
-    viewing.resize,
+    dismiss_toast,
+    editing.note_widget_in_use,
+    exporting.preview_export_frame,
+    tool_pointer.show_hint,
+    tool_pointer.hover_handle,
+    timeline_drag.scroll_to_playhead,
+    viewing.focus_timeline,
+    viewing.set_viewport_size,
 }
 
 
@@ -116,7 +125,12 @@ class WindowFrame:
         self._follow = self._step(upkeep.follow_playhead)
         self._update_steps = [
             self._step(each)
-            for each in (promises.go_on, *upkeep.STEPS, saving.maintain, guiding.follow)
+            for each in (
+                pending_changes.run_deferred_actions,
+                *upkeep.STEPS,
+                saving.write_due_files,
+                tutorials.update_tutorial,
+            )
         ]
 
     def runner_params(self) -> hello_imgui.RunnerParams:
@@ -170,9 +184,11 @@ class WindowFrame:
 
     def _report_error(self, error: Exception) -> None:
         if isinstance(error, EXPECTED_ERRORS):
-            self.session.tell(sentence(str(error)), tone="error")
+            self.session.show_notice(as_sentence(str(error)), tone="error")
         else:
-            failures.surprise(self.session, f"That did not work: {error}", error)
+            error_reports.report_unexpected_error(
+                self.session, f"That did not work: {error}", error
+            )
 
     def _step(self, run: Callable[[Session], None]) -> FrameStep:
         return FrameStep(partial(run, self.session), self._report_error)
@@ -267,7 +283,7 @@ class WindowFrame:
         self._docking.begin_frame(interface_scale(session.preferences.scale))
         # The tabs that show them ask for them in every frame.
         session.export_frame = session.pointed_layer = None
-        playback.halt_at_end(session)
+        playback.stop_playback_at_end(session)
         # Panels are to see the frame that it is by now.
         self._follow.run_guarded(session)
         if _is_busy(session):
@@ -281,30 +297,30 @@ class WindowFrame:
             self._ask(name)
         # Where the pointer is down on no widget, that counts as one.
         widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
-        self._actions.append(do(editing.use_widget, widget))
+        self._actions.append(do(editing.note_widget_in_use, widget))
 
     def _apply_actions(self) -> None:
         # What panels saw of the pointer comes first: what was dropped there depends on it.
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
             if action.verb not in UNLOGGED:
-                failures.note(self.session, action)
+                error_reports.log_action(self.session, action)
             self.run_guarded(partial(action.apply, self.session))
-        if self.session.wanted_panel:
-            bring_to_front(self.session.wanted_panel)
-            self.session.wanted_panel = ""
+        if self.session.panel_to_focus:
+            bring_to_front(self.session.panel_to_focus)
+            self.session.panel_to_focus = ""
         # After the actions, so that a pull goes on with the newest wish; before the picture is
         # drawn, so that it shows at once how far the solver has come.
         self.run_guarded(self.session.jobs.deliver)
         for step in self._update_steps:
             step.run_guarded(self.session)
         self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
-        if self.session.quitting:
+        if self.session.is_quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 
     def _may_exit(self) -> bool:
         # The window's own close button; the answer comes as an action.
-        self._actions.append(do(saving.quit_lissom))
+        self._actions.append(do(saving.request_quit))
         return False
 
 
@@ -337,10 +353,10 @@ def _is_busy(session: Session) -> bool:
 def _awaits_in_between(session: Session) -> bool:
     """Tell whether something stands in for an in-between, and nothing else goes on."""
     project = session.project
-    if project is None or project.playhead.since is not None or session.pointer is not None:
+    if project is None or project.playhead.since is not None or session.active_tool is not None:
         return False
     if session.export is not None or session.toasts or session.dialog is not None:
         return False
-    shows = [puppet.shown for puppet in project.puppets.values()]
+    shows = [puppet.shown for puppet in project.layer_runtimes.values()]
     awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
     return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)

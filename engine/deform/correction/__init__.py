@@ -6,9 +6,15 @@ its distortion is known from moduli.
 Imports: `engine.maps`, `engine.paths`.
 """
 
+from engine.deform.correction.barrier import (
+    WIDTH as WIDTH,
+    LimitBarrier as LimitBarrier,
+    extremes as extremes,
+    log_distortions as log_distortions,
+)
 from engine.deform.correction.corrector import (
     PointCorrector as PointCorrector,
-    corrector_of as corrector_of,
+    build_corrector as build_corrector,
 )
 from engine.deform.correction.frame import (
     BaseFrame as BaseFrame,
@@ -17,22 +23,16 @@ from engine.deform.correction.frame import (
 from engine.deform.correction.limits import (
     BEYOND as BEYOND,
     INSIDE as INSIDE,
-    largest_share as largest_share,
-    limits_of as limits_of,
-    logarithms as logarithms,
+    frame_limits as frame_limits,
+    log_limits as log_limits,
+    max_feasible_share as max_feasible_share,
     shorten_solution as shorten_solution,
     solve_within as solve_within,
 )
 from engine.deform.correction.paths import PointPaths as PointPaths
 from engine.deform.correction.solver import (
     PointSolution as PointSolution,
-    Targets as Targets,
-    solve as solve,
+    PointTargets as PointTargets,
+    solve_correction as solve_correction,
 )
 from engine.deform.correction.variables import Variables as Variables
-from engine.deform.correction.walls import (
-    WIDTH as WIDTH,
-    LimitWalls as LimitWalls,
-    extremes as extremes,
-    quantities as quantities,
-)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.arrays import Complexes, as_points, held_bytes
+from engine.arrays import Complexes, as_points, nbytes_of
 from engine.deform.correction.paths import PointPaths
 from engine.deform.correction.variables import Variables
 from engine.geometry import ON_OUTLINE, require_inside
@@ -32,10 +32,10 @@ class PointCorrector:
     @property
     def nbytes(self) -> int:
         """Memory that the arrays take, in bytes."""
-        return held_bytes(self, but=(self.boundary,))
+        return nbytes_of(self, but=(self.boundary,))
 
 
-def corrector_of(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
+def build_corrector(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
     """Prepare corrections with targets for points (m,); the anchor is where integrals begin.
 
     Raises

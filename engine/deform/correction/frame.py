@@ -15,7 +15,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.correction.corrector import PointCorrector
-from engine.deform.correction.variables import Values
+from engine.deform.correction.variables import BasisValues
 
 
 class BaseFrame(NamedTuple):
@@ -36,12 +36,14 @@ class BaseFrame(NamedTuple):
     by: Complexes
     sign: int
 
-    def corrected(self, values: Values, x: Floats) -> tuple[Complexes, Complexes, Complexes]:
+    def apply_correction(
+        self, values: BasisValues, x: Floats
+    ) -> tuple[Complexes, Complexes, Complexes]:
         """Return F e^h, G e^{σh} and K e^h of unknowns (2N,); beside them, q multiplies the last.
 
         Parameters
         ----------
-        values : Values
+        values : BasisValues
             Of the unknowns' functions where the frame is given.
         x : float64, shape (2N,)
         """
@@ -75,7 +77,7 @@ class CorrectedFrame:
     def of(cls, corrector: PointCorrector, base: BaseFrame, x: Floats) -> Self:
         """Correct a frame."""
         values = corrector.variables.at_nodes
-        conformal, own, factor = base.corrected(values, x)
+        conformal, own, factor = base.apply_correction(values, x)
         return cls(corrector, base, x, conformal, own, values.q_of(x) * factor, factor)
 
     def places(self) -> Complexes:
@@ -83,7 +85,7 @@ class CorrectedFrame:
         both = self.corrector.paths.integrals(np.stack([self.conformal, self.own + self.mixed]))
         return np.asarray(both[0] + both[1].conj())
 
-    def rows(self) -> Floats:
+    def constraint_rows(self) -> Floats:
         """Return the derivatives of these by the unknowns: real parts, then imaginary ones."""
         values, integrals = self.corrector.variables.at_nodes, self.corrector.paths.integrals
         by_h = integrals(values.h, self.conformal)
@@ -91,18 +93,18 @@ class CorrectedFrame:
         rows = np.vstack([by_h, integrals(values.q, self.factor).conj()]).T
         return np.vstack([rows.real, rows.imag])
 
-    def bending(self, pulls: Complexes) -> "Bending":
+    def curvature(self, pulls: Complexes) -> "Curvature":
         """Return the second derivative of Re Σ conj(pull_i) place_i by the unknowns."""
         paths = self.corrector.paths
         back, through = paths.spread(pulls.conj()), paths.spread(pulls)
         twice = back * self.conformal + through * (self.own + self.mixed)
-        return Bending(self.corrector.variables.at_nodes, twice, through * self.factor)
+        return Curvature(self.corrector.variables.at_nodes, twice, through * self.factor)
 
 
-class Bending(NamedTuple):
+class Curvature(NamedTuple):
     """A symmetric form of the unknowns: Re Σ twice · (δh)² + 2 both · δh δq over the nodes."""
 
-    values: Values
+    values: BasisValues
     twice: Complexes
     both: Complexes
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from engine.arrays import Floats
+from engine.deform.correction.barrier import WIDTH, LimitBarrier, extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
-from engine.deform.correction.solver import PointSolution, Targets, solve
-from engine.deform.correction.walls import WIDTH, LimitWalls, extremes
+from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
@@ -17,12 +17,12 @@ HALVINGS = 20
 TINY = 1e-300
 
 
-def logarithms(sigma_a: float, sigma_b: float, k: float) -> Floats:
+def log_limits(sigma_a: float, sigma_b: float, k: float) -> Floats:
     """Return ln σ_a, −ln σ_b and k, (3,)."""
     return np.array([np.log(sigma_a), -np.log(max(sigma_b, TINY)), k])
 
 
-def limits_of(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
+def frame_limits(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
     """Return the largest ln σ_a, −ln σ_b and k that bounds allow, or known frames have, (3,).
 
     Parameters
@@ -33,7 +33,7 @@ def limits_of(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
     inside : float
         How far inside the bounds.
     """
-    limits = logarithms(bounds.sigma_a, bounds.sigma_b, bounds.k)
+    limits = log_limits(bounds.sigma_a, bounds.sigma_b, bounds.k)
     within = limits - inside * np.array([1.0, 1.0, bounds.k])
     return np.asarray(np.max([within, *known], axis=0))
 
@@ -42,7 +42,7 @@ def solve_within(
     corrector: PointCorrector,
     nodes: BaseFrame,
     samples: BaseFrame,
-    targets: Targets,
+    targets: PointTargets,
     bounds: Bounds,
     inside: float = INSIDE,
 ) -> PointSolution:
@@ -57,40 +57,42 @@ def solve_within(
     corrector : PointCorrector
     nodes, samples : BaseFrame
         The frame at the nodes of the corrector's paths, and at the samples of the boundary.
-    targets : Targets
+    targets : PointTargets
         Without a largest force, a target is met even where that breaks a limit.
     bounds : Bounds
     inside : float
         How far inside the bounds the samples end.
     """
-    found = solve(corrector, nodes, targets, throw=False)
+    found = solve_correction(corrector, nodes, targets, throw=False)
     own = extremes(corrector, samples, 0.0 * found.x)
-    limits = limits_of(bounds, own + BEYOND, inside=inside)
+    limits = frame_limits(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
     # From zero, where all that stays is where it is wanted: so it remains on the way.
     start = replace(found, x=0.0 * found.x, shift=0j)
-    walls = LimitWalls(corrector, samples, limits)
-    near = solve(corrector, nodes, targets, start, walls, throw=False)
-    return replace(near, steps=found.steps + near.steps, is_held_back=True)
+    walls = LimitBarrier(corrector, samples, limits)
+    near = solve_correction(corrector, nodes, targets, start, walls, throw=False)
+    return replace(near, steps=found.steps + near.steps, is_limited=True)
 
 
 def shorten_solution(
     corrector: PointCorrector,
     nodes: BaseFrame,
-    targets: Targets,
+    targets: PointTargets,
     solution: PointSolution,
     share: float,
 ) -> PointSolution:
     """Return a part of a correction."""
     x, shift = share * solution.x, share * solution.shift
-    count = len(targets.moves)
+    count = len(targets.offsets)
     before, after = (CorrectedFrame.of(corrector, nodes, each).places() for each in (0 * x, x))
     moved = (after - before)[:count] + shift
-    return replace(solution, x=x, shift=shift, misses=np.abs(moved - targets.moves))
+    return replace(solution, x=x, shift=shift, target_errors=np.abs(moved - targets.offsets))
 
 
-def largest_share(corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats) -> float:
+def max_feasible_share(
+    corrector: PointCorrector, base: BaseFrame, x: Floats, limits: Floats
+) -> float:
     """Return the largest s of [0, 1], about, with which s h and s q keep limits at the samples.
 
     A base that exceeds a limit itself may exceed it a little more.

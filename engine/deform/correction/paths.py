@@ -8,7 +8,7 @@ import scipy.linalg
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
-from engine.geometry import Pieces, as_xy, bisect
+from engine.geometry import Pieces, as_xy, bisect_segments
 from engine.maps import Boundary
 from engine.paths import Loops, leave_region, scattered_network
 
@@ -50,7 +50,9 @@ class PointPaths:
         ways = _ways(boundary, anchor, points, near)
         legs = list(dict.fromkeys(leg for way in ways for leg in way))
         starts, ends = (np.array([leg[k] for leg in legs]) for k in (0, 1))
-        pieces = bisect(Pieces.whole(starts, ends), lambda p: _are_fine(p, near, boundary.size))
+        pieces = bisect_segments(
+            Pieces.whole(starts, ends), lambda p: _are_fine(p, near, boundary.size)
+        )
         x, w = np.polynomial.legendre.leggauss(GAUSS)
         spans = (pieces.ends - pieces.starts)[:, None]
         nodes = (pieces.starts[:, None] + spans * (1 + x) / 2).ravel()

@@ -17,10 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Complexes, Floats, as_points
+from engine.deform.correction.barrier import BarrierState, LimitBarrier
 from engine.deform.correction.corrector import PointCorrector
-from engine.deform.correction.frame import BaseFrame, Bending, CorrectedFrame
+from engine.deform.correction.frame import BaseFrame, CorrectedFrame, Curvature
 from engine.deform.correction.step_model import Rows, StepModel
-from engine.deform.correction.walls import LimitWalls, WallState
 from engine.errors import EngineError
 
 SMALL = 1e-6  # a step in h: where the iteration ends
@@ -32,7 +32,7 @@ ENOUGH, CLOSE = 0.5, 0.15
 NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
 CALM = 1e-4  # a step in h: where the iteration ends within walls
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
-ARM = 0.25  # of the diameter: the distance at which a turn is as firm as a point
+LEVER = 0.25  # of the diameter: the distance at which a turn is as firm as a point
 TINY = 1e-300
 UNFINISHED = (
     "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
@@ -42,7 +42,7 @@ BAD_TARGETS = "The {name} of targets for {count} points cannot be {values}."
 FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
 
 
-class Targets(NamedTuple):
+class PointTargets(NamedTuple):
     """Where points are wanted.
 
     Parameters
@@ -61,12 +61,12 @@ class Targets(NamedTuple):
         By how much points give in, over their pulls, beside what their weights say.
     """
 
-    moves: Complexes
+    offsets: Complexes
     weights: Floats
     is_anchored: bool
-    forces: Floats | None = None
-    turns: Floats | None = None
-    give: Floats | None = None
+    max_forces: Floats | None = None
+    rotations: Floats | None = None
+    compliances: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -90,18 +90,18 @@ class PointSolution:
 
     x: Floats
     shift: complex
-    misses: Floats
+    target_errors: Floats
     steps: int
-    is_held_back: bool = False
+    is_limited: bool = False
     is_finished: bool = True
 
 
-def solve(
+def solve_correction(
     corrector: PointCorrector,
     base: BaseFrame,
-    targets: Targets,
+    targets: PointTargets,
     start: PointSolution | None = None,
-    walls: LimitWalls | None = None,
+    walls: LimitBarrier | None = None,
     *,
     throw: bool = True,
 ) -> PointSolution:
@@ -112,10 +112,10 @@ def solve(
     corrector : PointCorrector
     base : BaseFrame
         At the nodes of the corrector's paths.
-    targets : Targets
+    targets : PointTargets
     start : PointSolution, optional
         Of a frame that is much the same.
-    walls : LimitWalls, optional
+    walls : LimitBarrier, optional
         What the correction is to keep.
 
     Raises
@@ -129,26 +129,26 @@ def solve(
     is_inside = walls is None or not walls.beyond.any()
     if not problem.is_asked and is_inside and (walls is None or start is None or not start.x.any()):
         nothing = corrector.variables.nothing
-        return PointSolution(x=nothing, shift=0j, misses=np.abs(targets.moves), steps=0)
+        return PointSolution(x=nothing, shift=0j, target_errors=np.abs(targets.offsets), steps=0)
     if start is None:
         at = problem.state(corrector.variables.nothing, 0j)
     else:
         at = problem.state(start.x, start.shift)
-    found = problem.solved(at)
+    found = problem.solve_steps(at)
     if throw and not found.is_finished:
-        raise EngineError(UNFINISHED.format(steps=found.steps, miss=found.misses.max()))
+        raise EngineError(UNFINISHED.format(steps=found.steps, miss=found.target_errors.max()))
     return found
 
 
-def _require_targets(targets: Targets, count: int) -> None:
+def _require_targets(targets: PointTargets, count: int) -> None:
     """Raise an `EngineError` unless targets are some that points can have."""
-    as_points(targets.moves, "The moves of targets")
+    as_points(targets.offsets, "The moves of targets")
     for name, values, fits in (
-        ("moves", targets.moves, True),
+        ("moves", targets.offsets, True),
         ("weights", targets.weights, (targets.weights >= 0) & (targets.weights <= 1)),
-        ("forces", targets.forces, targets.forces is None or targets.forces >= 0),
-        ("turns", targets.turns, targets.turns is None or ~np.isinf(targets.turns)),
-        ("give", targets.give, targets.give is None or targets.give >= 0),
+        ("forces", targets.max_forces, targets.max_forces is None or targets.max_forces >= 0),
+        ("turns", targets.rotations, targets.rotations is None or ~np.isinf(targets.rotations)),
+        ("give", targets.compliances, targets.compliances is None or targets.compliances >= 0),
     ):
         if values is not None and (len(values) != count or not np.all(fits)):
             raise EngineError(BAD_TARGETS.format(name=name, count=count, values=values))
@@ -159,43 +159,47 @@ class _State(NamedTuple):
 
     frame: CorrectedFrame
     shift: complex
-    lack: Floats
-    walls: WallState | None
+    residual: Floats
+    barrier: BarrierState | None
 
 
 class _Problem:
     """One frame: its points as rows that are scaled by the roots of their weights."""
 
     def __init__(
-        self, corrector: PointCorrector, base: BaseFrame, targets: Targets, walls: LimitWalls | None
+        self,
+        corrector: PointCorrector,
+        base: BaseFrame,
+        targets: PointTargets,
+        walls: LimitBarrier | None,
     ) -> None:
         self.corrector, self.base, self.walls = corrector, base, walls
         self.longest = LONGEST if walls is None else LONGEST_AT_WALLS
         self.gains = GAINS if walls is None else GAINS_AT_WALLS
         holes = len(corrector.boundary.holes)
-        self.count = count = len(targets.moves)
+        self.count = count = len(targets.offsets)
         places = CorrectedFrame.of(corrector, base, corrector.variables.nothing).places()
         self.of_points = np.concatenate([np.ones(count), np.zeros(holes)])
         # Points are moved from the base's places; periods are closed.
         self.wanted = places * self.of_points
-        self.wanted[:count] += targets.moves
-        turns = np.zeros(0) if targets.turns is None else targets.turns
+        self.wanted[:count] += targets.offsets
+        turns = np.zeros(0) if targets.rotations is None else targets.rotations
         self.turned = np.flatnonzero(~np.isnan(turns))
         self.turns = turns[self.turned]
         weights = np.concatenate([targets.weights, np.ones(holes)])
         self.roots = np.sqrt(weights)
-        give = np.zeros(count) if targets.give is None else targets.give
+        give = np.zeros(count) if targets.compliances is None else targets.compliances
         self.loose = np.concatenate([1.0 - weights, 1.0 - weights, 0 * self.turns])
         self.give = np.concatenate([give, np.zeros(holes), give, np.zeros(holes), 0 * self.turns])
-        forces = np.full(count, np.inf) if targets.forces is None else targets.forces
+        forces = np.full(count, np.inf) if targets.max_forces is None else targets.max_forces
         size = corrector.boundary.size
         self.forces = np.concatenate(
-            [forces, np.full(holes, np.inf), ARM * size * forces[self.turned]]
+            [forces, np.full(holes, np.inf), LEVER * size * forces[self.turned]]
         )
         own = np.arange(count + holes)
         self.group = np.concatenate([own, own, count + holes + np.arange(len(self.turned))])
         self.is_asked = bool(
-            (targets.weights * np.abs(targets.moves)).any()
+            (targets.weights * np.abs(targets.offsets)).any()
             or self.turns.any()
             or np.abs(places[count:]).max(initial=0.0) > MET * size
         )
@@ -208,7 +212,7 @@ class _Problem:
         # What is met at any price.
         self.held = (self.loose == 0) & (self.give == 0) & np.isinf(self.forces)[self.group]
 
-    def state(self, x: Floats, shift: complex, last: WallState | None = None) -> _State:
+    def state(self, x: Floats, shift: complex, last: BarrierState | None = None) -> _State:
         """Work out what the points lack."""
         frame = CorrectedFrame.of(self.corrector, self.base, x)
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
@@ -216,14 +220,14 @@ class _Problem:
         walls = None if self.walls is None else self.walls.state(x, last)
         return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), walls)
 
-    def rows(self, at: _State) -> Rows:
+    def constraint_rows(self, at: _State) -> Rows:
         """Return what is wanted around a state."""
         h, q = (each[:, self.turned].T for each in self.corrector.variables.at_points)
         turning = np.hstack([h.imag, 0.0 * q.real])
-        points = np.tile(self.roots, 2)[:, None] * at.frame.rows()
+        points = np.tile(self.roots, 2)[:, None] * at.frame.constraint_rows()
         scale = float(np.vdot(points, points)) / len(points)
         return Rows(
-            at.lack,
+            at.residual,
             np.vstack([points, turning]),
             self.loose * scale + self.give,
             self.group,
@@ -231,29 +235,33 @@ class _Problem:
             self.translations,
         )
 
-    def solved(self, at: _State) -> PointSolution:
+    def solve_steps(self, at: _State) -> PointSolution:
         """Take steps from a state until they are small."""
         size, firm = self.corrector.boundary.size, 0.0
         small = SMALL if self.walls is None else CALM
         steps, is_finished = 0, True
         while steps < (MOST_STEPS if self.walls is None else MOST_STEPS_AT_WALLS):
             steps += 1
-            rows = self.rows(at)
-            pushed = None if self.walls is None or at.walls is None else self.walls.model(at.walls)
+            rows = self.constraint_rows(at)
+            pushed = (
+                None if self.walls is None or at.barrier is None else self.walls.model(at.barrier)
+            )
             model = StepModel(at.frame.x, rows, pushed)
-            change, shift = model.step()
+            change, shift = model.solve_step()
             length = self._length(change)
             if length > SMALL:
-                more, along = model.bent(self._bending(at, model.pulls).__call__, change)
+                more, along = model.curvature_corrected(
+                    self._bending(at, model.pulls).__call__, change
+                )
                 # What changes a step by more than itself is not to be trusted.
                 part = min(1.0, length / max(self._length(more), TINY))
                 change, shift = change + part * more, shift + part * along
             firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
             share = min(1.0, self.longest / max(self._length(change), TINY))
-            now = self._merit(at, rows.soft, firm)
+            now = self._merit(at, rows.compliances, firm)
             for _ in range(MOST_HALVINGS):
                 tried = self._tried(at, model, change * share, shift * share, share)
-                merit = self._merit(tried, rows.soft, firm)
+                merit = self._merit(tried, rows.compliances, firm)
                 if merit <= now * (1 + 1e-12):
                     break
                 share /= 2
@@ -262,12 +270,12 @@ class _Problem:
                 break
             is_stuck = share < 1.0 and merit > self.gains * now
             moved = self._length(tried.frame.x - at.frame.x)
-            off = np.abs(tried.lack)[self.held].max(initial=0.0)
+            off = np.abs(tried.residual)[self.held].max(initial=0.0)
             at = tried
-            if self.walls is not None and at.walls is not None and not self.walls.is_lowest:
+            if self.walls is not None and at.barrier is not None and not self.walls.is_lowest:
                 if is_stuck or (share > ENOUGH and moved < CLOSE):
-                    self.walls, left = self.walls.lowered(at.walls)
-                    at = at._replace(walls=left)
+                    self.walls, left = self.walls.with_lower_weight(at.barrier)
+                    at = at._replace(barrier=left)
                 continue
             if is_stuck or (moved < small and (off < MET * size or share < 1.0)):
                 break
@@ -275,13 +283,13 @@ class _Problem:
             is_finished = False
         misses = np.abs(at.frame.places() + at.shift - self.wanted)[: self.count]
         return PointSolution(
-            x=at.frame.x, shift=at.shift, misses=misses, steps=steps, is_finished=is_finished
+            x=at.frame.x, shift=at.shift, target_errors=misses, steps=steps, is_finished=is_finished
         )
 
-    def _bending(self, at: _State, pulls: Floats) -> Bending:
+    def _bending(self, at: _State, pulls: Floats) -> Curvature:
         """Return how the rows are curved that are pulled at."""
         known = len(self.roots)
-        return at.frame.bending(-self.roots * (pulls[:known] + 1j * pulls[known : 2 * known]))
+        return at.frame.curvature(-self.roots * (pulls[:known] + 1j * pulls[known : 2 * known]))
 
     def _length(self, change: Floats) -> float:
         return float(np.abs(self.corrector.variables.at_nodes.h_of(change)).max())
@@ -290,25 +298,25 @@ class _Problem:
         self, at: _State, model: StepModel, change: Floats, shift: complex, share: float
     ) -> _State:
         """Return the state after a step, with points back on where the model has them."""
-        tried = self.state(at.frame.x + change, at.shift + shift, at.walls)
-        aim = (1 - share) * at.lack
-        if tried.walls is not None and tried.walls.left.min() <= 0:
+        tried = self.state(at.frame.x + change, at.shift + shift, at.barrier)
+        aim = (1 - share) * at.residual
+        if tried.barrier is not None and tried.barrier.slacks.min() <= 0:
             return tried
         for _ in range(MOST_RETURNS):
-            gap = np.where(self.held, aim - tried.lack, 0)
+            gap = np.where(self.held, aim - tried.residual, 0)
             worst = np.abs(gap).max(initial=0.0)
             if worst < MET / 100 * self.corrector.boundary.size:
                 break
-            back, along = model.restoring(gap)
-            nearer = self.state(tried.frame.x + back, tried.shift + along, at.walls)
-            if np.abs(np.where(self.held, aim - nearer.lack, 0)).max() > NEARER * worst:
+            back, along = model.restoring_step(gap)
+            nearer = self.state(tried.frame.x + back, tried.shift + along, at.barrier)
+            if np.abs(np.where(self.held, aim - nearer.residual, 0)).max() > NEARER * worst:
                 break
             tried = nearer
         return tried
 
     def _merit(self, at: _State, soft: Floats, firm: float) -> float:
         """Return ½ |x|² and what points lack: by their softness, and from some pull on as much."""
-        squares = np.bincount(self.group, at.lack**2, minlength=len(self.forces))
+        squares = np.bincount(self.group, at.residual**2, minlength=len(self.forces))
         lack, forces = np.sqrt(squares), np.minimum(firm, self.forces)
         own = np.zeros(len(forces))
         own[self.group] = soft
@@ -316,6 +324,6 @@ class _Problem:
         near = lack**2 / (2 * np.maximum(own, TINY))
         pulled = np.where(lack <= give, near, forces * (lack - give / 2))
         total = 0.5 * float(at.frame.x @ at.frame.x) + float(pulled.sum())
-        if self.walls is not None and at.walls is not None:
-            total += self.walls.energy(at.walls)
+        if self.walls is not None and at.barrier is not None:
+            total += self.walls.energy(at.barrier)
         return total

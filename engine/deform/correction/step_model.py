@@ -7,7 +7,7 @@ import numpy as np
 import scipy.linalg
 
 from engine.arrays import Floats, Indices
-from engine.deform.correction.walls import WallModel
+from engine.deform.correction.barrier import BarrierModel
 
 RIDGE = 1e-13  # of the mean of the rows' products
 MOST_BENDS = 30  # steps of the conjugate gradients
@@ -40,9 +40,9 @@ class Rows(NamedTuple):
         Derivatives by a translation.
     """
 
-    lack: Floats
-    slopes: Floats
-    soft: Floats
+    residual: Floats
+    jacobian: Floats
+    compliances: Floats
     group: Indices
     forces: Floats
     translations: Floats
@@ -66,27 +66,27 @@ class StepModel:
         The multipliers of the rows.
     """
 
-    def __init__(self, x: Floats, rows: Rows, walls: WallModel | None = None) -> None:
+    def __init__(self, x: Floats, rows: Rows, walls: BarrierModel | None = None) -> None:
         self._rows = rows
         self._root: Floats | None = None
         if walls is None:
-            self._slopes, self._down = rows.slopes, x
+            self._slopes, self._down = rows.jacobian, x
         else:
-            metric = walls.rows.T @ walls.rows
+            metric = walls.hessian_rows.T @ walls.hessian_rows
             metric[np.diag_indices(len(x))] += 1.0
             self._root = np.asarray(np.linalg.cholesky(metric), dtype=np.float64)
-            self._slopes = self._halved(rows.slopes.T).T
-            self._down = self._halved(x + walls.slope)
+            self._slopes = self._halved(rows.jacobian.T).T
+            self._down = self._halved(x + walls.gradient)
         self._products = self._slopes @ self._slopes.T
         self._ridge = RIDGE * float(np.trace(self._products)) / len(self._products)
         self._find_pulls()
 
     def _find_pulls(self) -> None:
-        rows, right = self._rows, self._slopes @ self._down - self._rows.lack
-        secant = np.maximum(rows.sizes(rows.lack), LEAST_LACK) / rows.forces
+        rows, right = self._rows, self._slopes @ self._down - self._rows.residual
+        secant = np.maximum(rows.sizes(rows.residual), LEAST_LACK) / rows.forces
         give = np.zeros(len(rows.forces))
         for _ in range(ROUNDS):
-            self._factor(rows.soft + give[rows.group])
+            self._factor(rows.compliances + give[rows.group])
             self.pulls, self._shift = self._solve(right)
             sizes = rows.sizes(self.pulls)
             over = (give == 0) & (sizes > rows.forces)
@@ -95,16 +95,16 @@ class StepModel:
                 break
             give = np.where(over, secant, give * share)
 
-    def step(self) -> tuple[Floats, complex]:
+    def solve_step(self) -> tuple[Floats, complex]:
         """Return the step in the unknowns and the translation."""
         return self._whole(self.pulls @ self._slopes - self._down), self._shift
 
-    def restoring(self, gap: Floats) -> tuple[Floats, complex]:
+    def restoring_step(self, gap: Floats) -> tuple[Floats, complex]:
         """Return the least step that changes the rows by so much."""
         pulls, shift = self._solve(gap)
         return self._whole(pulls @ self._slopes), shift
 
-    def bent(self, bending: Form, step: Floats) -> tuple[Floats, complex]:
+    def curvature_corrected(self, bending: Form, step: Floats) -> tuple[Floats, complex]:
         """Return the change of a step by a curvature, by conjugate gradients."""
         rest = -bending(step)
         way, shift = self._preconditioned(rest)

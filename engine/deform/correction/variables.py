@@ -20,7 +20,7 @@ OF_SIZE, OF_SLOPE = 1e-3, 1e-5  # ε and ε'
 RANK = 1e-6
 
 
-class Values(NamedTuple):
+class BasisValues(NamedTuple):
     """The functions of the unknowns at some points: (N, p) each, of h and of q."""
 
     h: Complexes
@@ -53,15 +53,15 @@ class Variables:
     ----------
     h, q : complex128, shape (n, N)
         Coefficients of the functions in the domain's span.
-    at_nodes, at_samples, at_points : Values
+    at_nodes, at_samples, at_points : BasisValues
         At the nodes of paths, at the samples of the boundary and at points.
     """
 
     h: Complexes
     q: Complexes
-    at_nodes: Values
-    at_samples: Values
-    at_points: Values
+    at_nodes: BasisValues
+    at_samples: BasisValues
+    at_points: BasisValues
 
     @classmethod
     def of(cls, boundary: Boundary, nodes: Complexes, points: Complexes) -> Self:
@@ -83,7 +83,7 @@ class Variables:
         coefficients = [own @ to for to in (to_h, to_q)]
         padded = [np.pad(each, ((0, len(span) - count), (0, 0))) for each in coefficients]
         on = [
-            Values(*(freeze(np.ascontiguousarray((rows @ each).T)) for each in coefficients))
+            BasisValues(*(freeze(np.ascontiguousarray((rows @ each).T)) for each in coefficients))
             for rows in (places[0], samples, places[1])
         ]
         of_q, of_h = padded[1], padded[0]
@@ -94,7 +94,7 @@ class Variables:
     def of_h(self, forms: Floats) -> Self:
         """Return h alone, in combinations (N, M) of its unknowns."""
         places = (self.at_nodes, self.at_samples, self.at_points)
-        nodes, samples, points = (Values(freeze(forms.T @ v.h), v.q[:0]) for v in places)
+        nodes, samples, points = (BasisValues(freeze(forms.T @ v.h), v.q[:0]) for v in places)
         return type(self)(
             h=freeze(self.h @ forms),
             q=self.q[:, :0],

@@ -8,26 +8,26 @@ Imports: `engine.dirichlet`, `engine.maps`, and the handles of `engine.deform`.
 from engine.deform.model.barrier import (
     MARGIN as MARGIN,
     Barrier as Barrier,
-    Walls as Walls,
-    with_samples_between as with_samples_between,
+    BarrierBounds as BarrierBounds,
+    interpolate_duals as interpolate_duals,
 )
 from engine.deform.model.energy import (
-    Radial as Radial,
+    RadialDerivatives as RadialDerivatives,
     symmetric_dirichlet as symmetric_dirichlet,
     symmetric_dirichlet_derivatives as symmetric_dirichlet_derivatives,
 )
+from engine.deform.model.evaluation import Evaluation as Evaluation
 from engine.deform.model.factors import (
     SHIFT as SHIFT,
-    factor_of as factor_of,
+    factor_regularised as factor_regularised,
     factor_shifted as factor_shifted,
-    solved as solved,
+    solve_factored as solve_factored,
 )
 from engine.deform.model.hessian import (
     projected_hessian as projected_hessian,
-    stiffening as stiffening,
+    stiffening_hessian as stiffening_hessian,
 )
 from engine.deform.model.inner_limits import limits_inside as limits_inside
-from engine.deform.model.jet import Jet as Jet
 from engine.deform.model.newton import (
     SHORTEST as SHORTEST,
     SUFFICIENT as SUFFICIENT,

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Floats, Indices, freeze
-from engine.deform.model.energy import Radial
-from engine.maps import Boundary, Limits
+from engine.deform.model.energy import RadialDerivatives
+from engine.maps import Boundary, LocalBounds
 
 # A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
 # dual variable has all but vanished stop every step by curvature that the Hessian does not see.
@@ -25,7 +25,7 @@ DUAL_RANGE = 100.0
 MARGIN = 3e-4
 
 
-class Walls(NamedTuple):
+class BarrierBounds(NamedTuple):
     """Where a barrier becomes infinite: limits (m,) of its own for each sample."""
 
     k: Floats
@@ -33,14 +33,14 @@ class Walls(NamedTuple):
     sigma_b: Floats
 
     @classmethod
-    def around(cls, limits: Limits, count: int) -> "Walls":
+    def for_samples(cls, limits: LocalBounds, count: int) -> "BarrierBounds":
         """Return the same walls for all of `count` samples, or those of each."""
         return cls(*(np.full(count, x) for x in (limits.k, limits.sigma_a, limits.sigma_b)))
 
     @classmethod
-    def at(cls, limits: Limits, boundary: Boundary) -> "Walls":
+    def at(cls, limits: LocalBounds, boundary: Boundary) -> "BarrierBounds":
         """Return walls at the limits of a boundary's samples."""
-        return cls.around(limits.at(boundary), len(boundary.points))
+        return cls.for_samples(limits.at(boundary), len(boundary.points))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,13 +49,13 @@ class Barrier:
 
     Parameters
     ----------
-    walls : Walls
+    walls : BarrierBounds
     weight : float
     duals : float64, shape (3, m), or None
         One for each bound and sample, positive; None for weight / c, the exact Hessian.
     """
 
-    walls: Walls
+    bounds: BarrierBounds
     weight: float
     duals: Floats | None = None
 
@@ -92,7 +92,7 @@ class Barrier:
         density: Floats = -self.weight * np.log(of_k * of_sigma_b * of_sigma_a)
         return density
 
-    def derivatives(self, a: Floats, b: Floats) -> Radial:
+    def derivatives(self, a: Floats, b: Floats) -> RadialDerivatives:
         """Return the derivatives of the barrier, strictly within the walls."""
         u, u_a = self.distances(a), self._slopes()
         c = (u - b) * (u + b)
@@ -100,7 +100,7 @@ class Barrier:
         # The part of −y ∇²c that is positive: never less than the barrier itself has.
         bent = np.maximum(dual, central)
         by_a, b_per_b = self.margin_gradient(a, -central)
-        return Radial(
+        return RadialDerivatives(
             a=by_a,
             b_per_b=b_per_b,
             aa=(u_a * u_a * dual * (4.0 * u * u / c - 2.0)).sum(axis=0),
@@ -133,7 +133,7 @@ class Barrier:
 
     def distances(self, a: Floats) -> Floats:
         """Return u (3, m) of the bounds on k, σ_b and σ_a."""
-        k, sigma_a, sigma_b = self.walls
+        k, sigma_a, sigma_b = self.bounds
         distances = np.empty((3, len(a)))
         np.multiply(k, a, out=distances[0])
         np.subtract(a, sigma_b, out=distances[1])
@@ -142,13 +142,13 @@ class Barrier:
 
     def _slopes(self) -> Floats:
         """Return du/da (3, m)."""
-        slopes = np.ones((3, len(self.walls.k)))
-        slopes[0] = self.walls.k
+        slopes = np.ones((3, len(self.bounds.k)))
+        slopes[0] = self.bounds.k
         slopes[2] = -1.0
         return slopes
 
 
-def with_samples_between(duals: Floats, segments: Indices, ends: Indices) -> Floats:
+def interpolate_duals(duals: Floats, segments: Indices, ends: Indices) -> Floats:
     """Return dual variables (3, m) with those of a sample more in each of some segments.
 
     Parameters

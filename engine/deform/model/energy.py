@@ -15,7 +15,7 @@ import numpy as np
 from engine.arrays import Floats
 
 
-class Radial(NamedTuple):
+class RadialDerivatives(NamedTuple):
     """Derivatives of a density h(a, b) at each sample, float64 (m,) each.
 
     The gradient is `a` and `b_per_b` = h_b / b, which stays smooth at b = 0. The Hessian is `aa`,
@@ -31,13 +31,13 @@ class Radial(NamedTuple):
     around_a: Floats
     around_b: Floats
 
-    def weighted(self, weights: Floats) -> "Radial":
+    def weighted(self, weights: Floats) -> "RadialDerivatives":
         """Return the derivatives times a weight (m,) for each sample."""
-        return Radial(*(weights * part for part in self))
+        return RadialDerivatives(*(weights * part for part in self))
 
-    def plus(self, other: "Radial") -> "Radial":
+    def plus(self, other: "RadialDerivatives") -> "RadialDerivatives":
         """Return the sum of two densities."""
-        return Radial(*(mine + its for mine, its in zip(self, other, strict=True)))
+        return RadialDerivatives(*(mine + its for mine, its in zip(self, other, strict=True)))
 
 
 def symmetric_dirichlet(a: Floats, b: Floats) -> Floats:
@@ -54,7 +54,7 @@ def symmetric_dirichlet(a: Floats, b: Floats) -> Floats:
     return density
 
 
-def symmetric_dirichlet_derivatives(a: Floats, b: Floats) -> Radial:
+def symmetric_dirichlet_derivatives(a: Floats, b: Floats) -> RadialDerivatives:
     """Return the derivatives of the symmetric Dirichlet density, for a > b ≥ 0."""
     x, y = a * a, b * b
     inverse = 1.0 / (x - y)
@@ -66,7 +66,7 @@ def symmetric_dirichlet_derivatives(a: Floats, b: Floats) -> Radial:
     second = 2.0 + stretch + squeeze
     a_per_a = 2.0 * (1.0 - (x + 3.0 * y) * cubed)
     b_per_b = 2.0 * (1.0 + (3.0 * x + y) * cubed)
-    return Radial(
+    return RadialDerivatives(
         a=a * a_per_a,
         b_per_b=b_per_b,
         aa=second,

@@ -23,7 +23,7 @@ def factor_shifted(hessian: Floats) -> Floats:
     shift = SHIFT
     # Twelve tries reach far beyond any diagonal: then the numbers themselves are at their end.
     for _ in range(12):
-        factor = factor_of(hessian, shift)
+        factor = factor_regularised(hessian, shift)
         if factor is not None:
             return factor
         shift *= SHIFT_GROWTH
@@ -31,7 +31,7 @@ def factor_shifted(hessian: Floats) -> Floats:
     return np.diag(np.full(len(hessian), np.inf))
 
 
-def factor_of(hessian: Floats, shift: float) -> Floats | None:
+def factor_regularised(hessian: Floats, shift: float) -> Floats | None:
     """Factor a matrix given by its upper triangle, with a part of its diagonal and a floor added.
 
     None if it is not positive.
@@ -53,7 +53,7 @@ def factor_single(hessian: Singles) -> Singles | None:
     return factor
 
 
-def solved(factor: Reals, wanted: Floats) -> Floats:
+def solve_factored(factor: Reals, wanted: Floats) -> Floats:
     """Return the solution (u,) for what is wanted (u,), of a factored matrix."""
     trsv = blas.strsv if factor.dtype == np.float32 else blas.dtrsv
     # Two solves with vectors: `dpotrs` takes three times as long for one.

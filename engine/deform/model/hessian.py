@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, Singles
-from engine.deform.model.energy import Radial
-from engine.deform.model.jet import Jet
+from engine.deform.model.energy import RadialDerivatives
+from engine.deform.model.evaluation import Evaluation
 from engine.deform.model.objective import Objective
 
 # In single or double precision.
@@ -40,7 +40,7 @@ class _Quadrature(NamedTuple):
     hard: int = 0
 
 
-def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
+def projected_hessian(objective: Objective, jet: Evaluation, radial: RadialDerivatives) -> Floats:
     """Return the positive semidefinite part of the Hessian (u, u), upper triangle.
 
     Notes
@@ -59,7 +59,7 @@ def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
         hessian,
         jet,
         calm,
-        [*_turning_roots(objective, jet), _damping_root(objective, jet, calm)],
+        [*_rotation_roots(objective, jet), _damping_root(objective, jet, calm)],
         single=True,
     )
     if hard:
@@ -67,22 +67,26 @@ def projected_hessian(objective: Objective, jet: Jet, radial: Radial) -> Floats:
     return hessian
 
 
-def single_hessian(objective: Objective, jet: Jet, radial: Radial) -> Singles | None:
+def single_hessian(
+    objective: Objective, jet: Evaluation, radial: RadialDerivatives
+) -> Singles | None:
     """Return the same in single precision throughout, or None where that will not do.
 
     That is where samples are hard, around holes, where functions may nearly be the same, and
     where fewer than two handles leave the shape free to turn or to go anywhere.
     """
     quadrature = _quadrature(objective, radial)
-    if quadrature.hard or objective.boundary.holes or len(objective.wish.positions) < 2:
+    if quadrature.hard or objective.boundary.holes or len(objective.targets.positions) < 2:
         return None
     hessian = _held_hessian(objective, jet).astype(np.float32)
-    further = [*_turning_roots(objective, jet), _damping_root(objective, jet, quadrature)]
+    further = [*_rotation_roots(objective, jet), _damping_root(objective, jet, quadrature)]
     _add(objective, hessian, jet, quadrature, further, single=True)
     return hessian
 
 
-def hessian_product(objective: Objective, jet: Jet, radial: Radial, change: Jet) -> Floats:
+def hessian_product(
+    objective: Objective, jet: Evaluation, radial: RadialDerivatives, change: Evaluation
+) -> Floats:
     """Return the product (u,) of the Hessian over all samples with a change.
 
     In double precision, and without the tiny stiffness against turning as a whole; the matrix
@@ -93,19 +97,23 @@ def hessian_product(objective: Objective, jet: Jet, radial: Radial, change: Jet)
     around_a = np.maximum(radial.around_a, 0.0)
     by_f = radial.aa * f.real + radial.ab * g.real - 1j * around_a * f.imag
     by_g = radial.ab * f.real + radial.bb * g.real - 1j * radial.around_b * g.imag
-    pull = 2.0 * objective.handles.stiffness * objective.held_change(jet, change.positions)
-    if objective.wish.links is not None:
-        pull += objective.wish.links.pull_change(jet.positions, change.positions)
+    pull = 2.0 * objective.handles.stiffness * objective.target_error_change(jet, change.positions)
+    if objective.targets.distance_constraints is not None:
+        pull += objective.targets.distance_constraints.hessian_product(
+            jet.positions, change.positions
+        )
     rows, coordinates = objective.boundary.basis_derivatives, objective.handles.basis_coordinates
     by_phi = (by_f * frame_f) @ rows + pull.conj() @ coordinates
     by_psi = (by_g * frame_g) @ rows + pull @ coordinates
-    for frame in objective.turning_frames(jet):
-        along = (frame * change.fz[objective.turning]).real
-        by_phi += (along * frame) @ objective.turning_rows
+    for frame in objective.rotation_frames(jet):
+        along = (frame * change.fz[objective.rotation_constraints]).real
+        by_phi += (along * frame) @ objective.rotation_rows
     return objective.by_unknowns(by_phi, by_psi)
 
 
-def stiffening(objective: Objective, jet: Jet, radial: Radial, samples: Indices) -> Floats:
+def stiffening_hessian(
+    objective: Objective, jet: Evaluation, radial: RadialDerivatives, samples: Indices
+) -> Floats:
     """Return the positive part of the Hessian (u, u) of a few samples, upper triangle."""
     hessian = np.zeros_like(objective.handles.hessian)
     entries = _entries(radial)[:, samples]
@@ -116,7 +124,7 @@ def stiffening(objective: Objective, jet: Jet, radial: Radial, samples: Indices)
 def _add(
     objective: Objective,
     hessian: Reals,
-    jet: Jet,
+    jet: Evaluation,
     quadrature: "_Quadrature",
     more: Sequence[Complexes] = (),
     *,
@@ -156,7 +164,7 @@ def _fold_logarithms(objective: Objective, hessian: Reals, mixed: Reals, of_psi:
     hessian[logs, len(mixed) :] += own[:-count].T
 
 
-def negative_part(objective: Objective, jet: Jet, radial: Radial) -> Floats:
+def negative_part(objective: Objective, jet: Evaluation, radial: RadialDerivatives) -> Floats:
     """Return what the projection removed from the Hessian of φ, (2r, 2r).
 
     `projected_hessian` minus this is the exact Hessian; it need not be positive.
@@ -166,7 +174,7 @@ def negative_part(objective: Objective, jet: Jet, radial: Radial) -> Floats:
     f = jet.f[samples[bent]]
     roots = -1j * np.sqrt(entries[-1][bent]) * f.conj() / np.abs(f)
     rows = objective.boundary.basis_derivatives[samples[bent]] * roots[:, None]
-    turning = _turning_roots(objective, jet, removed=True)
+    turning = _rotation_roots(objective, jet, removed=True)
     by_phi = np.concatenate([rows, *turning]).view(np.float64)
     removed: Floats = by_phi.T @ by_phi
     return removed
@@ -174,7 +182,7 @@ def negative_part(objective: Objective, jet: Jet, radial: Radial) -> Floats:
 
 def _roots(
     objective: Objective,
-    jet: Jet,
+    jet: Evaluation,
     quadrature: "_Quadrature",
     more: Sequence[Complexes],
     *,
@@ -211,11 +219,11 @@ def _roots(
     return by_phi.view(real), by_psi.view(real), cross.astype(real, copy=False)
 
 
-def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
+def _quadrature(objective: Objective, radial: RadialDerivatives) -> "_Quadrature":
     """Return the samples that enter the Hessian; calm ones stand for added neighbours, too."""
     boundary, entries = objective.boundary, _entries(radial)
-    own, _ = boundary.own_samples
-    density = (radial.aa + radial.bb) / (boundary.shares * boundary.stiffness)
+    own, _ = boundary.original_samples
+    density = (radial.aa + radial.bb) / (boundary.barrier_weights * boundary.stiffness)
     median = float(np.partition(density, len(density) // 2)[len(density) // 2])
     stiff = np.flatnonzero(density > STIFF * median)
     hard = density[stiff] > HARD * median
@@ -231,16 +239,16 @@ def _quadrature(objective: Objective, radial: Radial) -> "_Quadrature":
     )
 
 
-def _held_hessian(objective: Objective, jet: Jet) -> Floats:
+def _held_hessian(objective: Objective, jet: Evaluation) -> Floats:
     """Return the Hessian of the energy of the handles' positions, (u, u)."""
     held = objective.handles.hessian
-    given, linked = objective.giving_rows(jet), objective.linking_rows(jet)
+    given, linked = objective.pull_rows(jet), objective.distance_constraint_rows(jet)
     if len(given):
         held = held - given.T @ given
     return held + linked.T @ linked if len(linked) else held
 
 
-def _damping_root(objective: Objective, jet: Jet, calm: "_Quadrature") -> Complexes:
+def _damping_root(objective: Objective, jet: Evaluation, calm: "_Quadrature") -> Complexes:
     """Return the row of a tiny stiffness against turning as a whole.
 
     One handle leaves the rotation of the shape free; rounding alone would then turn it.
@@ -251,10 +259,12 @@ def _damping_root(objective: Objective, jet: Jet, calm: "_Quadrature") -> Comple
     return row
 
 
-def _turning_roots(objective: Objective, jet: Jet, *, removed: bool = False) -> list[Complexes]:
+def _rotation_roots(
+    objective: Objective, jet: Evaluation, *, removed: bool = False
+) -> list[Complexes]:
     """Return the rows of φ of `Objective.turning_frames`."""
-    frames = objective.turning_frames(jet, removed=removed)
-    return [frame[:, None] * objective.turning_rows for frame in frames]
+    frames = objective.rotation_frames(jet, removed=removed)
+    return [frame[:, None] * objective.rotation_rows for frame in frames]
 
 
 def _frames(f: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
@@ -265,7 +275,7 @@ def _frames(f: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
     return f.conj() / np.abs(f), frame_g
 
 
-def _entries(radial: Radial) -> Floats:
+def _entries(radial: RadialDerivatives) -> Floats:
     """Return what samples contribute to the Hessian, as a `_Quadrature` has it."""
     return np.array(
         [

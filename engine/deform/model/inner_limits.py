@@ -12,12 +12,12 @@ import shapely
 from engine.arrays import Complexes, Floats
 from engine.dirichlet import HilbertTransform
 from engine.geometry import as_xy
-from engine.maps import Boundary, Limits
+from engine.maps import Boundary, LocalBounds
 
 
 def limits_inside(
-    transform: HilbertTransform, boundary: Boundary, bounds: Limits, points: Complexes
-) -> Limits:
+    transform: HilbertTransform, boundary: Boundary, bounds: LocalBounds, points: Complexes
+) -> LocalBounds:
     """Return what holds at points of the domain of maps that keep `bounds.where_stiff(boundary)`.
 
     Parameters
@@ -25,7 +25,7 @@ def limits_inside(
     transform : HilbertTransform
         Of the same domain.
     boundary : Boundary
-    bounds : Limits
+    bounds : LocalBounds
         Those of the whole shape.
     points : complex128, shape (t,)
         In the closed domain.
@@ -38,7 +38,7 @@ def limits_inside(
     stiffness = np.maximum(_stiffness_at(boundary, transform.nodes), 1.0)
     given = np.column_stack([np.log(stiffness) / 2, 1 / np.sqrt(stiffness)])
     less, share = _continued(transform, boundary, given, points).T
-    return Limits(
+    return LocalBounds(
         k=bounds.k * np.exp(-less),
         sigma_a=np.exp(np.log(bounds.sigma_a) * share),
         sigma_b=np.exp(np.log(bounds.sigma_b) * share),
@@ -47,14 +47,14 @@ def limits_inside(
 
 def _stiffness_at(boundary: Boundary, nodes: Complexes) -> Floats:
     """Return the stiffness at points of the boundary."""
-    starts, ends = boundary.points, boundary.points[boundary.following]
+    starts, ends = boundary.points, boundary.points[boundary.next_samples]
     both = np.column_stack([starts, ends])
     segments = shapely.STRtree(shapely.linestrings(both.real, both.imag))
     nearest = segments.nearest(shapely.points(as_xy(nodes)))
     sides = ends[nearest] - starts[nearest]
     along = np.clip(((nodes - starts[nearest]) / sides).real, 0.0, 1.0)
     logarithms = np.log(boundary.stiffness)
-    first, second = logarithms[nearest], logarithms[boundary.following[nearest]]
+    first, second = logarithms[nearest], logarithms[boundary.next_samples[nearest]]
     stiffness: Floats = np.exp((1 - along) * first + along * second)
     return stiffness
 

@@ -8,8 +8,15 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
 from engine.deform.handles import Handles
-from engine.deform.model.energy import Radial
-from engine.deform.model.factors import SHIFT, factor_of, factor_shifted, factor_single, solved
+from engine.deform.model.energy import RadialDerivatives
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.factors import (
+    SHIFT,
+    factor_regularised,
+    factor_shifted,
+    factor_single,
+    solve_factored,
+)
 from engine.deform.model.hessian import (
     Reals,
     hessian_product,
@@ -17,13 +24,12 @@ from engine.deform.model.hessian import (
     projected_hessian,
     single_hessian,
 )
-from engine.deform.model.jet import Jet
 from engine.deform.model.objective import Objective
 
 # A step is accepted when it gains at least this part of what the gradient promises (Armijo).
 SUFFICIENT = 1e-4
 # A step stops where this part of the way to the nearest wall is used up.
-TO_THE_WALL = 0.9
+TO_THE_BARRIER = 0.9
 SHORTEST = 1e-6
 # Conjugate gradients stop when this part of the step is missing, or after so many. Measured: with
 # less missing drags get no nearer to their wishes.
@@ -46,7 +52,7 @@ class Direction(NamedTuple):
     ----------
     phi, psi : complex128, shape (n,)
         The change of the coefficients, those of logarithms included; psi_0 stays.
-    jet : Jet
+    jet : Evaluation
         The same change, measured.
     derivative : float
         Of the objective along the direction, negative. Half its size is the gain that the quadratic
@@ -55,7 +61,7 @@ class Direction(NamedTuple):
 
     phi: Complexes
     psi: Complexes
-    jet: Jet
+    evaluation: Evaluation
     derivative: float
 
     def scaled(self, factor: float) -> "Direction":
@@ -63,7 +69,7 @@ class Direction(NamedTuple):
         return Direction(
             factor * self.phi,
             factor * self.psi,
-            self.jet.scaled(factor),
+            self.evaluation.scaled(factor),
             factor * self.derivative,
         )
 
@@ -72,7 +78,7 @@ class Direction(NamedTuple):
         return Direction(
             self.phi + other.phi,
             self.psi + other.psi,
-            self.jet.advanced(1.0, other.jet),
+            self.evaluation.advanced(1.0, other.evaluation),
             self.derivative + other.derivative,
         )
 
@@ -106,8 +112,10 @@ class Model:
 
     def direction(self, gradient: Floats | None = None) -> Direction:
         """Return the step to the minimum, or to that of another `gradient` (u,)."""
-        solution = solved(self.factor, self.gradient if gradient is None else gradient)
-        return _direction(self.objective, self.gradient, solution, self.objective.change(solution))
+        solution = solve_factored(self.factor, self.gradient if gradient is None else gradient)
+        return _direction(
+            self.objective, self.gradient, solution, self.objective.evaluate_change(solution)
+        )
 
 
 class Preconditioner(NamedTuple):
@@ -126,55 +134,59 @@ class Preconditioner(NamedTuple):
     """
 
     handles: Handles
-    turning: Booleans
+    rotation_constraints: Booleans
     factor: Reals
-    served: int = 0
+    served_steps: int = 0
 
-    def serves(self, objective: Objective) -> bool:
+    def can_serve(self, objective: Objective) -> bool:
         """Tell whether it is of the same handles."""
-        return self.handles is objective.handles and np.array_equal(self.turning, objective.turning)
+        return self.handles is objective.handles and np.array_equal(
+            self.rotation_constraints, objective.rotation_constraints
+        )
 
-    def after(self, rounds: int) -> "Preconditioner | None":
+    def after_step(self, rounds: int) -> "Preconditioner | None":
         """Return the preconditioner of the next step after a step of so many rounds, if it pays."""
-        served = self.served + 1
+        served = self.served_steps + 1
         pays = rounds <= SERVES_ROUNDS and served < SERVES_STEPS
-        return self._replace(served=served) if pays else None
+        return self._replace(served_steps=served) if pays else None
 
 
-def newton_direction(objective: Objective, jet: Jet) -> Direction:
+def newton_direction(objective: Objective, jet: Evaluation) -> Direction:
     """Solve for the step that minimises the projected quadratic model of the objective."""
     direction, _ = preconditioned_direction(objective, jet, None)
     return direction
 
 
 def preconditioned_direction(
-    objective: Objective, jet: Jet, earlier: Preconditioner | None
+    objective: Objective, jet: Evaluation, earlier: Preconditioner | None
 ) -> tuple[Direction, Preconditioner | None]:
     """Solve for Newton's step with an earlier factor; return the preconditioner of the next step.
 
     By preconditioned conjugate gradients (Nocedal and Wright, algorithm 5.3). Factors in single
     precision do as well.
     """
-    radial = objective.radial(jet)
+    radial = objective.radial_derivatives(jet)
     gradient = objective.gradient(jet, radial)
-    if earlier is not None and earlier.serves(objective):
+    if earlier is not None and earlier.can_serve(objective):
         direction, rounds = _refined(
             objective, jet, radial, gradient, earlier.factor, missing=REFINED_LATER
         )
         if rounds <= REFINEMENTS:
-            return direction, earlier.after(rounds)
+            return direction, earlier.after_step(rounds)
     single = single_hessian(objective, jet, radial)
     factor: Reals | None = None if single is None else factor_single(single)
     if factor is None:
         factor = factor_shifted(projected_hessian(objective, jet, radial))
     direction, rounds = _refined(objective, jet, radial, gradient, factor, missing=REFINED)
-    return direction, Preconditioner(objective.handles, objective.turning, factor).after(rounds)
+    return direction, Preconditioner(
+        objective.handles, objective.rotation_constraints, factor
+    ).after_step(rounds)
 
 
 def _refined(
     objective: Objective,
-    jet: Jet,
-    radial: Radial,
+    jet: Evaluation,
+    radial: RadialDerivatives,
     gradient: Floats,
     factor: Reals,
     *,
@@ -184,12 +196,12 @@ def _refined(
 
     Where that takes too many, one more than there were.
     """
-    left, ahead = gradient, solved(factor, gradient)
+    left, ahead = gradient, solve_factored(factor, gradient)
     solution, measured = np.zeros_like(gradient), None
     first = before = float(left @ ahead)
     rounds = REFINEMENTS + 1
     for done in range(1, REFINEMENTS + 1):
-        change = objective.change(ahead)
+        change = objective.evaluate_change(ahead)
         curved = hessian_product(objective, jet, radial, change)
         curvature = float(ahead @ curved)
         if not curvature > 0:
@@ -197,30 +209,30 @@ def _refined(
         length = before / curvature
         solution, left = solution + length * ahead, left - length * curved
         measured = measured.advanced(length, change) if measured else change.scaled(length)
-        following = solved(factor, left)
+        following = solve_factored(factor, left)
         now = float(left @ following)
         if now < missing**2 * first:
             rounds = done
             break
         ahead, before = following + now / before * ahead, now
-    measured = measured or objective.change(solution)
+    measured = measured or objective.evaluate_change(solution)
     return _direction(objective, gradient, solution, measured), rounds
 
 
-def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
+def newton_models(objective: Objective, jet: Evaluation) -> Iterator[Model]:
     """Yield quadratic models of the objective at a map, all positive, the last one projected.
 
     Those before leave in the Hessian all that the projection removes, or parts of it, where it
     stays positive: near a minimum steps are Newton's own, and far from it they follow bent valleys
     that the projection crawls along.
     """
-    radial = objective.radial(jet)
+    radial = objective.radial_derivatives(jet)
     hessian = projected_hessian(objective, jet, radial)
     gradient, removed = objective.gradient(jet, radial), negative_part(objective, jet, radial)
     for part in (*KEPT_NEGATIVE, 0.0):
         bent = hessian.copy()
         bent[: len(removed), : len(removed)] -= part * removed
-        factor = factor_of(bent, SHIFT) if part else factor_shifted(hessian)
+        factor = factor_regularised(bent, SHIFT) if part else factor_shifted(hessian)
         if factor is not None:
             yield Model(
                 objective=objective,
@@ -232,8 +244,8 @@ def newton_models(objective: Objective, jet: Jet) -> Iterator[Model]:
 
 
 def line_search(
-    objective: Objective, jet: Jet, direction: Direction, value: float, longest: float = 1.0
-) -> tuple[float, Jet]:
+    objective: Objective, jet: Evaluation, direction: Direction, value: float, longest: float = 1.0
+) -> tuple[float, Evaluation]:
     """Return the largest tried length, at most `longest`, that gains enough, and where it leads.
 
     The length is 0 if none does.
@@ -241,7 +253,7 @@ def line_search(
     Parameters
     ----------
     objective : Objective
-    jet : Jet
+    jet : Evaluation
         Of the map at the start.
     direction : Direction
     value : float
@@ -251,10 +263,12 @@ def line_search(
     rounding = 1e-13 * abs(value)
     while length > SHORTEST:
         # The wall must be farther than the step, not only beyond it.
-        if length < 1.0 and not objective.within(jet.advanced(length / TO_THE_WALL, direction.jet)):
+        if length < 1.0 and not objective.is_within(
+            jet.advanced(length / TO_THE_BARRIER, direction.evaluation)
+        ):
             length *= 0.7
             continue
-        reached = jet.advanced(length, direction.jet)
+        reached = jet.advanced(length, direction.evaluation)
         there = objective.value(reached)
         if there <= value + SUFFICIENT * length * direction.derivative + rounding:
             return length, reached
@@ -262,7 +276,9 @@ def line_search(
     return 0.0, jet
 
 
-def _direction(objective: Objective, gradient: Floats, solution: Floats, change: Jet) -> Direction:
+def _direction(
+    objective: Objective, gradient: Floats, solution: Floats, change: Evaluation
+) -> Direction:
     """Return the direction that is the negative of a solution (u,), measured as a change."""
     phi, psi = objective.coefficients(-solution)
     return Direction(phi, psi, change.scaled(-1.0), -float(gradient @ solution))

@@ -20,10 +20,10 @@ from math import sqrt
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.deform.handles import Handles, Wish
+from engine.deform.handles import Handles, HandleTargets
 from engine.deform.model.barrier import Barrier
-from engine.deform.model.energy import Radial, symmetric_dirichlet_derivatives
-from engine.deform.model.jet import Jet
+from engine.deform.model.energy import RadialDerivatives, symmetric_dirichlet_derivatives
+from engine.deform.model.evaluation import Evaluation
 from engine.deform.model.unknowns import by_unknowns, in_basis
 from engine.maps import Boundary
 
@@ -36,7 +36,7 @@ class Objective:
     ----------
     boundary : Boundary
     handles : Handles
-    wish : Wish
+    wish : HandleTargets
     barrier : Barrier or None
     secant : bool
         Whether hands that give in are as stiff along their pull as across, where the Hessian has
@@ -45,133 +45,133 @@ class Objective:
 
     boundary: Boundary
     handles: Handles
-    wish: Wish
+    targets: HandleTargets
     barrier: Barrier | None = None
     secant: bool = False
 
     @cached_property
-    def turning(self) -> Booleans:
+    def rotation_constraints(self) -> Booleans:
         """Which handles have a prescribed rotation, bool (h,)."""
-        return np.isfinite(self.wish.rotations)
+        return np.isfinite(self.targets.rotations)
 
     def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
         """Return the columns (n,) of coefficients of φ and ψ that unknowns (u,) stand for."""
         of_phi, of_psi = in_basis(self.boundary, unknowns)
         return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
 
-    def change(self, unknowns: Floats) -> Jet:
+    def evaluate_change(self, unknowns: Floats) -> Evaluation:
         """Measure a change of a map by its unknowns (u,)."""
         of_phi, of_psi = in_basis(self.boundary, unknowns)
         rows, coordinates = self.boundary.basis_derivatives, self.handles.basis_coordinates
-        return Jet(
+        return Evaluation(
             f=rows @ of_phi,
             g=rows @ of_psi,
             positions=coordinates @ of_phi + (coordinates @ of_psi).conj(),
             fz=self.handles.basis_derivatives @ of_phi,
         )
 
-    def jet(self, phi: Complexes, psi: Complexes) -> Jet:
+    def evaluate(self, phi: Complexes, psi: Complexes) -> Evaluation:
         """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
         span, coordinates = self.boundary.span, self.handles.coordinates
         rows, phi_alone = self.boundary.derivatives, span.without_constant(phi)
-        return Jet(
+        return Evaluation(
             f=rows @ phi_alone,
             g=rows @ span.without_constant(psi),
             positions=coordinates @ phi + (coordinates @ psi).conj(),
             fz=self.handles.derivatives @ phi_alone,
         )
 
-    def value(self, jet: Jet) -> float:
+    def value(self, jet: Evaluation) -> float:
         """Return the objective, ∞ where the map folds or leaves the walls."""
         value = self.energy(jet)
         if self.barrier is not None and np.isfinite(value):
             density = self.barrier.value(jet.a, jet.b)
-            value += float(self.boundary.shares @ density)
+            value += float(self.boundary.barrier_weights @ density)
         return value
 
-    def energy(self, jet: Jet) -> float:
+    def energy(self, jet: Evaluation) -> float:
         """Return the objective without its barrier."""
         with np.errstate(over="ignore", invalid="ignore"):
-            errors = self.wish.errors(jet.positions)
+            errors = self.targets.target_errors(jet.positions)
             value = self.boundary.weights @ jet.density
             value += np.vdot(errors, self.handles.stiffness * errors).real
-            if self.wish.hands is not None:
-                lacking = jet.positions - self.wish.positions
-                value += self.wish.hands.work(self.wish.hands.given(lacking))
-            if self.wish.links is not None:
-                value += self.wish.links.energy(jet.positions)
-            if self.turning.any():
-                value += self.turning_stiffness @ self.turning_angles(jet) ** 2
+            if self.targets.pulls is not None:
+                lacking = jet.positions - self.targets.positions
+                value += self.targets.pulls.slack_energy(self.targets.pulls.slack(lacking))
+            if self.targets.distance_constraints is not None:
+                value += self.targets.distance_constraints.energy(jet.positions)
+            if self.rotation_constraints.any():
+                value += self.rotation_stiffness @ self.rotation_errors(jet) ** 2
         return np.inf if np.isnan(value) else float(value)
 
-    def handle_error(self, jet: Jet) -> float:
+    def target_error(self, jet: Evaluation) -> float:
         """Return the root mean square distance of the handles from their targets, over L."""
-        errors = jet.positions - self.wish.positions
+        errors = jet.positions - self.targets.positions
         squares = np.vdot(errors, errors).real / max(len(errors), 1)
         return sqrt(squares) / self.boundary.size
 
-    def within(self, jet: Jet) -> bool:
+    def is_within(self, jet: Evaluation) -> bool:
         """Tell whether the samples are strictly within the walls."""
         if self.barrier is None:
             return bool(np.all(jet.a > jet.b))
         return bool(np.all(self.barrier.slacks(jet.a, jet.b) > 0))
 
-    def radial(self, jet: Jet) -> Radial:
+    def radial_derivatives(self, jet: Evaluation) -> RadialDerivatives:
         """Return what each sample contributes to the derivatives of energy and barrier."""
         a, b = jet.a, jet.b
         energy = symmetric_dirichlet_derivatives(a, b).weighted(self.boundary.weights)
         if self.barrier is None:
             return energy
-        return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.shares))
+        return energy.plus(self.barrier.derivatives(a, b).weighted(self.boundary.barrier_weights))
 
-    def gradient(self, jet: Jet, radial: Radial) -> Floats:
+    def gradient(self, jet: Evaluation, radial: RadialDerivatives) -> Floats:
         """Return the gradient (u,)."""
-        pull = 2.0 * self.handles.stiffness * self.wish.errors(jet.positions)
-        if self.wish.links is not None:
-            pull += self.wish.links.pull(jet.positions)
+        pull = 2.0 * self.handles.stiffness * self.targets.target_errors(jet.positions)
+        if self.targets.distance_constraints is not None:
+            pull += self.targets.distance_constraints.gradient(jet.positions)
         by_phi = pull.conj() @ self.handles.basis_coordinates
         by_psi = pull @ self.handles.basis_coordinates
-        if self.turning.any():
+        if self.rotation_constraints.any():
             # d arg F = Im(dF / F) = Re(−i dF / F).
-            angle = 2.0 * self.turning_stiffness * self.turning_angles(jet)
-            by_phi += (-1j * angle / jet.fz[self.turning]) @ self.turning_rows
+            angle = 2.0 * self.rotation_stiffness * self.rotation_errors(jet)
+            by_phi += (-1j * angle / jet.fz[self.rotation_constraints]) @ self.rotation_rows
         by_handles = self.by_unknowns(by_phi, by_psi)
         gradient: Floats = by_handles + self.sampled_gradient(jet, radial.a, radial.b_per_b)
         return gradient
 
-    def held_change(self, jet: Jet, changes: Complexes) -> Complexes:
+    def target_error_change(self, jet: Evaluation, changes: Complexes) -> Complexes:
         """Return by how much more the handles (h,) lack after they have moved, to first order."""
-        hands = self.wish.hands
+        hands = self.targets.pulls
         if hands is None:
             return changes
-        directions, across = hands.bend(jet.positions - self.wish.positions)
+        directions, across = hands.slack_directions(jet.positions - self.targets.positions)
         along = across if self.secant else 1.0
-        moves = directions.conj() * (hands.shares @ changes)
+        moves = directions.conj() * (hands.weights @ changes)
         given = directions * (along * moves.real + 1j * across * moves.imag)
-        return changes - hands.at_handles(given)
+        return changes - hands.spread_to_handles(given)
 
-    def giving_rows(self, jet: Jet) -> Floats:
+    def pull_rows(self, jet: Evaluation) -> Floats:
         """Return the rows (s, u) whose Gram matrix hands take from the Hessian of the handles."""
-        hands = self.wish.hands
+        hands = self.targets.pulls
         if hands is None:
             return np.empty((0, len(self.handles.hessian)))
-        directions, across = hands.bend(jet.positions - self.wish.positions)
+        directions, across = hands.slack_directions(jet.positions - self.targets.positions)
         rows = []
         for hand in np.flatnonzero(across):
-            means = hands.shares[hand] @ self.handles.basis_coordinates
+            means = hands.weights[hand] @ self.handles.basis_coordinates
             stiffness, share = 2.0 * hands.stiffness[hand], across[hand]
             for turn, part in ((1.0, share if self.secant else 1.0), (1.0j, share)):
                 pull = turn * directions[hand] * np.sqrt(stiffness * part)
                 rows.append(self.by_unknowns(pull.conj() * means, pull * means))
         return np.array(rows).reshape(-1, len(self.handles.hessian))
 
-    def linking_rows(self, jet: Jet) -> Floats:
+    def distance_constraint_rows(self, jet: Evaluation) -> Floats:
         """Return the rows (s, u) whose Gram matrix links add to the Hessian of the handles."""
-        links = self.wish.links
+        links = self.targets.distance_constraints
         if links is None:
             return np.empty((0, len(self.handles.hessian)))
         coordinates = self.handles.basis_coordinates
-        directions, along, across = links.bend(jet.positions)
+        directions, along, across = links.stiffness_by_direction(jet.positions)
         between = coordinates[links.ends[0]] - coordinates[links.ends[1]]
         rows = []
         for turn, stiffness in ((1.0, along), (1.0j, across)):
@@ -181,13 +181,13 @@ class Objective:
         return np.array(rows).reshape(-1, len(self.handles.hessian))
 
     def sampled_gradient(
-        self, jet: Jet, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)
+        self, jet: Evaluation, by_a: Floats, b_per_b: Floats, samples: Indices | slice = slice(None)
     ) -> Floats:
         """Return the gradient (u,) of a sum over samples of functions of a and b.
 
         Parameters
         ----------
-        jet : Jet
+        jet : Evaluation
         by_a, b_per_b : float64, shape (m,)
             What each sample contributes to the derivative by a, and to that by b over b.
         samples : Indices or slice
@@ -203,34 +203,34 @@ class Objective:
         return by_unknowns(self.boundary, by_phi, by_psi)
 
     @cached_property
-    def turning_stiffness(self) -> Floats:
+    def rotation_stiffness(self) -> Floats:
         """What turning each handle with a prescribed rotation costs, float64 (t,)."""
-        return 2.0 * self.handles.arm**2 * self.handles.stiffness[self.turning]
+        return 2.0 * self.handles.lever**2 * self.handles.stiffness[self.rotation_constraints]
 
     @cached_property
-    def turning_rows(self) -> Complexes:
+    def rotation_rows(self) -> Complexes:
         """The derivatives of the basis at these handles, complex128 (t, r)."""
-        return self.handles.basis_derivatives[self.turning]
+        return self.handles.basis_derivatives[self.rotation_constraints]
 
-    def turning_angles(self, jet: Jet) -> Floats:
+    def rotation_errors(self, jet: Evaluation) -> Floats:
         """Return by how much they are turned too far, float64 (t,)."""
-        wished = np.exp(-1j * self.wish.rotations[self.turning])
-        angles: Floats = np.angle(jet.fz[self.turning] * wished)
+        wished = np.exp(-1j * self.targets.rotations[self.rotation_constraints])
+        angles: Floats = np.angle(jet.fz[self.rotation_constraints] * wished)
         return angles
 
-    def turning_frames(self, jet: Jet, *, removed: bool = False) -> list[Complexes]:
+    def rotation_frames(self, jet: Evaluation, *, removed: bool = False) -> list[Complexes]:
         """Return what multiplies dF of handles in rows: the projected Hessian of their rotations.
 
         With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
         are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
         what the projection removed.
         """
-        if not self.turning.any():
+        if not self.rotation_constraints.any():
             return []
-        delta = self.turning_angles(jet)
+        delta = self.rotation_errors(jet)
         root = np.sqrt(1.0 + 4.0 * delta**2)
         eigenvalue = 1.0 - root if removed else 1.0 + root
         # x vx + y vy = Re((vx − i vy) dF / F).
         length = np.maximum(np.hypot(2.0 * delta, eigenvalue), np.finfo(np.float64).tiny)
-        scale = np.sqrt(self.turning_stiffness * np.abs(eigenvalue)) / length
-        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self.turning]]
+        scale = np.sqrt(self.rotation_stiffness * np.abs(eigenvalue)) / length
+        return [scale * (-2.0 * delta - 1j * eigenvalue) / jet.fz[self.rotation_constraints]]

@@ -5,6 +5,6 @@ Out: shares from 0 to 1 along the loops, and stiffnesses there.
 Imports: `engine.geometry`.
 """
 
-from engine.domain.material.brush import brushed as brushed
-from engine.domain.material.carrying import carried_stiffness as carried_stiffness
-from engine.domain.material.limb import limb_around as limb_around
+from engine.domain.material.brush import brush_weights as brush_weights
+from engine.domain.material.limb import limb_weights as limb_weights
+from engine.domain.material.transfer import copy_nearest_stiffness as copy_nearest_stiffness

@@ -6,12 +6,12 @@ import numpy as np
 import shapely
 
 from engine.arrays import Complexes, Floats, as_number, as_points
-from engine.geometry import ON_OUTLINE, diameter, loop_ends, next_on_loop, region
+from engine.geometry import ON_OUTLINE, diameter, loop_ends, next_on_loop, shapely_region
 
 TINY = 1e-9
 
 
-def brushed(
+def brush_weights(
     loops: Sequence[Complexes], places: Complexes, radius: float, softness: float
 ) -> Floats:
     """Return how much the vertices of a drawing's loops get of a stroke, 0 to 1.
@@ -40,7 +40,7 @@ def brushed(
     softness = as_number(softness, "The softness of a brush", least=0, most=1)
     corners, ends = np.concatenate(loops), loop_ends(loops)
     sides = ends - corners
-    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
+    area = shapely_region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
     shapely.prepare(area)
     shares = np.zeros(len(corners))
     starts = np.cumsum([0, *map(len, loops[:-1])])

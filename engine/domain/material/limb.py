@@ -12,7 +12,7 @@ import shapely
 
 from engine.arrays import Booleans, Complexes, Floats, as_points
 from engine.errors import EngineError
-from engine.geometry import ON_OUTLINE, as_xy, diameter, region
+from engine.geometry import ON_OUTLINE, as_xy, diameter, shapely_region
 
 # Places along a bone at which its limb is measured.
 PLACES = 48
@@ -28,7 +28,7 @@ BONE_STAYS = (
 )
 
 
-def limb_around(
+def limb_weights(
     loops: Sequence[Complexes], start: complex, end: complex, points: Complexes
 ) -> Floats:
     """Return how much of a bone's stiffness points of a drawing's boundary have (t,), 0 to 1.
@@ -51,7 +51,7 @@ def limb_around(
     """
     as_points([start, end], "The ends of a bone")
     length = abs(end - start)
-    area = region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
+    area = shapely_region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
     if not length > 0:
         raise EngineError("A bone leads from one point to another one.")
     bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])

@@ -7,12 +7,12 @@ Imports: `engine.geometry`.
 
 from engine.domain.meshing.depth import (
     find_distances as find_distances,
-    in_depth_order as in_depth_order,
+    sort_by_depth as sort_by_depth,
     spread_depth as spread_depth,
 )
 from engine.domain.meshing.draw_order import (
-    in_order_of as in_order_of,
-    with_limbs_on_top as with_limbs_on_top,
+    copy_draw_order as copy_draw_order,
+    order_branches_on_top as order_branches_on_top,
 )
 from engine.domain.meshing.mesh import Mesh as Mesh, sides_of as sides_of
 from engine.domain.meshing.triangulation import triangulate as triangulate

@@ -67,7 +67,7 @@ def find_distances(mesh: Mesh, start: complex, ends: Complexes) -> Floats:
     return found
 
 
-def in_depth_order(mesh: Mesh, depths: Floats) -> Integers:
+def sort_by_depth(mesh: Mesh, depths: Floats) -> Integers:
     """Return the triangles (m, 3) from back to front by the depths (v,) of their corners.
 
     Equally deep ones keep their order.

@@ -6,12 +6,12 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, dijk
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Indices, Integers, freeze
-from engine.domain.meshing.limbs import rank_limbs
+from engine.domain.meshing.branches import rank_branches
 from engine.domain.meshing.mesh import Mesh, sides_of
 from engine.geometry import as_xy
 
 
-def with_limbs_on_top(mesh: Mesh, centre: complex) -> Mesh:
+def order_branches_on_top(mesh: Mesh, centre: complex) -> Mesh:
     """Return the mesh with its triangles limb by limb, each outwards from a point of the shape.
 
     Painted in this order, a limb covers what it grows from, and of two limbs always the same one
@@ -32,17 +32,17 @@ def with_limbs_on_top(mesh: Mesh, centre: complex) -> Mesh:
     found = dijkstra(graph, directed=False, indices=[root], return_predecessors=True)
     ways, previous = found[0][0], found[1][0]
     areas = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas(), 3), count) / 3
-    ranks = rank_limbs(mesh.vertices, edges, areas, ways)
+    ranks = rank_branches(mesh.vertices, edges, areas, ways)
     if len(mesh.triangles) + count - len(edges) < 1:  # Euler: there are holes
         whole = ~_where_ways_meet(mesh, edges, previous)
         whole &= ranks[edges[:, 0]] == ranks[edges[:, 1]]
-        sides = rank_limbs(mesh.vertices, edges[whole], areas, ways)
+        sides = rank_branches(mesh.vertices, edges[whole], areas, ways)
         ranks = ranks * (sides.max() + 1) + sides
     outwards = ways[mesh.triangles].sum(axis=1)
     return _reordered(mesh, np.lexsort((outwards, ranks[mesh.triangles].max(axis=1))))
 
 
-def in_order_of(mesh: Mesh, other: Mesh) -> Mesh:
+def copy_draw_order(mesh: Mesh, other: Mesh) -> Mesh:
     """Return a mesh with its triangles in the order that another one of the same shape has."""
     here, there = (as_xy(each.vertices[each.triangles].mean(axis=1)) for each in (mesh, other))
     _, nearest = cKDTree(there).query(here)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Booleans, Complexes, Floats, Indices, ragged
+from engine.arrays import Booleans, Complexes, Floats, Indices, ragged_indices
 from engine.geometry import loop_ends
 
 ROW_HEIGHT = 3.0**0.5 / 2  # distance between neighbouring rows over the spacing in a row
@@ -38,7 +38,7 @@ def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
     shift = origin.real + 0.5 * spacing * (row % 2)
     first = np.ceil((left - shift) / spacing).astype(np.intp)
     last = np.floor((right - shift) / spacing).astype(np.intp)
-    run, place = ragged(np.maximum(last - first + 1, 0))
+    run, place = ragged_indices(np.maximum(last - first + 1, 0))
     columns, rows = first[run] + place, row[run]
     x = shift[run] + columns * spacing
     y = origin.imag + (rows + 0.5) * (ROW_HEIGHT * spacing)
@@ -78,7 +78,7 @@ def _crossings(
     next_level = (ends.imag - bottom) / height - 0.5
     lowest = np.ceil(np.minimum(level, next_level)).astype(np.intp)
     highest = np.ceil(np.maximum(level, next_level)).astype(np.intp)
-    edge, place = ragged(highest - lowest)
+    edge, place = ragged_indices(highest - lowest)
     row = lowest[edge] + place
     fraction = (row - level[edge]) / (next_level[edge] - level[edge])
     x = starts.real[edge] + fraction * along.real[edge]

@@ -16,7 +16,7 @@ MOST_ROUNDS = 100  # a bad outline takes about 40
 SHORTEST_EDGE = 1e-6
 
 
-def refine(mesh: HalfEdgeMesh, smallest: float) -> None:
+def refine_mesh(mesh: HalfEdgeMesh, smallest: float) -> None:
     """Insert points into a constrained Delaunay triangulation until all angles are large enough.
 
     Only angles of the outline itself remain smaller. The triangulation stays constrained Delaunay.

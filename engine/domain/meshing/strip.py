@@ -8,7 +8,7 @@ import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from engine.arrays import Booleans, Complexes, Indices, ragged
+from engine.arrays import Booleans, Complexes, Indices, ragged_indices
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint
 from engine.geometry import as_xy, constrained_delaunay, loop_ends
 
@@ -32,12 +32,12 @@ class Rings:
     size: Indices
 
 
-def cut_edges(loops: Sequence[Complexes], spacing: float) -> Rings:
+def split_edges(loops: Sequence[Complexes], spacing: float) -> Rings:
     """Cut each edge of some polygons into equal pieces about as long as the spacing."""
     starts = np.concatenate(loops)
     along = loop_ends(loops) - starts
     pieces = np.maximum(np.round(np.abs(along) / spacing), 1).astype(np.intp)
-    edge, place = ragged(pieces)
+    edge, place = ragged_indices(pieces)
     points = starts[edge] + place / pieces[edge] * along[edge]
     # Vertices of the loops go first.
     rank = np.argsort(place > 0, kind="stable")

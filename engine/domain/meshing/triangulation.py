@@ -14,11 +14,18 @@ from engine.arrays import Booleans, Complexes, Floats, Indices, as_number
 from engine.domain.meshing.half_edges import OUTLINE, SEAM, HalfEdgeMesh
 from engine.domain.meshing.lattice import lattice_inside, lattice_triangles
 from engine.domain.meshing.mesh import Mesh
-from engine.domain.meshing.refinement import SHORTEST_EDGE, refine
+from engine.domain.meshing.refinement import SHORTEST_EDGE, refine_mesh
 from engine.domain.meshing.smoothing import smooth_mesh
-from engine.domain.meshing.strip import cut_edges, triangulate_strip
+from engine.domain.meshing.strip import split_edges, triangulate_strip
 from engine.errors import EngineError
-from engine.geometry import as_xy, diameter, edges, require_holes, require_simple, signed_area
+from engine.geometry import (
+    as_xy,
+    diameter,
+    edge_vectors,
+    require_holes,
+    require_simple,
+    signed_area,
+)
 
 # Least distance of a lattice point from the outline, in spacings. It must exceed the lattice's
 # circumradius, 0.577, so that no part of the outline comes between the corners of a unit triangle,
@@ -68,7 +75,7 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
     require_simple(outline, "outline")
     require_holes(holes, outline)
     loops = (outline, *holes)
-    shortest = min(float(np.abs(edges(loop)).min()) for loop in loops)
+    shortest = min(float(np.abs(edge_vectors(loop)).min()) for loop in loops)
     if shortest < SHORTEST_EDGE * diameter(outline):
         raise EngineError(
             f"The outline has an edge of length {shortest:.3g}, which is too short for its size of "
@@ -126,7 +133,7 @@ def _search_spacing(loops: Sequence[Complexes], count: int, smallest: float) -> 
 
 def _fill(loops: Sequence[Complexes], spacing: float, smallest: float) -> Mesh:
     """Triangulate a region of size 1 with edges about as long as the spacing."""
-    rings = cut_edges(loops, spacing)
+    rings = split_edges(loops, spacing)
     lattice = lattice_inside(loops, spacing)
     depth = _depth(loops, lattice.points, spacing)
     lattice, depth = lattice.select(depth > CLEARANCE), depth[depth > CLEARANCE]
@@ -145,7 +152,7 @@ def _fill(loops: Sequence[Complexes], spacing: float, smallest: float) -> Mesh:
     strip = triangulate_strip(loops, rings, shallow, np.flatnonzero(loose))
     band = HalfEdgeMesh(points, np.concatenate([strip, units[~core]]))
     _mark_seam(band, deep)
-    refine(band, smallest)
+    refine_mesh(band, smallest)
     smooth_mesh(band, sum(map(len, loops)), SWEEPS)
     return _compact(band.points, np.concatenate([band.triangles, units[core]]))
 
@@ -153,7 +160,7 @@ def _fill(loops: Sequence[Complexes], spacing: float, smallest: float) -> Mesh:
 def _depth(loops: Sequence[Complexes], points: Complexes, spacing: float) -> Floats:
     """Return the distance of points from the loops in spacings, infinite below the band."""
     # So dense that the distance from the samples is at most 2 % too large at the clearance.
-    tree = cKDTree(as_xy(cut_edges(loops, spacing / 6).points))
+    tree = cKDTree(as_xy(split_edges(loops, spacing / 6).points))
     distance, _ = tree.query(as_xy(points), distance_upper_bound=(BAND + 0.1) * spacing)
     return np.asarray(distance / spacing)
 

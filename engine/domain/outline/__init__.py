@@ -6,16 +6,16 @@ Imports: `engine.domain.picture`, `engine.geometry`.
 """
 
 from engine.domain.outline.cage import offset_cage as offset_cage
+from engine.domain.outline.cuts import CUT_WIDTH as CUT_WIDTH
 from engine.domain.outline.enclosure import (
     LARGEST_OUTLINE as LARGEST_OUTLINE,
     MARGINS as MARGINS,
     Detail as Detail,
     Enclosure as Enclosure,
-    enclose as enclose,
+    enclose_subject as enclose_subject,
 )
 from engine.domain.outline.holes import (
     HoleMap as HoleMap,
     find_holes as find_holes,
-    hole_in as hole_in,
+    make_hole as make_hole,
 )
-from engine.domain.outline.knife import SLIT_WIDTH as SLIT_WIDTH

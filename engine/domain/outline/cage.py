@@ -3,11 +3,11 @@
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, readonly
-from engine.domain.outline.crossings import edges_that_cross, edges_that_meet
+from engine.domain.outline.crossings import find_crossing_edges, find_meeting_edges
 from engine.domain.outline.curve import arc_lengths, limit_growth
 from engine.domain.outline.gaps import empty_disc_radius
 from engine.errors import EngineError
-from engine.geometry import diameter, distance_to_boundary, edges, require_simple
+from engine.geometry import diameter, distance_to_boundary, edge_vectors, require_simple
 
 MITER_LIMIT = 2.0  # of the offset: how far a sharp corner of the cage stands out
 ROOM = 0.7  # of the way to the middle of a gap
@@ -70,7 +70,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
 
 def _miters(outline: Complexes) -> Complexes:
     """Return the movement of each vertex that moves both its edges outwards by 1, limited."""
-    direction = edges(outline)
+    direction = edge_vectors(outline)
     normal = -1j * direction / np.abs(direction)
     both = normal + np.roll(normal, 1)
     # both / (|both|² / 2) has the component 1 along both normals.
@@ -83,7 +83,7 @@ def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
 
     Two edges come closest at a vertex of one of them, so vertices against edges are enough.
     """
-    along = edges(outline)
+    along = edge_vectors(outline)
     to_start = outline[None, :] - outline[:, None]
     parameter = np.clip(-(to_start * along.conj()).real / np.abs(along) ** 2, 0, 1)
     across = to_start + parameter * along  # from vertex to the nearest point of each edge
@@ -104,7 +104,7 @@ def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
 
 def _faulty_edges(outline: Complexes, cage: Complexes) -> Booleans:
     """Tell which edges (n,) of the cage are turned back, or meet the cage or the outline."""
-    along, moved = edges(outline), edges(cage)
+    along, moved = edge_vectors(outline), edge_vectors(cage)
     turned = (moved * along.conj()).real <= LEAST_ALONG * np.abs(along) * np.abs(moved)
-    touching, touched = edges_that_meet(cage, outline)
-    return np.asarray(turned | edges_that_cross(cage) | touching | touched)
+    touching, touched = find_meeting_edges(cage, outline)
+    return np.asarray(turned | find_crossing_edges(cage) | touching | touched)

@@ -7,7 +7,7 @@ from engine.arrays import Booleans, Complexes, Indices
 from engine.geometry import as_xy
 
 
-def edges_that_meet(polygon: Complexes, other: Complexes) -> tuple[Booleans, Booleans]:
+def find_meeting_edges(polygon: Complexes, other: Complexes) -> tuple[Booleans, Booleans]:
     """Tell which edges of a polygon (n,) and of another (m,) meet one of the other polygon."""
     own, met = _meetings(polygon, other)
     marks = np.zeros(len(polygon), dtype=np.bool_), np.zeros(len(other), dtype=np.bool_)
@@ -16,7 +16,7 @@ def edges_that_meet(polygon: Complexes, other: Complexes) -> tuple[Booleans, Boo
     return marks
 
 
-def edges_that_cross(polygon: Complexes) -> Booleans:
+def find_crossing_edges(polygon: Complexes) -> Booleans:
     """Tell which edges (n,) of a polygon meet another of its edges that is no neighbour."""
     n = len(polygon)
     first, second = _meetings(polygon, polygon)

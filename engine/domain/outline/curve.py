@@ -3,22 +3,22 @@
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.geometry import edges
+from engine.geometry import edge_vectors
 
 
 def arc_lengths(curve: Complexes) -> Floats:
     """Return the arc length (n + 1,) from point 0 to each point and, last, all the way round."""
-    return np.concatenate([[0.0], np.cumsum(np.abs(edges(curve)))])
+    return np.concatenate([[0.0], np.cumsum(np.abs(edge_vectors(curve)))])
 
 
 def resample(curve: Complexes, spacing: float) -> Complexes:
     """Return points on the curve at equal arc lengths, about `spacing` apart, at least 8."""
     arcs = arc_lengths(curve)
     count = max(8, round(arcs[-1] / spacing))
-    return at_arc_lengths(curve, arcs[-1] * np.arange(count) / count)
+    return points_at_arc_lengths(curve, arcs[-1] * np.arange(count) / count)
 
 
-def at_arc_lengths(curve: Complexes, wanted: Floats) -> Complexes:
+def points_at_arc_lengths(curve: Complexes, wanted: Floats) -> Complexes:
     """Return the points of the curve at the arc lengths `wanted`, 0 to the whole length."""
     closed = np.append(curve, curve[0])
     return np.asarray(np.interp(wanted, arc_lengths(curve), closed))

@@ -8,9 +8,9 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Indices, readonly, require_word
 from engine.domain.outline.cage import offset_cage
+from engine.domain.outline.cuts import cut_region
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.holes import SMALLEST_HOLE, hole_in, seen_holes, trace_hole
-from engine.domain.outline.knife import part
+from engine.domain.outline.holes import SMALLEST_HOLE, find_visible_holes, make_hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.domain.picture import HOLES, Holes, WholePiece, join_parts, working_grid
 from engine.errors import EngineError
@@ -32,7 +32,7 @@ WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
 DISC = 2.5  # area of a disc of radius 1, with some room for pixels
 LEAST_ENCLOSED = 0.001  # of the subject's area: what is told
-LEAST_FUSED = 0.03  # of the subject's outline: what is told
+LEAST_JOINED = 0.03  # of the subject's outline: what is told
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,7 +82,7 @@ class _Fit:
     draft: _Draft
 
 
-def enclose(
+def enclose_subject(
     mask: Booleans,
     *,
     detail: Detail,
@@ -129,14 +129,14 @@ def enclose(
     every = np.arange(1, len(piece.hole_areas) + 1)
     wanted = np.setdiff1d(every, others) if holes == "keep" else np.intersect1d(every, others)
     kept, crowded = _kept_holes(piece, wanted, fit, margin, grid.diagonal)
-    seen = seen_holes(piece, grid)
+    seen = find_visible_holes(piece, grid)
     small = np.intersect1d(np.setdiff1d(wanted, [*kept, *crowded]), seen)
     filled = np.intersect1d(np.setdiff1d(every, wanted), seen)
     closed = None
     outline, cage, open_holes = fit.outline, fit.cage, tuple(kept.values())
     if slits:
         lines = [grid.to_cells(slit) for slit in slits]
-        outline, cage, open_holes, closed = _parted(
+        outline, cage, open_holes, closed = _cut_loops(
             fit, open_holes, lines, grid.mask, grid.diagonal
         )
     return Enclosure(
@@ -146,15 +146,15 @@ def enclose(
         closed=None if closed is None else readonly(grid.to_picture(closed)),
         notices=(
             *piece.notices,
-            *piece.told_filled(filled),
-            *piece.told_filled(small, "too small to stay open"),
-            *piece.told_filled(crowded, "since too many open holes make posing slow"),
-            *_told(fit.draft, int(np.count_nonzero(piece.mask))),
+            *piece.filled_notice(filled),
+            *piece.filled_notice(small, "too small to stay open"),
+            *piece.filled_notice(crowded, "since too many open holes make posing slow"),
+            *_describe_draft(fit.draft, int(np.count_nonzero(piece.mask))),
         ),
     )
 
 
-def _parted(
+def _cut_loops(
     fit: _Fit,
     holes: Sequence[Hole],
     lines: Sequence[Complexes],
@@ -162,12 +162,16 @@ def _parted(
     diagonal: float,
 ) -> tuple[Complexes, Complexes, tuple[Hole, ...], Complexes]:
     """Part an outline and its holes; return both with cages, and where they are painted."""
-    loops, closed = part([fit.outline, *(hole.outline for hole in holes)], lines, mask, diagonal)
+    loops, closed = cut_region(
+        [fit.outline, *(hole.outline for hole in holes)], lines, mask, diagonal
+    )
     untouched = {hole.outline.tobytes(): hole for hole in holes}
     offset = fit.draft.offset
     try:
         cage = offset_cage(loops[0], offset)
-        found = tuple(untouched.get(loop.tobytes()) or hole_in(loop, offset) for loop in loops[1:])
+        found = tuple(
+            untouched.get(loop.tobytes()) or make_hole(loop, offset) for loop in loops[1:]
+        )
     except EngineError as error:
         raise EngineError(
             "The knife's line leaves too little room beside it; draw it farther from edges and "
@@ -254,11 +258,11 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
     return min(fits, key=lambda fit: len(fit.outline))
 
 
-def _told(draft: _Draft, area: int) -> tuple[str, ...]:
+def _describe_draft(draft: _Draft, area: int) -> tuple[str, ...]:
     """Return, in words, what a draft makes of a subject of `area` cells."""
     notices = []
-    fused = draft.curve.fused()
-    if fused >= LEAST_FUSED:
+    fused = draft.curve.joined_gap_share()
+    if fused >= LEAST_JOINED:
         notices.append(
             "limbs too close together for outlines of their own are fused and move as one, along "
             f"{fused:.0%} of the edge"

@@ -8,16 +8,16 @@ import shapely
 from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats
-from engine.domain.outline.crossings import edges_that_cross
-from engine.domain.outline.curve import arc_lengths, at_arc_lengths, smooth_curve
+from engine.domain.outline.crossings import find_crossing_edges
+from engine.domain.outline.curve import arc_lengths, points_at_arc_lengths, smooth_curve
 from engine.domain.outline.margin import MarginCurve
 from engine.domain.outline.simplify import LONGEST_SPAN, choose_vertices
-from engine.geometry import as_xy, contains, edges, region, signed_area
+from engine.geometry import as_xy, contains, edge_vectors, shapely_region, signed_area
 
 FEWEST_EDGES = 40
 SHORTEST_EDGE, LONGEST_EDGE = 0.0012, 0.07  # of the diagonal
 SPACING = 0.5  # of the local margin, between the points that may become vertices
-LEASH, INNER, OUTER = 0.3, 0.5, 0.6  # of the local margin: smoothing; edges within, without
+MAX_SHIFT, INNER, OUTER = 0.3, 0.5, 0.6  # of the local margin: smoothing; edges within, without
 SMOOTHING = 4  # rounds
 TIGHTENING = 0.6
 MOST_TURN = 160.0  # degrees, at a vertex: sharper spikes have no room for triangles or a cage
@@ -47,7 +47,9 @@ class Candidates:
         """Choose points on a curve along a subject whose box has this diagonal."""
         shortest = SHORTEST_EDGE * diagonal
         points, margins = _graded(curve, shortest)
-        longest = min(LONGEST_EDGE * diagonal, float(np.abs(edges(points)).sum()) / fewest_edges)
+        longest = min(
+            LONGEST_EDGE * diagonal, float(np.abs(edge_vectors(points)).sum()) / fewest_edges
+        )
         return cls(points=points, margins=margins, shortest=shortest, longest=longest)
 
     @property
@@ -65,7 +67,7 @@ def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
     points, margins = candidates.points, candidates.margins
     slack = np.ones(len(points))
     for _ in range(MOST_ATTEMPTS):
-        smoothed = smooth_curve(points, LEASH * slack * margins, SMOOTHING)
+        smoothed = smooth_curve(points, MAX_SHIFT * slack * margins, SMOOTHING)
         chosen = choose_vertices(
             smoothed,
             INNER * slack * margins,
@@ -92,19 +94,19 @@ def _graded(curve: MarginCurve, shortest: float) -> tuple[Complexes, Floats]:
     count = max(3 * 8, int(places[-1]))
     wanted = np.interp(places[-1] * np.arange(count) / count, places, arcs)
     margins = np.interp(wanted, arcs, np.append(curve.margins, curve.margins[0]))
-    return at_arc_lengths(curve.points, wanted), margins
+    return points_at_arc_lengths(curve.points, wanted), margins
 
 
 def _faults(polygon: Complexes, corners: Complexes) -> Complexes:
     """Return the places where a polygon crosses itself, turns back or leaves out a corner."""
-    along = edges(polygon)
+    along = edge_vectors(polygon)
     sharp = np.abs(np.angle(along / np.roll(along, 1))) > np.radians(MOST_TURN)
-    crossing = edges_that_cross(polygon)
+    crossing = find_crossing_edges(polygon)
     crossing |= np.roll(crossing, 1)  # the vertices at both ends of such an edge
     if crossing.any() or sharp.any():
         return np.asarray(polygon[crossing | sharp])
     if signed_area(polygon) > 0:
         return corners[~contains(polygon, corners)]
-    hole = region(polygon)
+    hole = shapely_region(polygon)
     shapely.prepare(hole)
     return np.asarray(corners[shapely.contains_xy(hole, corners.real, corners.imag)])

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine.arrays import Complexes, Floats
-from engine.geometry import as_xy, edges
+from engine.geometry import as_xy, edge_vectors
 
 FACING = 0.2  # cosine between the outward normal and what lies opposite, at least
 SQUARE_ON = 0.7  # cosine from which on the opposite side counts as straight ahead
@@ -32,7 +32,7 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
         The radius, or infinity where no other part of the curve lies opposite within 2 `reach`.
     """
     radius = np.full(len(curve), np.inf)
-    spacing = float(np.abs(edges(curve)).mean())
+    spacing = float(np.abs(edge_vectors(curve)).mean())
     pairs = cKDTree(as_xy(curve)).query_pairs(2 * reach, output_type="ndarray")
     for start in range(0, len(pairs), BLOCK):
         first, second = pairs[start : start + BLOCK].T

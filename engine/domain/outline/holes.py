@@ -94,7 +94,7 @@ def find_holes(mask: Booleans, enclosed: Booleans | None = None, *, opens: bool 
     return HoleMap(grid=grid, piece=piece, middles=middles, shut=frozenset(shut))
 
 
-def seen_holes(piece: WholePiece, grid: WorkingGrid) -> Indices:
+def find_visible_holes(piece: WholePiece, grid: WorkingGrid) -> Indices:
     """Return the numbers of the holes that a person sees: not of bubbles in a soft contour."""
     least = max(SMALLEST_POCKET * grid.diagonal, BUBBLE / grid.cell)
     seen = []
@@ -149,12 +149,12 @@ def trace_hole(
     if outline is None:
         return None
     try:
-        return hole_in(outline, offset).moved(corner)
+        return make_hole(outline, offset).moved(corner)
     except EngineError:
         return None
 
 
-def hole_in(outline: Complexes, offset: float) -> Hole:
+def make_hole(outline: Complexes, offset: float) -> Hole:
     """Return the hole with this outline, and a cage in it at most at this offset.
 
     Raises

@@ -19,7 +19,7 @@ SEPARATION = 0.08  # of the diagonal: arc length from which on two points can fa
 SAMPLING = 0.0015  # of the diagonal: spacing at which gaps are looked for
 GROWTH = 0.35  # by which the margin may grow along the curve, per arc length
 NORMAL_REACH = 3  # samples before and after, over which normals are taken
-SLIT = 0.5  # of the width of closed gaps: what is left of a gap between the margins
+CLOSED_GAP_WIDTH = 0.5  # of the width of closed gaps: what is left of a gap between the margins
 MOST_SAMPLES = 10_000
 SKETCH = 0.125  # of the margin: spacing that is always fine enough for it
 DEEP = 3.0  # margins: where the mask's outline lies farther inside the curve, it is lost
@@ -78,7 +78,7 @@ class MarginCurve:
     skin: Complexes
     deep: float
 
-    def fused(self) -> float:
+    def joined_gap_share(self) -> float:
         """Return how much of the skin is left far inside, since what lies opposite is too close."""
         shell = shapely.LinearRing(as_xy(self.points))
         shapely.prepare(shell)
@@ -130,7 +130,7 @@ def curve_at_margin(
     tree = cKDTree(as_xy(skin))
     level = margin if np.allclose(margins, margin) else _spread(field, tree, margins, margin)
     ring, enclosed = _largest_ring(field.distance - level, hole=hole)
-    ring, pockets = _without_slits(ring, SLIT * closing)
+    ring, pockets = _without_slits(ring, CLOSED_GAP_WIDTH * closing)
     _, nearest = tree.query(as_xy(ring))
     enclosed += pockets
     return MarginCurve(

@@ -8,7 +8,7 @@ from scipy import ndimage
 from engine.arrays import Booleans, Bytes, Indices, Integers
 from engine.domain.picture.cut_out import BackgroundColour
 from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
-from engine.domain.picture.parts import WITH_CORNERS, touching
+from engine.domain.picture.parts import WITH_CORNERS, keep_touching
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
@@ -156,9 +156,9 @@ def _flood(alike: Booleans) -> Booleans:
     wide = _opened(alike, radius)
     frame = np.ones_like(wide)
     frame[1:-1, 1:-1] = False
-    flooded = touching(wide, frame)
+    flooded = keep_touching(wide, frame)
     thin = alike & ~wide
-    return flooded | touching(thin | flooded, flooded) & thin
+    return flooded | keep_touching(thin | flooded, flooded) & thin
 
 
 def _pockets(
@@ -178,7 +178,7 @@ def _pockets(
     factor = block_factor(pockets.shape, WORKING_SIDE)
     blocks = reduce_blocks(pockets, factor, np.logical_and)
     width = max(1, round(SEEN_WIDTH * float(np.hypot(*blocks.shape))))
-    seen = touching(blocks, ndimage.minimum_filter(blocks, width, mode="constant"))
+    seen = keep_touching(blocks, ndimage.minimum_filter(blocks, width, mode="constant"))
     return _refined(seen, factor, pockets) if factor > 1 else seen
 
 

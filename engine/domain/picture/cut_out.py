@@ -90,7 +90,7 @@ class Stroke:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Slit:
+class CutLine:
     """A line along which a knife parts what touches.
 
     Parameters
@@ -131,7 +131,7 @@ class CutOut:
     swapped : tuple of complex
         Points in holes, and in enclosed parts, that are treated the other way, in pixels of the
         picture, y up.
-    slits : tuple of Slit
+    slits : tuple of CutLine
         Where it is parted by a knife, and shows the picture all the same.
     """
 
@@ -141,8 +141,8 @@ class CutOut:
     mask: Mask | None = None
     strokes: tuple[Stroke, ...] = ()
     holes: Holes = "keep"
-    swapped: tuple[complex, ...] = ()
-    slits: tuple[Slit, ...] = ()
+    toggled_holes: tuple[complex, ...] = ()
+    cut_lines: tuple[CutLine, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0 <= self.tolerance <= 255:
@@ -159,7 +159,7 @@ class CutOut:
             require_word(self.background, ("auto", "none"), "A background that is no colour")
         require_word(self.enclosed, ("auto", "keep", "remove"), "What is done with enclosed parts")
         require_word(self.holes, HOLES, "What is done with holes")
-        as_points(self.swapped, "The points of swapped holes")
+        as_points(self.toggled_holes, "The points of swapped holes")
         points = sum(len(line.points) for line in self.lines)
         if points > MOST_STROKE_POINTS or sum(stroke.rows for stroke in self.strokes) > MOST_ROWS:
             raise EngineError("There are too many strokes; save the mask and load it instead.")
@@ -167,7 +167,7 @@ class CutOut:
     @property
     def is_by_hand(self) -> bool:
         """Whether there is a mask, a stroke or a line of the knife."""
-        return self.mask is not None or bool(self.strokes) or bool(self.slits)
+        return self.mask is not None or bool(self.strokes) or bool(self.cut_lines)
 
     @property
     def nbytes(self) -> int:
@@ -176,9 +176,9 @@ class CutOut:
         return mask + sum(line.points.nbytes for line in self.lines)
 
     @property
-    def lines(self) -> "tuple[Stroke | Slit, ...]":
+    def lines(self) -> "tuple[Stroke | CutLine, ...]":
         """All that was drawn by hand."""
-        return (*self.strokes, *self.slits)
+        return (*self.strokes, *self.cut_lines)
 
 
 def _require_near(points: Complexes, name: str) -> None:

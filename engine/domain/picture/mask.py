@@ -22,7 +22,7 @@ SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
 MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more of it
-TOLD_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is larger is told
+NOTICED_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is larger is told
 PICTURE_TYPE = "A picture must be uint8 (h, w, 4), not {dtype} {shape}."
 TRANSPARENT = "The picture is fully transparent; give one with a visible drawing."
 ALL_REMOVED = "The brush has removed all of the picture; keep a part of it."
@@ -58,7 +58,7 @@ class Subject:
     notices: tuple[str, ...]
     enclosed: Booleans | None = None
     opens: bool = False
-    swapped: tuple[complex, ...] = ()
+    toggled_holes: tuple[complex, ...] = ()
 
 
 def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
@@ -123,7 +123,7 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
         notices=notices,
         enclosed=None if area is None else freeze(area & (subject == within.subject)),
         opens=within.opens,
-        swapped=within.swapped,
+        toggled_holes=within.toggled_holes,
     )
 
 
@@ -133,14 +133,14 @@ class _Within(NamedTuple):
     subject: Booleans
     area: Booleans | None
     opens: bool
-    swapped: tuple[complex, ...]
+    toggled_holes: tuple[complex, ...]
     notices: tuple[str, ...]
 
 
 def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut) -> _Within:
     """Decide which parts inside a subject go with the background that they have the colour of."""
     if background is None or not (area := background.enclosed & subject).any():
-        return _Within(subject, None, opens=False, swapped=cut_out.swapped, notices=())
+        return _Within(subject, None, opens=False, toggled_holes=cut_out.toggled_holes, notices=())
     labels, count = ndimage.label(area)
     sizes = np.bincount(labels.ravel(), minlength=count + 1)[1:]
     opens = cut_out.enclosed == "remove" or (
@@ -150,7 +150,7 @@ def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut)
     )
     opened = np.full(count + 1, opens and cut_out.holes == "keep")
     others = []
-    for point in cut_out.swapped:
+    for point in cut_out.toggled_holes:
         row, column = int(np.floor(len(area) - point.imag)), int(np.floor(point.real))
         inside = 0 <= row < area.shape[0] and 0 <= column < area.shape[1]
         number = int(labels[row, column]) if inside else 0
@@ -160,7 +160,7 @@ def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut)
         if not number or cut_out.holes == "fill":
             others.append(point)
     opened[0] = False
-    told = sizes >= pi * (TOLD_ENCLOSED * np.hypot(*area.shape)) ** 2
+    told = sizes >= pi * (NOTICED_ENCLOSED * np.hypot(*area.shape)) ** 2
     notices = tuple(
         f"{count} enclosed {'part' if count == 1 else 'parts'} of the background's colour {what}"
         for count, what in (

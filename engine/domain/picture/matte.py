@@ -13,15 +13,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from engine.arrays import Booleans, Bytes, Floats, readonly
-from engine.domain.picture.mixture import NEARBY, Mixture, Tile, along, colours_of
-from engine.domain.picture.parts import without_specks
+from engine.domain.picture.mixture import NEARBY, Mixture, Tile, colours_of, fit_alpha
+from engine.domain.picture.parts import remove_specks
 from engine.domain.picture.soft_edge import (
     WIDEST_EDGE,
     Part,
     SoftEdge,
-    measured_edge,
-    weighed,
-    with_hue_mixed,
+    measure_edge,
+    mix_hues,
+    weigh_hues,
 )
 
 TILE = 256  # pixels: side of the squares that are worked on one after the other
@@ -39,7 +39,7 @@ PLAIN = 0.12  # standard deviation of α up to which that is believed
 CLEAREST_THIN, THIN_SHARE = 30.0, 0.2
 
 
-def matted(rgba: Bytes, subject: Booleans) -> Bytes:
+def matte_picture(rgba: Bytes, subject: Booleans) -> Bytes:
     """Make what is not the subject of a picture transparent.
 
     Parameters
@@ -63,11 +63,11 @@ def matted(rgba: Bytes, subject: Booleans) -> Bytes:
     """
     if subject.all() or not subject.any():
         return readonly(rgba)
-    subject = without_specks(subject)
+    subject = remove_specks(subject)
     result = rgba.copy()
     result[..., 3][~subject] = 0
     windows = list(_parts(subject))
-    edge = measured_edge(rgba, subject, windows)
+    edge = measure_edge(rgba, subject, windows)
     for inner, outer in windows:
         top, left = (part.start - around.start for part, around in zip(inner, outer, strict=True))
         height, width = result[inner].shape[:2]
@@ -104,7 +104,7 @@ def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Part, edge: SoftE
     off = mixture.off
     if edge.gain > 1:
         # Blurred hues are mixed by an α of their own: by that, no background is left in them.
-        off = with_hue_mixed(mixture.way, off, mixture.noise, alpha)
+        off = mix_hues(mixture.way, off, mixture.noise, alpha)
     share = np.maximum(alpha, FAINTEST)[:, None]
     unmixed = np.clip(behind + colours_of(off) / share, 0, 255)
     # The fainter the subject, the less does its own pixel tell of it.
@@ -120,7 +120,7 @@ def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Part, edge: SoftE
 def _alpha(tile: Tile, mixture: Mixture, edge: SoftEdge) -> Floats:
     """Return α (n,) of the pixels of a mixture."""
     way = mixture.way
-    alpha, variance = along(*weighed(way, mixture.off, mixture.noise, edge))
+    alpha, variance = fit_alpha(*weigh_hues(way, mixture.off, mixture.noise, edge))
     depth = tile.depth.ravel()[mixture.band]
     guess = np.clip((depth + 0.5) / edge.width, 0, 1)
     solid = tile.depth.ravel()[mixture.core] >= edge.width

@@ -101,7 +101,7 @@ def colours_of(tones: Floats) -> Floats:
     return colours
 
 
-def along(way: Floats, off: Floats, noise: Floats) -> tuple[Floats, Floats]:
+def fit_alpha(way: Floats, off: Floats, noise: Floats) -> tuple[Floats, Floats]:
     """Return α (n,), how far pixels are along the way, by least squares, and its variance.
 
     Parameters

@@ -54,7 +54,7 @@ class WholePiece:
         found = np.unique(self.holes[rows, columns])
         return found[found > 0].astype(np.intp)
 
-    def told_filled(self, numbers: Sequence[int] | Indices, reason: str = "") -> tuple[str, ...]:
+    def filled_notice(self, numbers: Sequence[int] | Indices, reason: str = "") -> tuple[str, ...]:
         """Return a notice, in words, that holes with these numbers are filled, if there are any."""
         if not len(numbers):
             return ()
@@ -101,7 +101,7 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     return WholePiece(mask=filled, holes=holes, hole_areas=hole_areas, notices=tuple(notices))
 
 
-def touching(area: Booleans, seeds: Booleans) -> Booleans:
+def keep_touching(area: Booleans, seeds: Booleans) -> Booleans:
     """Return the components of `area`, joined by edges, that have a seed."""
     labels, count = ndimage.label(area)
     chosen = np.zeros(count + 1, dtype=np.bool_)
@@ -110,7 +110,7 @@ def touching(area: Booleans, seeds: Booleans) -> Booleans:
     return np.asarray(chosen[labels])
 
 
-def without_specks(mask: Booleans) -> Booleans:
+def remove_specks(mask: Booleans) -> Booleans:
     """Return a mask without its specks: what is no part of a subject."""
     labels, count = ndimage.label(mask, WITH_CORNERS)
     areas = np.bincount(labels.ravel(), minlength=count + 1)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, Floats, Indices
-from engine.domain.picture.mixture import HUES, SURE, Mixture, Tile, along
+from engine.domain.picture.mixture import HUES, SURE, Mixture, Tile, fit_alpha
 
 Part = tuple[slice, slice]  # of a picture: rows and columns
 
@@ -50,7 +50,7 @@ class SoftEdge(NamedTuple):
     paper: Floats
 
 
-def measured_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part]]) -> SoftEdge:
+def measure_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part]]) -> SoftEdge:
     """Measure the edge of a subject (h, w) of a picture (h, w, 4) on some of the `windows`.
 
     They are the parts through which the edge runs, without and with room around them.
@@ -80,27 +80,27 @@ def measured_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part
     beside = depth < -SURE
     if not beside.any():
         return edge
-    alpha, variance = along(*weighed(way[beside], off[beside], noise[beside], edge))
+    alpha, variance = fit_alpha(*weigh_hues(way[beside], off[beside], noise[beside], edge))
     largest = float(np.quantile(np.abs(alpha) / np.sqrt(variance), MOST_BESIDE))
     return edge._replace(noise=max(LEAST_NOISE, MARGIN * largest))
 
 
-def weighed(
+def weigh_hues(
     way: Floats, off: Floats, noise: Floats, edge: SoftEdge
 ) -> tuple[Floats, Floats, Floats]:
     """Return the parts of a mixture with its hues made as sharp as brightness, and less trusted."""
     if edge.gain > 1:
         # Around the middle of the way, and no farther than its ends.
-        own, _ = along(way[:, HUES], off[:, HUES], noise[:, HUES])
-        off = with_hue_mixed(way, off, noise, np.clip(0.5 + edge.gain * (own - 0.5), 0, 1))
+        own, _ = fit_alpha(way[:, HUES], off[:, HUES], noise[:, HUES])
+        off = mix_hues(way, off, noise, np.clip(0.5 + edge.gain * (own - 0.5), 0, 1))
     noise = noise.copy()
     noise[:, HUES] += edge.disparity**2 * way[:, HUES] ** 2
     return way, off, noise
 
 
-def with_hue_mixed(way: Floats, off: Floats, noise: Floats, alpha: Floats) -> Floats:
+def mix_hues(way: Floats, off: Floats, noise: Floats, alpha: Floats) -> Floats:
     """Return where pixels are off the background if their hues were mixed by α (n,)."""
-    own, _ = along(way[:, HUES], off[:, HUES], noise[:, HUES])
+    own, _ = fit_alpha(way[:, HUES], off[:, HUES], noise[:, HUES])
     moved = off.copy()
     moved[:, HUES] += (alpha - own)[:, None] * way[:, HUES]
     return moved
@@ -125,8 +125,8 @@ def _fading(tile: Tile) -> Indices:
 
 def _sharpening(way: Floats, off: Floats, noise: Floats) -> tuple[float, float]:
     """Return how much steeper α is in brightness than in hue, and how far they differ then."""
-    bright, _ = along(way[:, :1], off[:, :1], noise[:, :1])
-    hue, _ = along(way[:, HUES], off[:, HUES], noise[:, HUES])
+    bright, _ = fit_alpha(way[:, :1], off[:, :1], noise[:, :1])
+    hue, _ = fit_alpha(way[:, HUES], off[:, HUES], noise[:, HUES])
     trust = way[:, 0] ** 2 / noise[:, 0]
     middle = np.abs(hue - 0.5) < MIDDLE
     weight = np.where(middle, trust, 0.0)

@@ -7,9 +7,9 @@ Imports: `engine.arrays`, `engine.errors`.
 
 from engine.geometry.kinematics.recordings import FittedKeys as FittedKeys, fit_keys as fit_keys
 from engine.geometry.kinematics.springs import (
-    FADE as FADE,
-    Swing as Swing,
+    FADE_FRAMES as FADE_FRAMES,
+    SpringResponse as SpringResponse,
     frames_to_settle as frames_to_settle,
-    swing as swing,
+    simulate_spring as simulate_spring,
     turn_arm as turn_arm,
 )

@@ -102,13 +102,13 @@ def fit_keys(
     wanted = [int(as_number(frame, "A frame with a key", is_whole=True)) for frame in required]
     recording = _Recording(when, where, first, last, tolerance)
     fixed = sorted({first, last, *(each for each in wanted if first < each < last)})
-    frames = recording.split(np.array(fixed, dtype=np.intp))
+    frames = recording.refine(np.array(fixed, dtype=np.intp))
     if tolerance:
-        frames = recording.thin(frames, fixed)
+        frames = recording.simplify(frames, fixed)
     return recording.fitted(frames)[0]
 
 
-def key_motion(keys: FittedKeys, times: Floats) -> Complexes:
+def evaluate_keys(keys: FittedKeys, times: Floats) -> Complexes:
     """Return where the motion through two keys or more is at times (t,) from first to last."""
     interval, rows = _rows(keys.frames, times)
     return _motion(rows, keys.places, keys.velocities, interval)
@@ -157,7 +157,7 @@ class _Recording:
         motion = _motion(rows, keys.places, keys.velocities, interval)
         return keys, np.abs(motion - self.places)
 
-    def split(self, keys: Indices) -> Indices:
+    def refine(self, keys: Indices) -> Indices:
         """Put keys where the motion misses most, half way between two, until it is near."""
         while True:
             missed = self.fitted(keys)[1]
@@ -171,7 +171,7 @@ class _Recording:
                 return keys
             keys = np.sort(np.append(keys, (keys[worst] + keys[worst + 1]) // 2))
 
-    def thin(self, keys: Indices, fixed: Sequence[int]) -> Indices:
+    def simplify(self, keys: Indices, fixed: Sequence[int]) -> Indices:
         """Drop keys that need not be there, the one first without which it misses least."""
         needed = [*fixed]  # and those without which too much is missed far from them
         missed = self.fitted(keys)[1]

@@ -11,18 +11,18 @@ from engine.arrays import Complexes, Floats, Indices, as_number, as_points, free
 from engine.errors import EngineError
 
 FARTHEST = 1e100  # pixels: the squares of farther places are no numbers
-GONE = 0.01  # pixels: a swing that stays below is not seen, and ends
-FADE = 6  # frames in which it ends
+INVISIBLE = 0.01  # pixels: a swing that stays below is not seen, and ends
+FADE_FRAMES = 6  # frames in which it ends
 # Pixels to which a jump of the base's velocity would make it swing: less is what rounding leaves.
-SILENT = 1e-9
-FORGOTTEN = 1e-12  # share of a swing that is left when it has settled
+NEGLIGIBLE_DRIVE = 1e-9
+SETTLED_SHARE = 1e-12  # share of a swing that is left when it has settled
 LONGEST = 2**20  # frames in which a spring may settle
 CLOSED = 1e-12  # smallest singular value of the equation of a loop that can be solved
 WIDEST = np.pi / 2  # to which side an arm turns at most, in radians
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Swing:
+class SpringResponse:
     """By how much a place is beside the one that it follows, at any time; made by `swing`.
 
     Parameters
@@ -79,15 +79,15 @@ class Swing:
         frames = np.minimum(time.astype(np.intp), last)
         since = time - frames
         place, velocity = np.moveaxis(self.states[frames], -1, 0)
-        row = flow(self.angle * since, self.damping)[..., 0, :]
+        row = oscillator_flow(self.angle * since, self.damping)[..., 0, :]
         fading = self.fading[frames]
-        over = np.where(fading < 0, 0.0, np.minimum(fading + since / FADE, 1.0))
+        over = np.where(fading < 0, 0.0, np.minimum(fading + since / FADE_FRAMES, 1.0))
         offsets = (row[..., 0] * place + row[..., 1] * velocity) * (1 + 2 * over) * (1 - over) ** 2
         limited: Complexes = offsets / np.sqrt(1 + (np.abs(offsets) / self.limit) ** 2)
         return limited
 
 
-def swing(
+def simulate_spring(
     places: npt.ArrayLike,
     fps: float,
     *,
@@ -98,7 +98,7 @@ def swing(
     limit: float = np.inf,
     loop: bool = False,
     roots: npt.ArrayLike | None = None,
-) -> Swing:
+) -> SpringResponse:
     """Return how a spring swings about a place whose motion drives it.
 
     Parameters
@@ -169,10 +169,10 @@ def swing(
         jumps = _across(
             jumps, q - as_points(roots, "The roots of a spring", at_least=len(q), most=FARTHEST)
         )
-    jumps[np.abs(jumps) <= SILENT] = 0
-    step = flow(np.array(angle), damping)
+    jumps[np.abs(jumps) <= NEGLIGIBLE_DRIVE] = 0
+    step = oscillator_flow(np.array(angle), damping)
     run = _round(jumps, step) if loop else _run(jumps, step, _until_next(jumps))
-    return Swing(
+    return SpringResponse(
         angle=angle,
         damping=damping,
         lag=lag,
@@ -199,11 +199,13 @@ def frames_to_settle(fps: float, frequency: float, damping: float) -> float:
     The norm of the flow never grows, so that it stays over.
     """
     frames = np.ceil(np.geomspace(1, LONGEST, 200))
-    left = np.linalg.norm(flow(2 * np.pi * frequency / fps * frames, damping), 2, axis=(1, 2))
-    return float(np.append(frames[left < FORGOTTEN], np.inf)[0])
+    left = np.linalg.norm(
+        oscillator_flow(2 * np.pi * frequency / fps * frames, damping), 2, axis=(1, 2)
+    )
+    return float(np.append(frames[left < SETTLED_SHARE], np.inf)[0])
 
 
-def flow(angles: Floats, damping: float) -> Floats:
+def oscillator_flow(angles: Floats, damping: float) -> Floats:
     """Return exp(A h) of the free oscillator, ö + 2ζωȯ + ω²o = 0, for the state (o, ȯ/ω).
 
     Parameters
@@ -255,14 +257,14 @@ def _run(
     over, states, fading = -1, [], []
     for jump, calm in zip(jumps.tolist(), until_next.tolist(), strict=True):
         v -= jump
-        if over < 0 and calm >= FADE and 0 < hypot(abs(o), abs(v)) < GONE:
+        if over < 0 and calm >= FADE_FRAMES and 0 < hypot(abs(o), abs(v)) < INVISIBLE:
             over = 0
         states.append((o, v))
-        fading.append(over / FADE)
+        fading.append(over / FADE_FRAMES)
         o, v = a * o + b * v, c * o + d * v
         if over >= 0:
             over += 1
-        if over == FADE:
+        if over == FADE_FRAMES:
             o, v, over = 0j, 0j, -1
     return _Run(np.array(states), np.array(fading), np.array([o, v]))
 
@@ -316,7 +318,7 @@ def _until_next(jumps: Complexes, *, again: bool = False) -> Indices:
     count = len(jumps)
     frames = np.flatnonzero(jumps)
     frames = np.append(frames, frames + count if again else [])
-    never = np.array([2 * count + FADE])
+    never = np.array([2 * count + FADE_FRAMES])
     following = np.concatenate([frames, never]).astype(np.intp)
     here = np.arange(count)
     return following[np.searchsorted(following, here, side="right")] - here

@@ -6,16 +6,16 @@ Imports: `engine.arrays`, `engine.errors`.
 """
 
 from engine.geometry.motions.body import Body as Body, other_side as other_side
-from engine.geometry.motions.catalogue import motion_named as motion_named
-from engine.geometry.motions.facing import facing_of as facing_of
+from engine.geometry.motions.catalogue import find_motion as find_motion
+from engine.geometry.motions.facing import guess_facing as guess_facing
 from engine.geometry.motions.kinds import (
     KINDS as KINDS,
     BodyKind as BodyKind,
-    kind_named as kind_named,
+    find_kind as find_kind,
 )
 from engine.geometry.motions.library import MOTIONS as MOTIONS
 from engine.geometry.motions.motion import (
+    JointPose as JointPose,
     Motion as Motion,
     Parameters as Parameters,
-    Posture as Posture,
 )

@@ -22,7 +22,7 @@ def other_side(joint: str) -> str:
     return f"{name}.{SIDES[side]}" if dot and side in SIDES else joint
 
 
-def plain(joint: str) -> str:
+def without_side(joint: str) -> str:
     """Return a joint's name without its side."""
     name, dot, side = joint.rpartition(".")
     return name if dot and side in SIDES else joint
@@ -72,7 +72,7 @@ class Body:
         object.__setattr__(self, "joints", MappingProxyType(joints))
         object.__setattr__(self, "parents", MappingProxyType(parents))
 
-    def require(self, names: Iterable[str], what: str) -> None:
+    def require_joints(self, names: Iterable[str], what: str) -> None:
         """Raise an `EngineError` where joints that something needs are not there."""
         missing = [name for name in names if name not in self.joints]
         if missing:
@@ -83,17 +83,17 @@ class Body:
         joints = {other_side(name): place for name, place in self.joints.items()}
         return replace(self, joints=joints, facing=-self.facing)
 
-    def limb(self, tip: str) -> tuple[str, ...]:
+    def limb_joints(self, tip: str) -> tuple[str, ...]:
         """Return the joints of an arm or a leg from its root, which is on the trunk, to its tip."""
-        self.require([tip], "A limb")
+        self.require_joints([tip], "A limb")
         path = [tip]
-        while path[-1] and plain(path[-1]) not in {"hip", "shoulder", "hips", "chest"}:
+        while path[-1] and without_side(path[-1]) not in {"hip", "shoulder", "hips", "chest"}:
             path.append(self.parents[path[-1]])
         return tuple(name for name in reversed(path) if name)
 
-    def length(self, joints: Iterable[str]) -> float:
+    def path_length(self, joints: Iterable[str]) -> float:
         """Return how long the way is from joint to joint."""
         names = list(joints)
-        self.require(names, "A length")
+        self.require_joints(names, "A length")
         places = np.array([self.joints[name] for name in names])
         return float(np.abs(np.diff(places)).sum())

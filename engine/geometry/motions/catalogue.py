@@ -5,7 +5,7 @@ from engine.geometry.motions.library import MOTIONS
 from engine.geometry.motions.motion import Motion
 
 
-def motion_named(name: str) -> Motion:
+def find_motion(name: str) -> Motion:
     """Return the motion of a name; raise an `EngineError` where there is none."""
     if name not in MOTIONS:
         raise EngineError(f"there is no motion {name!r}; the motions are {', '.join(MOTIONS)}")

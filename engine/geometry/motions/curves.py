@@ -32,12 +32,12 @@ def _spline(curve: Curve) -> CubicSpline:
     return CubicSpline([*phases, phases[0] + 1.0], [*heights, heights[0]], bc_type="periodic")
 
 
-def even(*values: float) -> Curve:
+def even_curve(*values: float) -> Curve:
     """Return a curve through values at even phases, the first one at 0."""
     return Curve(tuple((number / len(values), value) for number, value in enumerate(values)))
 
 
-STEADY = even(0.0)
+STEADY = even_curve(0.0)
 
 
 def bump(share: float) -> float:
@@ -46,14 +46,14 @@ def bump(share: float) -> float:
     return 64 * inside**3 * (1 - inside) ** 3
 
 
-def covering(heights: Sequence[float]) -> Curve:
+def covering_curve(heights: Sequence[float]) -> Curve:
     """Return a smooth curve that is nowhere below some heights at even phases."""
     count = len(heights)
     width = 2 * (count // 32) + 1
     most = maximum_filter1d(np.asarray(heights), 2 * width + 1, mode="wrap")
     # A mean of what is largest around is at least as high as what is in the middle.
     smooth = uniform_filter1d(uniform_filter1d(most, width, mode="wrap"), width, mode="wrap")
-    return even(*smooth.tolist())
+    return even_curve(*smooth.tolist())
 
 
 def hermite(share: float, start: float, end: float, slope: float) -> float:

@@ -13,7 +13,7 @@ from engine.geometry.motions.kinds import BodyKind
 AROUND = 0.12  # of the height: how far around a joint the outline is looked at
 
 
-def facing_of(kind: BodyKind, joints: Mapping[str, complex], outline: Complexes) -> int:
+def guess_facing(kind: BodyKind, joints: Mapping[str, complex], outline: Complexes) -> int:
     """Return 1 where a drawing looks to the right, -1 to the left.
 
     Parameters

@@ -125,7 +125,7 @@ KINDS: Mapping[str, BodyKind] = MappingProxyType(
 )
 
 
-def kind_named(name: str) -> BodyKind:
+def find_kind(name: str) -> BodyKind:
     """Return the kind of a name; raise an `EngineError` where there is none."""
     if name not in KINDS:
         raise EngineError(f"there is no kind {name!r}; the kinds are {', '.join(KINDS)}")

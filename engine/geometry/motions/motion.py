@@ -46,7 +46,7 @@ class Parameters:
             )
 
 
-class Posture(NamedTuple):
+class JointPose(NamedTuple):
     """Where joints are at one moment, how far some turn from rest, and which stand."""
 
     places: Mapping[str, complex]
@@ -56,11 +56,11 @@ class Posture(NamedTuple):
     standing: frozenset[str]
 
 
-class Performance(ABC):
+class MotionInstance(ABC):
     """What a motion does with one body, on the spot."""
 
     @abstractmethod
-    def at(self, phase: float) -> Posture:
+    def pose_at(self, phase: float) -> JointPose:
         """Return a moment at a phase in [0, 1)."""
 
     @property
@@ -69,19 +69,19 @@ class Performance(ABC):
         return 0.0
 
 
-class Choreography(ABC):
+class MotionTemplate(ABC):
     """What a motion does with any body of a kind."""
 
     needed: tuple[str, ...] = ()  # joints without which it cannot be
     either: tuple[str, ...] = ()  # joints of which it needs one, the first one rather
 
     @property
-    def travels(self) -> bool:
+    def can_travel(self) -> bool:
         """Whether it has steps by which a body gets on."""
         return False
 
     @abstractmethod
-    def performed(self, body: Body, parameters: Parameters) -> Performance:
+    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
         """Return what it does with a body."""
 
 
@@ -98,33 +98,33 @@ class Motion:
     hint: str
     seconds: float  # that a cycle takes at the usual speed
     keys: int  # poses by which a cycle is keyed
-    courses: Mapping[str, Choreography] = field(repr=False)
+    templates: Mapping[str, MotionTemplate] = field(repr=False)
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """The kinds of bodies that it fits."""
-        return tuple(self.courses)
+        return tuple(self.templates)
 
     @property
-    def travels(self) -> bool:
+    def can_travel(self) -> bool:
         """Whether it has steps by which a body gets on."""
-        return any(course.travels for course in self.courses.values())
+        return any(course.can_travel for course in self.templates.values())
 
-    def course(self, kind: str) -> Choreography:
+    def template_for(self, kind: str) -> MotionTemplate:
         """Return what it does with bodies of a kind; raise an `EngineError` if it does not fit."""
-        if kind not in self.courses:
-            fitting = " or ".join(repr(each) for each in self.courses)
+        if kind not in self.templates:
+            fitting = " or ".join(repr(each) for each in self.templates)
             raise EngineError(f"{self.name!r} is a motion of {fitting}, and not of {kind!r}")
-        return self.courses[kind]
+        return self.templates[kind]
 
     def frames(self, parameters: Parameters, fps: float) -> int:
         """Return how many frames a cycle takes."""
         fps = as_number(fps, "The speed of a motion", above=0)
         return max(LEAST_FRAMES, round(self.seconds * fps / parameters.speed))
 
-    def moments(
+    def poses_at(
         self, body: Body, parameters: Parameters, shares: Sequence[float]
-    ) -> tuple[Posture, ...]:
+    ) -> tuple[JointPose, ...]:
         """Return where a body's joints are after shares of the cycle, from where it begins.
 
         With `travel` they are farther by that share of a stride, also beyond 1.
@@ -137,28 +137,28 @@ class Motion:
         """
         for share in shares:
             as_number(share, "A share of a motion's cycle")
-        course = self.course(body.kind.name)
-        if parameters.travel and not course.travels:
+        course = self.template_for(body.kind.name)
+        if parameters.travel and not course.can_travel:
             raise EngineError(f"{self.name!r} has no steps to travel by")
         body = body.mirrored() if parameters.mirrored else body
-        body.require(course.needed, f"{self.name!r}")
+        body.require_joints(course.needed, f"{self.name!r}")
         if course.either and not any(name in body.joints for name in course.either):
-            body.require(course.either[:1], f"{self.name!r}")
-        performed = course.performed(body, parameters)
+            body.require_joints(course.either[:1], f"{self.name!r}")
+        performed = course.instantiate(body, parameters)
         ways = [share * performed.stride if parameters.travel else 0.0 for share in shares]
-        moments = [performed.at((share + parameters.start) % 1.0) for share in shares]
+        moments = [performed.pose_at((share + parameters.start) % 1.0) for share in shares]
         if parameters.mirrored:
             moments = [_swapped(moment) for moment in moments]
         return tuple(_moved(moment, way) for moment, way in zip(moments, ways, strict=True))
 
 
-def _moved(moment: Posture, way: float) -> Posture:
+def _moved(moment: JointPose, way: float) -> JointPose:
     """Return a moment farther to the right."""
     return moment._replace(places={name: at + way for name, at in moment.places.items()})
 
 
-def _swapped(moment: Posture) -> Posture:
+def _swapped(moment: JointPose) -> JointPose:
     """Return a moment with its sides swapped."""
     places = {other_side(name): place for name, place in moment.places.items()}
     turns = {other_side(name): turn for name, turn in moment.turns.items()}
-    return Posture(places, turns, frozenset(map(other_side, moment.standing)))
+    return JointPose(places, turns, frozenset(map(other_side, moment.standing)))

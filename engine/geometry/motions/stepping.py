@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.geometry.motions.body import Body, other_side
 from engine.geometry.motions.motion import Parameters
-from engine.geometry.motions.steps import BodyLeg, Gait, leg_of, room_below
+from engine.geometry.motions.steps import BodyLeg, Gait, find_leg, required_drop
 
 GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
 # Legs of one drawing cannot pass through each other: so near, in lengths of a leg, feet of a pair
@@ -18,7 +18,7 @@ CLEAR, SPREAD = 0.14, 0.22
 LOWERED, SHORTER = 0.05, 0.9
 
 
-class Stepping:
+class FootSteps:
     """Feet of one body.
 
     Parameters
@@ -29,11 +29,11 @@ class Stepping:
     """
 
     def __init__(self, body: Body, gait: Gait, parameters: Parameters) -> None:
-        if not (gait.treads or parameters.travel):
+        if not (gait.is_treadmill or parameters.travel):
             gait = replace(gait, stride=0.0)
         self.body, self.gait, self.size = body, gait, parameters.size
-        feet = [foot for foot, _ in gait.falls if foot in body.joints]
-        self.legs: dict[str, BodyLeg] = {foot: leg_of(body, foot) for foot in feet}
+        feet = [foot for foot, _ in gait.landings if foot in body.joints]
+        self.legs: dict[str, BodyLeg] = {foot: find_leg(body, foot) for foot in feet}
         self.reach = min(leg.length for leg in self.legs.values()) if feet else 0.0
         lowest = min((body.joints[foot].imag for foot in feet), default=0.0)
         # A foot that is drawn lifted, as in a stride, comes down to the others.
@@ -77,7 +77,7 @@ class Stepping:
 
     def _pairs(self) -> Iterator[tuple[str, str]]:
         """Yield the feet that pass each other, the one behind first."""
-        falls = dict(self.gait.falls)
+        falls = dict(self.gait.landings)
         for foot in self.legs:
             other = other_side(foot)
             if other == foot or other not in self.legs or falls[foot] == falls[other]:
@@ -103,7 +103,7 @@ class Stepping:
             root = self.body.joints[leg.joints[0]]
             for way in (-1, 1):
                 tip = complex(self.middles[foot] + way * self.step / 2, self.ground[foot])
-                lowered.append(room_below(leg, root, tip, self.gait.straight))
+                lowered.append(required_drop(leg, root, tip, self.gait.straight))
         return max(lowered) / self.reach
 
     def _middles(self) -> dict[str, float]:

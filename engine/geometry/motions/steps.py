@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
-from engine.geometry.motions.body import Body, plain
+from engine.geometry.motions.body import Body, without_side
 from engine.geometry.motions.curves import bump, hermite
 
 # A leg that is drawn bent by so much bends that way; a straighter one as its kind does.
@@ -21,16 +21,16 @@ class Gait:
     stride: float  # how far the body gets on in a cycle, in lengths of a leg
     lift: float  # how high a foot is lifted in the middle of its swing, in lengths of a leg
     # When each foot comes down, as shares of the cycle.
-    falls: tuple[tuple[str, float], ...]
+    landings: tuple[tuple[str, float], ...]
     gathered: float = 0.2  # how far feet are set below the hips, rather than where they are drawn
     # Of a leg's length: so near to straight it comes, so that the knee does not snap.
     straight: float = 0.985
-    treads: bool = True  # whether, on the spot, feet go back on the ground as under who walks
+    is_treadmill: bool = True  # whether, on the spot, feet go back on the ground as under who walks
     roll: float = 0.0  # degrees by which a foot points down as it leaves the ground
 
     def phase(self, foot: str, phase: float) -> float:
         """Return how far a foot is in its own cycle, which begins as it comes down."""
-        return (phase - dict(self.falls)[foot]) % 1.0
+        return (phase - dict(self.landings)[foot]) % 1.0
 
     def stands(self, foot: str, phase: float) -> bool:
         """Tell whether a foot is on the ground."""
@@ -72,9 +72,9 @@ class BodyLeg(NamedTuple):
         return sum(self.lengths)
 
 
-def leg_of(body: Body, tip: str) -> BodyLeg:
+def find_leg(body: Body, tip: str) -> BodyLeg:
     """Return the leg that ends at a foot; or at a hand, of what walks on them."""
-    joints = body.limb(tip)
+    joints = body.limb_joints(tip)
     places = [body.joints[name] for name in joints]
     lengths = tuple(abs(b - a) for a, b in pairwise(places))
     turn = 0.0
@@ -92,11 +92,11 @@ def _usual_bend(body: Body, tip: str) -> int:
         middle = body.joints[next(iter(body.joints))].real
         return -1 if body.joints[tip].real < middle else 1
     # A hock points backwards, knees and wrists forwards.
-    is_hock = body.kind.name == "four-legs" and plain(tip) == "foot"
+    is_hock = body.kind.name == "four-legs" and without_side(tip) == "foot"
     return -body.facing if is_hock else body.facing
 
 
-def bent(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
+def solve_leg_ik(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
     """Return where the joints between a root and a tip are, at the leg's own lengths.
 
     Where the tip is out of reach the middle is on the straight way to it.
@@ -111,7 +111,7 @@ def bent(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
     return {leg.joints[1]: root + upper * direction * cmath.exp(1j * turn)}
 
 
-def room_below(leg: BodyLeg, root: complex, tip: complex, straight: float) -> float:
+def required_drop(leg: BodyLeg, root: complex, tip: complex, straight: float) -> float:
     """Return by how much a root must come down, so that its leg reaches the tip."""
     reach = straight * leg.length if len(leg.lengths) > 1 else leg.length
     beside = min(abs((root - tip).real), reach)

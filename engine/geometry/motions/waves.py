@@ -5,11 +5,11 @@ import math
 from dataclasses import dataclass
 
 from engine.geometry.motions.body import Body
-from engine.geometry.motions.motion import Choreography, Parameters, Performance, Posture
+from engine.geometry.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Wave(Choreography):
+class Wave(MotionTemplate):
     """Links that swing one after the other, from the first joint to the last one."""
 
     degrees: float  # by which links swing to either side
@@ -19,22 +19,22 @@ class Wave(Choreography):
     held: bool = False  # whether the first joint stays where it is; else the middle of all does
     needed: tuple[str, ...] = ("joint.1", "joint.2", "joint.3")
 
-    def performed(self, body: Body, parameters: Parameters) -> Performance:
+    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
         """Return what it does with a chain."""
-        return _Performed(self, body, parameters)
+        return _WaveInstance(self, body, parameters)
 
 
-class _Performed(Performance):
+class _WaveInstance(MotionInstance):
     """A wave along one chain."""
 
     def __init__(self, course: Wave, body: Body, parameters: Parameters) -> None:
-        self.course, self.parameters, self.facing = course, parameters, body.facing
+        self.template, self.parameters, self.facing = course, parameters, body.facing
         self.names = tuple(body.joints)
         self.rest = tuple(body.joints.values())
 
-    def at(self, phase: float) -> Posture:
+    def pose_at(self, phase: float) -> JointPose:
         """Return where the joints are."""
-        course, links = self.course, len(self.rest) - 1
+        course, links = self.template, len(self.rest) - 1
         most = self.facing * math.radians(course.degrees) * self.parameters.size
         # The rest of the swing is of the tip, more of it with more energy.
         growth = (1 - course.first) * self.parameters.energy
@@ -48,4 +48,4 @@ class _Performed(Performance):
         if not course.held:
             off = sum(a - b for a, b in zip(self.rest, places, strict=True)) / len(places)
             places = [place + off for place in places]
-        return Posture(dict(zip(self.names, places, strict=True)), {}, frozenset())
+        return JointPose(dict(zip(self.names, places, strict=True)), {}, frozenset())

@@ -34,16 +34,16 @@ from engine.arrays import Complexes, Floats, freeze
 from engine.deform.correction import (
     BaseFrame,
     CorrectedFrame,
-    LimitWalls,
+    LimitBarrier,
     PointCorrector,
     PointPaths,
     PointSolution,
-    Targets,
+    PointTargets,
     Variables,
     extremes,
-    solve,
+    solve_correction,
 )
-from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, separate
+from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, separate_variables
 from engine.maps import Boundary
 from engine.paths import Loops
 
@@ -257,7 +257,7 @@ class HoleCloser:
         closing = self._in_series(nearest, breaks)
         if over <= BEYOND:
             return closing
-        forms, series = separate(
+        forms, series = separate_variables(
             self._into_limits(unclosed, sign, moduli, closing),
             tolerance=ROUGH,
             left_out=ROUGHLY_LEFT_OUT,
@@ -293,7 +293,7 @@ class HoleCloser:
         """Return the unknowns (N, t) of the smallest h that leads on from there into the limits."""
         corrector, span = self.corrector, self.corrector.boundary.span
         nothing, free = corrector.variables.nothing, np.zeros(0)
-        targets = Targets(np.zeros(0, np.complex128), free, is_anchored=True)
+        targets = PointTargets(np.zeros(0, np.complex128), free, is_anchored=True)
         at_nodes, at_samples = (
             span.evaluate(closing.functions.coefficients, z, orders=(0,))[0]
             for z in (corrector.paths.nodes, corrector.boundary.points)
@@ -310,15 +310,15 @@ class HoleCloser:
                 _bases(parts, sign, h @ modes.T)[0]
                 for parts, modes in ((unclosed(times), at_nodes), (moduli.at(times), at_samples))
             )
-            walls = partial(LimitWalls.around, corrector, samples, moduli.limits, scale)
+            walls = partial(LimitBarrier.around, corrector, samples, moduli.limits, scale)
             if walls(nothing).beyond.any():
                 near = min(solved, key=lambda other: abs(other - time))
-                start = PointSolution(x=scale * solved[near], shift=0j, misses=free, steps=0)
+                start = PointSolution(x=scale * solved[near], shift=0j, target_errors=free, steps=0)
                 around = walls(start.x)
                 if around.beyond.max() > FAR:
                     at((near + time) / 2)
                     return at(time)
-                found = solve(corrector, nodes, targets, start, around, throw=False)
+                found = solve_correction(corrector, nodes, targets, start, around, throw=False)
                 solved[time] = found.x / scale
             else:
                 solved[time] = nothing
@@ -336,7 +336,7 @@ class HoleCloser:
     ) -> Closing:
         """Write unknowns (c, t) in few functions."""
         functions = self.functions if functions is None else functions
-        forms, series = separate(
+        forms, series = separate_variables(
             unknowns,
             tolerance=TOLERANCE,
             left_out=LEFT_OUT,
@@ -366,7 +366,7 @@ def _closed(corrector: PointCorrector, base: BaseFrame, goal: Floats) -> Floats:
     x = goal
     for _ in range(MOST_STEPS):
         frame = CorrectedFrame.of(corrector, base, x)
-        gap, rows = frame.places(), frame.rows()
+        gap, rows = frame.places(), frame.constraint_rows()
         right = rows @ (x - goal) - np.concatenate([gap.real, gap.imag])
         step = goal - x + np.linalg.lstsq(rows, right, rcond=INDEPENDENT)[0]
         x = x + step

@@ -9,11 +9,16 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.added import Closing
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
-from engine.interpolation.passage import Derivatives, Interval, weighted
-from engine.interpolation.scaling import SharpScaling
-from engine.interpolation.series import combined
-from engine.interpolation.sites import Sites
+from engine.interpolation.enclosures import (
+    BernsteinPatch,
+    BlendChanges,
+    EndpointValues,
+    enclose_exponential,
+)
+from engine.interpolation.keyframe_blend import Derivatives, KeyframeSegment, weighted_sum
+from engine.interpolation.sampled_domain import SampledDomain
+from engine.interpolation.scaling import ExactRho
+from engine.interpolation.series import combine_arrays
 from engine.maps import Enclosures
 
 
@@ -34,15 +39,15 @@ class EtaBlend(Blend):
     conj_eta_z: tuple[Complexes, ...]
 
     @classmethod
-    def of(cls, interval: Interval) -> Self:
+    def of(cls, interval: KeyframeSegment) -> Self:
         """Work out η of the keyframes."""
         values, derivatives = [], []
-        for key in interval.passage.keyframes:
+        for key in interval.keyframe_blend.keyframes:
             squared = np.exp(2 * key.log_fz)
             values.append(freeze(key.nu * squared))
             derivatives.append(freeze((key.nu_z + 2 * key.nu * key.log_fz_z) * squared))
         return cls(
-            passage=interval.passage,
+            keyframe_blend=interval.keyframe_blend,
             bounds=interval.bounds,
             conj_eta=tuple(values),
             conj_eta_z=tuple(derivatives),
@@ -50,8 +55,10 @@ class EtaBlend(Blend):
 
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
-        fz = np.exp(self.passage.log_fz_at(times))
-        g = combined(self.passage.eta_course.at(times).T, np.array(self.conj_eta))
+        fz = np.exp(self.keyframe_blend.log_fz_at(times))
+        g = combine_arrays(
+            self.keyframe_blend.eta_time_weights.at(times).T, np.array(self.conj_eta)
+        )
         g /= fz
         return fz, g
 
@@ -61,12 +68,12 @@ class EtaBlend(Blend):
         Departs from the paper: Equation (7) lost a bar; it reads f_z̄ = η / conj(f_z), that is
         Ψ' = conj(η) / Φ'. The unscaled Ψ' is returned; ρ is a factor of it.
         """
-        weights = self.passage.eta_course(time)
-        logarithm, logarithm_z = self.passage.log_fz(time)
+        weights = self.keyframe_blend.eta_time_weights(time)
+        logarithm, logarithm_z = self.keyframe_blend.log_fz(time)
         fz = np.exp(logarithm)
         inverse = 1.0 / fz
-        g = weighted(self.conj_eta, weights)  # Equation (6), conjugate
-        gz = weighted(self.conj_eta_z, weights)
+        g = weighted_sum(self.conj_eta, weights)  # Equation (6), conjugate
+        gz = weighted_sum(self.conj_eta_z, weights)
         gz -= g * logarithm_z
         gz *= inverse
         g *= inverse  # Equation (7): conj(f_z̄)
@@ -76,36 +83,38 @@ class EtaBlend(Blend):
         """Return the same at some of the nodes only."""
         return replace(
             self,
-            passage=self.passage.at(which),
+            keyframe_blend=self.keyframe_blend.at(which),
             conj_eta=tuple(freeze(values[which]) for values in self.conj_eta),
             conj_eta_z=tuple(freeze(values[which]) for values in self.conj_eta_z),
         )
 
     @staticmethod
-    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+    def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
         """Return ln |f_z| and conj(η)."""
         return np.log(np.abs(fz)) + 0j, fz * g
 
     @staticmethod
-    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+    def singular_values(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
         """Return |f_z| ± |η| / |f_z|."""
         a = np.exp(first.real)
         b = np.abs(second) / a
         return a + b, a - b
 
-    def curves(self, values: EndValues) -> PairCurves:
+    def curves(self, values: EndpointValues) -> PairCurves:
         """Return ln |f_z| and conj(η) along pieces of the boundary."""
         return values.log_modulus(), values.conj_eta()
 
     @staticmethod
-    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+    def enclose(
+        first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
+    ) -> Enclosures:
         """Enclose the distortion on cells: h keeps η, and ρ and d scale what there is."""
         if changes is None:
-            return exponential(first, first.times(-1.0), first.times(-2.0), second)
+            return enclose_exponential(first, first.times(-1.0), first.times(-2.0), second)
         log_a = first.plus(changes.correction)
         log_g = log_a.times(-1.0).plus(changes.rho)
         log_ratio = log_a.times(-2.0).plus(changes.rho).plus(changes.factor.times(-1.0))
-        return exponential(log_a.plus(changes.factor), log_g, log_ratio, second)
+        return enclose_exponential(log_a.plus(changes.factor), log_g, log_ratio, second)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -114,14 +123,14 @@ class ScaledEtaBlend(EtaBlend):
 
     is_scaled = True
 
-    def sharp_scaling(
-        self, sites: Sites, closing: Closing | None, conformal: Closing | None
+    def exact_rho(
+        self, sites: SampledDomain, closing: Closing | None, conformal: Closing | None
     ) -> Callable[[Floats], Floats]:
         """Return the largest ρ that the outline allows."""
-        return SharpScaling.of(
-            [key.map for key in self.passage.keyframes],
+        return ExactRho.of(
+            [key.map for key in self.keyframe_blend.keyframes],
             sites.outline,
-            self.passage.course,
+            self.keyframe_blend.time_weights,
             self.bounds,
             tuple(each for each in (closing, conformal) if each is not None),
         )

@@ -7,9 +7,14 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosing import Changes, EndValues, Patch, linear
-from engine.interpolation.passage import Derivatives, Interval, weighted
-from engine.interpolation.series import combined
+from engine.interpolation.enclosures import (
+    BernsteinPatch,
+    BlendChanges,
+    EndpointValues,
+    enclose_linear,
+)
+from engine.interpolation.keyframe_blend import Derivatives, KeyframeSegment, weighted_sum
+from engine.interpolation.series import combine_arrays
 from engine.maps import Enclosures
 
 
@@ -30,48 +35,54 @@ class LinearBlend(Blend):
     known: tuple[Derivatives, ...]
 
     @classmethod
-    def of(cls, interval: Interval) -> Self:
+    def of(cls, interval: KeyframeSegment) -> Self:
         """Work out the derivatives of the keyframes."""
         known = []
-        for key in interval.passage.keyframes:
+        for key in interval.keyframe_blend.keyframes:
             fz = np.exp(key.log_fz)
             gz = (key.nu_z + key.nu * key.log_fz_z) * fz
             parts = fz, key.log_fz_z * fz, key.nu * fz, gz
             known.append(Derivatives(*map(freeze, parts)))
-        return cls(passage=interval.passage, bounds=interval.bounds, known=tuple(known))
+        return cls(
+            keyframe_blend=interval.keyframe_blend, bounds=interval.bounds, known=tuple(known)
+        )
 
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
-        weights = self.passage.course.at(times).T
+        weights = self.keyframe_blend.time_weights.at(times).T
         fz, g = (np.array([getattr(each, of) for each in self.known]) for of in ("fz", "g"))
-        return combined(weights, fz), combined(weights, g)
+        return combine_arrays(weights, fz), combine_arrays(weights, g)
 
     def derivatives(self, time: float) -> Derivatives:
         """Blend all derivatives linearly."""
-        weights = self.passage.course(time)
-        return Derivatives(*(weighted(parts, weights) for parts in zip(*self.known, strict=True)))
+        weights = self.keyframe_blend.time_weights(time)
+        return Derivatives(
+            *(weighted_sum(parts, weights) for parts in zip(*self.known, strict=True))
+        )
 
     def at(self, which: Indices) -> Self:
         """Return the same at some of the nodes only."""
         known = tuple(Derivatives(*(freeze(part[which]) for part in each)) for each in self.known)
-        return replace(self, passage=self.passage.at(which), known=known)
+        return replace(self, keyframe_blend=self.keyframe_blend.at(which), known=known)
 
     @staticmethod
-    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+    def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) themselves."""
         return fz, g
 
     @staticmethod
-    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+    def singular_values(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
         """Return |f_z| ± |f_z̄|."""
         a, b = np.abs(first), np.abs(second)
         return a + b, a - b
 
-    def curves(self, values: EndValues) -> PairCurves:
+    def curves(self, values: EndpointValues) -> PairCurves:
         """Return f_z and conj(f_z̄) along pieces of the boundary."""
         return values.conformal(), values.anticonformal()
 
     @staticmethod
-    def enclose(first: Patch[Any], second: Patch[Any], _changes: Changes | None, /) -> Enclosures:
+    def enclose(
+        first: BernsteinPatch[Any], second: BernsteinPatch[Any], _changes: BlendChanges | None, /
+    ) -> Enclosures:
         """Enclose the distortion on cells."""
-        return linear(first, second)
+        return enclose_linear(first, second)

@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.deform.correction import limits_of, quantities
+from engine.deform.correction import frame_limits, log_distortions
 from engine.dirichlet import Extension, Refinement
 from engine.errors import EngineError
 from engine.interpolation.added import Moduli
@@ -27,18 +27,23 @@ from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.outline import (
     OutlineMetric,
     control_curves,
-    course_of_trace,
+    trace_time_weights,
 )
-from engine.interpolation.courses import Course, Joint, Tangent, shortened_metric
-from engine.interpolation.enclosing import (
-    Changes,
-    EndValues,
-    Patch,
-    changed_metric,
-    from_metric,
+from engine.interpolation.enclosures import (
+    BernsteinPatch,
+    BlendChanges,
+    EndpointValues,
+    enclose_changed_metric,
+    enclose_metric,
 )
-from engine.interpolation.passage import BoundaryResidual, Interval
-from engine.interpolation.series import HoleConstants, Residual, one, separate
+from engine.interpolation.keyframe_blend import BoundaryResidual, KeyframeSegment
+from engine.interpolation.series import HoleConstants, Residual, constant_one, separate_variables
+from engine.interpolation.time_weights import (
+    InteriorKnot,
+    Tangent,
+    TimeWeights,
+    shorten_metric_tangent,
+)
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
@@ -79,7 +84,7 @@ class MetricBlend(EtaBlend):
     lost: HoleConstants
 
     @classmethod
-    def of(cls, interval: Interval) -> Self:
+    def of(cls, interval: KeyframeSegment) -> Self:
         """Solve the Dirichlet problems of the residual.
 
         Raises
@@ -90,36 +95,38 @@ class MetricBlend(EtaBlend):
         return cls._extended(interval, interval.residual or cls.on_boundary(interval))
 
     @classmethod
-    def on_boundary(cls, interval: Interval, /) -> BoundaryResidual:
+    def on_boundary(cls, interval: KeyframeSegment, /) -> BoundaryResidual:
         """Solve them, and leave them on the boundary."""
         metric, panels = _resolved(interval, np.array(LOOKED_AT))
-        forms, series = separate(
+        forms, series = separate_variables(
             metric.residuals,
             tolerance=TOLERANCE,
-            left_out=LEFT_OUT if interval.passage.course.is_straight else LEFT_OUT_PASSING,
+            left_out=LEFT_OUT
+            if interval.keyframe_blend.time_weights.is_straight
+            else LEFT_OUT_PASSING,
         )
         return BoundaryResidual(panels.solve(forms), series)
 
     @classmethod
-    def only_at(cls, time: float, interval: Interval, /) -> Self:
+    def at_single_time(cls, time: float, interval: KeyframeSegment, /) -> Self:
         """Solve the one Dirichlet problem of a time in [0, 1]."""
         times = np.array([time])
         metric, panels = _resolved(interval, times)
-        residual = BoundaryResidual(panels.solve(metric.residuals(times)), one())
+        residual = BoundaryResidual(panels.solve(metric.residuals(times)), constant_one())
         return cls._extended(interval, residual)
 
     @classmethod
-    def _extended(cls, interval: Interval, residual: BoundaryResidual) -> Self:
+    def _extended(cls, interval: KeyframeSegment, residual: BoundaryResidual) -> Self:
         densities, series = residual
         modes, modes_z, lost = densities.at(_matching(interval))
         modes.imag -= modes[0].imag
         # Unbounded there; the steps beside these nodes are so short that it is not missed.
-        modes_z[interval.sites.paths.cornered] = 0.0
-        known, passage = EtaBlend.of(interval), interval.passage
+        modes_z[interval.sampled_domain.paths.cornered] = 0.0
+        known, passage = EtaBlend.of(interval), interval.keyframe_blend
         # All but η keeps its velocities at keyframes.
-        passage = replace(passage, course=passage.course.full)
+        passage = replace(passage, time_weights=passage.time_weights.unlimited)
         return cls(
-            passage=passage.with_residual(Residual.of(series, modes, modes_z)),
+            keyframe_blend=passage.with_residual(Residual.of(series, modes, modes_z)),
             bounds=interval.bounds,
             conj_eta=known.conj_eta,
             conj_eta_z=known.conj_eta_z,
@@ -133,80 +140,90 @@ class MetricBlend(EtaBlend):
 
     def moduli(self, boundary: Boundary) -> Moduli:
         """Return what is known at samples of the boundary before periods are closed."""
-        course = self.passage.eta_course
-        fz, fzbar = derivatives_of([key.map for key in self.passage.keyframes], boundary.points)
+        course = self.keyframe_blend.eta_time_weights
+        fz, fzbar = derivatives_of(
+            [key.map for key in self.keyframe_blend.keyframes], boundary.points
+        )
         metric = OutlineMetric.of(fz, fzbar, course, self.bounds)
         counts = np.diff([*boundary.starts, len(boundary.points)])
         loops = np.repeat(np.arange(len(counts)), counts)
 
         def at(times: Floats) -> tuple[Floats, Floats]:
-            logarithm = metric.residuals(times).T + course.full.at(times).T @ metric.log_modulus
+            logarithm = (
+                metric.residuals(times).T + course.unlimited.at(times).T @ metric.log_modulus
+            )
             lost = np.pad(self.lost.at(times), ((0, 0), (1, 0)))[:, loops]
             a = np.exp(logarithm - lost)
             return a, np.abs(course.at(times).T @ metric.eta) / a
 
         keyframes = zip(*at(np.array([0.0, 1.0])), strict=True)
-        ends = [quantities(*each).max(axis=1) for each in keyframes]
-        bounds = [] if course.is_straight else [limits_of(self.bounds, inside=0.0)]
+        ends = [log_distortions(*each).max(axis=1) for each in keyframes]
+        bounds = [] if course.is_straight else [frame_limits(self.bounds, inside=0.0)]
         return Moduli(at, np.max([*ends, *bounds], axis=0), self.lost)
 
     @staticmethod
-    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+    def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
         """Return 𝒜 and conj(η)."""
         return np.abs(fz) ** 2 + np.abs(g) ** 2 + 0j, fz * g
 
     @staticmethod
-    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+    def singular_values(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
         """Return the roots of 𝒜 ± 2 |η| = σ², Equations (10) and (11)."""
         trace, twice = first.real, 2 * np.abs(second)
         return np.sqrt(np.maximum(trace + twice, 0.0)), np.sqrt(np.maximum(trace - twice, 0.0))
 
     @classmethod
-    def _shortened(
-        cls, quantities: Complexes, joint: Joint, bounds: Bounds, boundary: Boundary, /
+    def _shorten_tangent(
+        cls, quantities: Complexes, joint: InteriorKnot, bounds: Bounds, boundary: Boundary, /
     ) -> Tangent:
-        return shortened_metric(quantities, joint, bounds, boundary)
+        return shorten_metric_tangent(quantities, joint, bounds, boundary)
 
     @property
-    def courses(self) -> tuple[Course, Course]:
+    def curve_weights(self) -> tuple[TimeWeights, TimeWeights]:
         """The weights in time of the `curves` of both quantities."""
-        return course_of_trace(self.passage.eta_course), self.passage.eta_course
+        return trace_time_weights(
+            self.keyframe_blend.eta_time_weights
+        ), self.keyframe_blend.eta_time_weights
 
-    def curves(self, values: EndValues) -> PairCurves:
+    def curves(self, values: EndpointValues) -> PairCurves:
         """Return 𝒜, or its control values in time, and conj(η) along pieces of the boundary."""
         eta = values.conj_eta()
-        return control_curves(values.trace(), eta, self.passage.eta_course, self.bounds), eta
+        return control_curves(
+            values.trace(), eta, self.keyframe_blend.eta_time_weights, self.bounds
+        ), eta
 
     @staticmethod
-    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+    def enclose(
+        first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
+    ) -> Enclosures:
         """Enclose the distortion on cells."""
         if changes is None:
-            return from_metric(first, second)
-        return changed_metric(first, second, changes)
+            return enclose_metric(first, second)
+        return enclose_changed_metric(first, second, changes)
 
 
-def _resolved(interval: Interval, times: Floats) -> tuple[OutlineMetric, Refinement]:
+def _resolved(interval: KeyframeSegment, times: Floats) -> tuple[OutlineMetric, Refinement]:
     """Return the metrics at nodes that resolve the residual at some times, and the nodes' panels.
 
     The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
     cage, and for them panels are halved there.
     """
-    passage, bounds = interval.passage, interval.bounds
+    passage, bounds = interval.keyframe_blend, interval.bounds
     maps = [key.map for key in passage.keyframes]
     panels = Refinement.of(_matching(interval).transform)
-    metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.course, bounds)
+    metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.time_weights, bounds)
     for _ in range(MOST_HALVINGS):
         coarse = panels.panels.unresolved(metric.residuals(times), RESOLVED)
         if not coarse.any():
             break
         panels = panels.halved(coarse)
-        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.course, bounds)
+        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.time_weights, bounds)
     return metric, panels
 
 
-def _matching(interval: Interval) -> Extension:
+def _matching(interval: KeyframeSegment) -> Extension:
     """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
-    transform, sites = interval.transform, interval.sites
+    transform, sites = interval.transform, interval.sampled_domain
     if transform is None:
         raise EngineError("The metric variant needs a Hilbert transform of the outline.")
     sites.require_boundary(transform.loops)

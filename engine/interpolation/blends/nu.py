@@ -7,9 +7,14 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosing import Changes, EndValues, Patch, exponential
-from engine.interpolation.passage import Derivatives, Interval, weighted
-from engine.interpolation.series import combined
+from engine.interpolation.enclosures import (
+    BernsteinPatch,
+    BlendChanges,
+    EndpointValues,
+    enclose_exponential,
+)
+from engine.interpolation.keyframe_blend import Derivatives, KeyframeSegment, weighted_sum
+from engine.interpolation.series import combine_arrays
 from engine.maps import Enclosures
 
 
@@ -28,15 +33,15 @@ class NuBlend(Blend):
     sign = 1
 
     @classmethod
-    def of(cls, interval: Interval) -> Self:
+    def of(cls, interval: KeyframeSegment) -> Self:
         """Take the passage as it is."""
-        return cls(passage=interval.passage, bounds=interval.bounds)
+        return cls(keyframe_blend=interval.keyframe_blend, bounds=interval.bounds)
 
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
         """Return f_z and conj(f_z̄) at times (t,), each (t, s)."""
-        nu = np.array([key.nu for key in self.passage.keyframes])
-        fz = np.exp(self.passage.log_fz_at(times))
-        g = combined(self.passage.course.at(times).T, nu)
+        nu = np.array([key.nu for key in self.keyframe_blend.keyframes])
+        fz = np.exp(self.keyframe_blend.log_fz_at(times))
+        g = combine_arrays(self.keyframe_blend.time_weights.at(times).T, nu)
         g *= fz
         return fz, g
 
@@ -46,11 +51,11 @@ class NuBlend(Blend):
         Departs from the paper: Equation (5) lost its second bar; it reads
         f_z̄ = conj(ν) conj(f_z), that is Ψ' = ν Φ'.
         """
-        keyframes, weights = self.passage.keyframes, self.passage.course(time)
-        logarithm, logarithm_z = self.passage.log_fz(time)
+        keyframes, weights = self.keyframe_blend.keyframes, self.keyframe_blend.time_weights(time)
+        logarithm, logarithm_z = self.keyframe_blend.log_fz(time)
         fz = np.exp(logarithm)
-        nu = weighted([key.nu for key in keyframes], weights)  # Equation (4)
-        nu_z = weighted([key.nu_z for key in keyframes], weights)
+        nu = weighted_sum([key.nu for key in keyframes], weights)  # Equation (4)
+        nu_z = weighted_sum([key.nu_z for key in keyframes], weights)
         nu_z += nu * logarithm_z
         nu_z *= fz
         logarithm_z *= fz
@@ -58,22 +63,26 @@ class NuBlend(Blend):
         return Derivatives(fz=fz, fzz=logarithm_z, g=nu, gz=nu_z)
 
     @staticmethod
-    def pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
+    def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
         """Return ln |f_z| and ν."""
         return np.log(np.abs(fz)) + 0j, g / fz
 
     @staticmethod
-    def stretches(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
+    def singular_values(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
         """Return |f_z| (1 ± |ν|)."""
         a, k = np.exp(first.real), np.abs(second)
         return a * (1.0 + k), a * (1.0 - k)
 
-    def curves(self, values: EndValues) -> PairCurves:
+    def curves(self, values: EndpointValues) -> PairCurves:
         """Return ln |f_z| and ν along pieces of the boundary."""
         return values.log_modulus(), values.nu()
 
     @staticmethod
-    def enclose(first: Patch[Any], second: Patch[Any], changes: Changes | None, /) -> Enclosures:
+    def enclose(
+        first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
+    ) -> Enclosures:
         """Enclose the distortion on cells: h changes f_z and conj(f_z̄) alike."""
         log_fz = first if changes is None else first.plus(changes.correction)
-        return exponential(log_fz, log_fz, Patch(0.0 * first.controls, 0.0 * first.error), second)
+        return enclose_exponential(
+            log_fz, log_fz, BernsteinPatch(0.0 * first.controls, 0.0 * first.error), second
+        )

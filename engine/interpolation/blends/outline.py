@@ -6,8 +6,15 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.interpolation.courses import Course, Range, Tangent, allowed_velocities, curb, curbed
-from engine.interpolation.enclosing import EdgeCurves, along_mean
+from engine.interpolation.enclosures import BoundaryBezier, project_on_mean
+from engine.interpolation.time_weights import (
+    Tangent,
+    TimeWeights,
+    ValueRange,
+    allowed_velocities,
+    clamp_smoothly,
+    limit_velocity,
+)
 from engine.maps import Bounds
 
 
@@ -17,7 +24,7 @@ class OutlineMetric:
 
     Parameters
     ----------
-    course : Course
+    course : TimeWeights
         Of η.
     log_modulus : float64, shape (q, N)
         ln |f_z| of the keyframes.
@@ -28,18 +35,18 @@ class OutlineMetric:
         η up to conjugation, which |f_z| does not see.
     """
 
-    course: Course
+    time_weights: TimeWeights
     log_modulus: Floats
     trace: Floats
     eta: Complexes
 
     @classmethod
-    def of(cls, fz: Complexes, fzbar: Complexes, course: Course, bounds: Bounds) -> Self:
+    def of(cls, fz: Complexes, fzbar: Complexes, course: TimeWeights, bounds: Bounds) -> Self:
         """Work the metrics out from the derivatives (q, N) of the course's keyframes."""
         # The entries of the metric tensor, Equation (9).
         trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
         return cls(
-            course=course,
+            time_weights=course,
             log_modulus=np.log(np.abs(fz)),
             trace=_controls(trace, eta, course, bounds),
             eta=eta,
@@ -51,46 +58,49 @@ class OutlineMetric:
         Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
         product of its roots is |η|².
         """
-        trace = self.trace.T @ course_of_trace(self.course).at(times)
-        twice_eta = 2 * np.abs(self.eta.T @ self.course.at(times))
+        trace = self.trace.T @ trace_time_weights(self.time_weights).at(times)
+        twice_eta = 2 * np.abs(self.eta.T @ self.time_weights.at(times))
         # Equation (10): σ_a² = 𝒜 + 2|η|, convex in time. Equation (11): σ_b² = 𝒜 − 2|η|, concave.
         # Equation (12): K² is their quotient. Hence Properties 5' to 7'. Their product is the
         # discriminant, above 0 by Lemma 7, and keeps its digits where the map is nearly singular.
         discriminant = (trace + twice_eta) * (trace - twice_eta)
         squared = (trace + np.sqrt(discriminant)) / 2  # Equation (13), the larger root
-        blend = self.log_modulus.T @ self.course.full.at(times)
+        blend = self.log_modulus.T @ self.time_weights.unlimited.at(times)
         residuals: Floats = 0.5 * np.log(squared) - blend
         return residuals
 
 
-def course_of_trace(course: Course) -> Course:
+def trace_time_weights(course: TimeWeights) -> TimeWeights:
     """Return the weights of what is known of 𝒜 along a course of η."""
-    return course if course.is_straight else Course.cubic()
+    return course if course.is_straight else TimeWeights.cubic()
 
 
-def _controls(trace: Floats, eta: Complexes, course: Course, bounds: Bounds) -> Floats:
+def _controls(trace: Floats, eta: Complexes, course: TimeWeights, bounds: Bounds) -> Floats:
     """Return the control values of 𝒜 (4, N) along a course, from the keyframes' 𝒜 and η (q, N)."""
-    full = course.full.controls
+    full = course.unlimited.controls
     if full is None:
         return trace
     controls: Floats = full @ trace
-    for row, end, window, arm in zip((1, 2), course.ends, course.windows, (1, 0), strict=True):
+    for row, end, window, arm in zip((1, 2), course.ends, course.support, (1, 0), strict=True):
         if isinstance(end, Tangent):
-            left = curbed(trace[window], eta[window], end, bounds)
-            controls[row] = trace[window[1]] + end.joint.arms[arm] * left
+            left = limit_velocity(trace[window], eta[window], end, bounds)
+            controls[row] = trace[window[1]] + end.knot.control_offsets[arm] * left
     return controls
 
 
 def control_curves(
-    trace: EdgeCurves[np.float64], eta: EdgeCurves[np.complex128], course: Course, bounds: Bounds
-) -> EdgeCurves[np.float64]:
+    trace: BoundaryBezier[np.float64],
+    eta: BoundaryBezier[np.complex128],
+    course: TimeWeights,
+    bounds: Bounds,
+) -> BoundaryBezier[np.float64]:
     """Return what is known of the control values of 𝒜 along pieces of the boundary.
 
     Parameters
     ----------
-    trace, eta : EdgeCurves
+    trace, eta : BoundaryBezier
         Of the keyframes.
-    course : Course
+    course : TimeWeights
         Of η.
     bounds : Bounds
 
@@ -101,7 +111,7 @@ def control_curves(
     much as the curb may be elsewhere in between: it rises with the velocity and with the limits of
     it, so that their ranges give its own.
     """
-    full = course.full.controls
+    full = course.unlimited.controls
     if full is None:
         return trace
     controls = np.einsum("dq,pqb->pdb", full, trace.controls)
@@ -109,32 +119,35 @@ def control_curves(
     for index, (end, arm) in enumerate(zip(course.ends, (1, 0), strict=True)):
         if not isinstance(end, Tangent):
             continue
-        own = course.windows[index]
+        own = course.support[index]
         here = trace.of(own)
         velocity, error = _velocity(here, eta.of(own), end, bounds)
-        reach = end.joint.arms[arm]
+        reach = end.knot.control_offsets[arm]
         controls[:, 1 + index] = here.controls[:, 1] + reach * velocity
         errors[:, 1 + index] = here.errors[:, 1] + abs(reach) * error
-    return EdgeCurves(controls, errors)
+    return BoundaryBezier(controls, errors)
 
 
 def _velocity(
-    trace: EdgeCurves[np.float64], eta: EdgeCurves[np.complex128], tangent: Tangent, bounds: Bounds
+    trace: BoundaryBezier[np.float64],
+    eta: BoundaryBezier[np.complex128],
+    tangent: Tangent,
+    bounds: Bounds,
 ) -> tuple[Floats, Floats]:
     """Return the velocity of 𝒜 at a joint as quadratics (p, 3) along pieces, and its errors."""
-    joint = tangent.joint
+    joint = tangent.knot
     free = np.einsum("q,pqb->pb", joint.velocity, trace.controls)
     free_error = trace.errors @ np.abs(joint.velocity)
-    if not tangent.kept:
+    if not tangent.velocity_share:
         return 0.0 * free, 0.0 * free_error
     wanted = _range(free, free_error)
     own = _range(trace.controls[:, 1], trace.errors[:, 1])
     turned = []
-    for arm in joint.arms:
+    for arm in joint.control_offsets:
         weights = np.array([0.0, 1.0, 0.0]) + arm * tangent.length * joint.velocity
         turned.append(_size(eta, weights))
     lowest, highest = allowed_velocities(
-        Range(np.maximum(own.least, 0.0), own.most),
+        ValueRange(np.maximum(own.least, 0.0), own.most),
         _size(eta, np.array([0.0, 1.0, 0.0])),
         (turned[0], turned[1]),
         joint,
@@ -144,12 +157,12 @@ def _velocity(
     is_free &= (lowest.most <= 0.0) & (highest.least >= 0.0)
     ends = np.stack(
         [
-            curbed(trace.controls[:, :, end].T, eta.controls[:, :, end].T, tangent, bounds)
+            limit_velocity(trace.controls[:, :, end].T, eta.controls[:, :, end].T, tangent, bounds)
             for end in (0, -1)
         ],
         axis=1,
     )
-    least, most = (curb(*each) for each in zip(wanted, lowest, highest, strict=True))
+    least, most = (clamp_smoothly(*each) for each in zip(wanted, lowest, highest, strict=True))
     error = np.maximum(most - ends.min(axis=1), ends.max(axis=1) - least)
     linear = np.stack([ends[:, 0], ends.mean(axis=1), ends[:, 1]], axis=1)
     return (
@@ -158,13 +171,13 @@ def _velocity(
     )
 
 
-def _range(controls: Floats, errors: Floats) -> Range:
-    return Range(controls.min(axis=1) - errors, controls.max(axis=1) + errors)
+def _range(controls: Floats, errors: Floats) -> ValueRange:
+    return ValueRange(controls.min(axis=1) - errors, controls.max(axis=1) + errors)
 
 
-def _size(curves: EdgeCurves[np.complex128], weights: Floats) -> Range:
+def _size(curves: BoundaryBezier[np.complex128], weights: Floats) -> ValueRange:
     """Return the range of the absolute value of a weighted sum of three keyframes."""
     controls = np.einsum("q,pqb->pb", weights, curves.controls)
     errors = curves.errors @ np.abs(weights)
-    least = along_mean(controls, 1).min(axis=1) - errors
-    return Range(np.maximum(least, 0.0), np.abs(controls).max(axis=1) + errors)
+    least = project_on_mean(controls, 1).min(axis=1) - errors
+    return ValueRange(np.maximum(least, 0.0), np.abs(controls).max(axis=1) + errors)

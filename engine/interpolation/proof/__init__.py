@@ -3,7 +3,7 @@
 In: the in-betweens of two keyframes.
 Out: enclosures of k, σ_a and σ_b, of a whole segment or one frame, and the times where they are
 not tight.
-Imports: `engine.maps`, `engine.interpolation.enclosing`, `engine.interpolation.inbetweens`.
+Imports: `engine.maps`, `engine.interpolation.enclosures`, `engine.interpolation.inbetweens`.
 """
 
 from engine.interpolation.proof.bisection import Proof as Proof, prove as prove

@@ -15,7 +15,7 @@ from math import inf
 import numpy as np
 
 from engine.arrays import Booleans, Floats, require_kind
-from engine.interpolation.enclosing import Subdivision
+from engine.interpolation.enclosures import Subdivision
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.corrected_cells import CorrectedCellEnclosures
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells
@@ -49,11 +49,11 @@ class Proof:
     k: float
     sigma_a: float
     sigma_b: float
-    unsettled: tuple[tuple[float, float], ...]
-    loose: tuple[tuple[float, float], ...]
+    unproven_times: tuple[tuple[float, float], ...]
+    not_tight: tuple[tuple[float, float], ...]
 
     @property
-    def never_folds(self) -> bool:
+    def is_locally_injective(self) -> bool:
         """Whether every in-between is proven to be locally injective."""
         return self.k < 1 and self.sigma_b > 0
 
@@ -69,7 +69,7 @@ def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
         In [0, 1]; the proof is of this frame alone.
     """
     require_kind(inbetweens, Inbetweens, "what is proven")
-    keyframes = inbetweens.passage.keyframes
+    keyframes = inbetweens.keyframe_blend.keyframes
     pieces = Subdivision.of([key.map.coefficients for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):
         kind = CorrectedCellEnclosures if inbetweens.corrections else CellEnclosures
@@ -115,8 +115,8 @@ def _bisect(pieces: Subdivision, enclosures: CellEnclosures, cuts: Floats) -> Pr
         k=k,
         sigma_a=sigma_a,
         sigma_b=max(sigma_b, 0.0) if k < 1 else 0.0,
-        unsettled=_merged([*unsettled, rest.at(~unfolded[loose])]),
-        loose=_merged([rest.at(unfolded[loose])]),
+        unproven_times=_merged([*unsettled, rest.at(~unfolded[loose])]),
+        not_tight=_merged([rest.at(unfolded[loose])]),
     )
 
 

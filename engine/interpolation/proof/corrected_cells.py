@@ -3,17 +3,22 @@
 import numpy as np
 
 from engine.arrays import Complexes, Floats, ratio
-from engine.interpolation.enclosing import (
-    EdgeCurves,
-    Patch,
-    Sheet,
+from engine.interpolation.enclosures import (
+    BernsteinPatch,
+    BilinearPatch,
+    BoundaryBezier,
     Subdivision,
-    along_mean,
     log_modulus_of_metric,
+    project_on_mean,
 )
 from engine.interpolation.inbetweens import Inbetweens
-from engine.interpolation.proof.correction import Correction
-from engine.interpolation.proof.enclosing_cells import CellEnclosures, CellResults, Cells, patch_of
+from engine.interpolation.proof.correction import CorrectionEnclosure
+from engine.interpolation.proof.enclosing_cells import (
+    CellEnclosures,
+    CellResults,
+    Cells,
+    blend_curves,
+)
 from engine.maps import Enclosures
 
 
@@ -33,14 +38,17 @@ class CorrectedCellEnclosures(CellEnclosures):
         self._is_linear, self._sign = inbetweens.blend.sign == 0, inbetweens.sign
         self._is_metric = not inbetweens.blend.is_closed_form
         self._corrections = [
-            tuple(Correction(each, known.series, boundary, pieces) for each in (known.h, known.q))
+            tuple(
+                CorrectionEnclosure(each, known.series, boundary, pieces)
+                for each in (known.h, known.q)
+            )
             for known in (each.known for each in inbetweens.corrections)
         ]
-        passage, nodes = inbetweens.passage, inbetweens.sites.sample_nodes()
+        passage, nodes = inbetweens.keyframe_blend, inbetweens.sampled_domain.sample_nodes()
         logs = [key.log_fz[nodes] for key in passage.keyframes]
         # log F of the keyframes where pieces begin, and how it goes on.
         self._logs = np.array(logs).T + 2j * np.pi * np.asarray(passage.sheets)
-        self._course = passage.course
+        self._time_weights = passage.time_weights
         self._log_changes = pieces.derivatives(0).log_change()
 
     @property
@@ -56,7 +64,7 @@ class CorrectedCellEnclosures(CellEnclosures):
         self._catch_up()
         first, second = self._blended(chosen)
         known = [tuple(each.on(*chosen) for each in both) for both in self._corrections]
-        sheets = [(Sheet.of(h), Sheet.of(q)) for (h, _), (q, _) in known]
+        sheets = [(BilinearPatch.of(h), BilinearPatch.of(q)) for (h, _), (q, _) in known]
         low, a, b, share = self._frame(chosen, first, second, sheets)
         error = a.error + b.error
         k = share.size + share.error
@@ -79,24 +87,24 @@ class CorrectedCellEnclosures(CellEnclosures):
     def _frame(
         self,
         chosen: Cells,
-        first: Patch[np.float64],
-        second: Patch[np.complex128],
-        corrections: list[tuple[Sheet, Sheet]],
-    ) -> tuple[Floats, Sheet, Sheet, Sheet]:
+        first: BernsteinPatch[np.float64],
+        second: BernsteinPatch[np.complex128],
+        corrections: list[tuple[BilinearPatch, BilinearPatch]],
+    ) -> tuple[Floats, BilinearPatch, BilinearPatch, BilinearPatch]:
         """Return |f_z| at least, |f_z| and conj(f_z̄), up to a phase, and their ratio."""
-        log_k = Sheet.of(self._log_l(chosen))
+        log_k = BilinearPatch.of(self._log_l(chosen))
         if self._is_linear:
-            a, b = Sheet.of(first), Sheet.of(second)
+            a, b = BilinearPatch.of(first), BilinearPatch.of(second)
             for h, q in corrections:
                 log_k = log_k.plus(h)
                 a = a.product(h.exponential())
                 b = b.product(h.times(-1.0).exponential()).plus(q.product(log_k.exponential()))
-            low = along_mean(a.corners, (1, 2))
+            low = project_on_mean(a.corners, (1, 2))
             most = ratio(b.size + b.error, np.maximum(low.min(axis=(1, 2)) - a.error, 0.0))
-            return low, a, b, Sheet(most[:, None, None] * np.ones((1, 2, 2)), 0 * most)
+            return low, a, b, BilinearPatch(most[:, None, None] * np.ones((1, 2, 2)), 0 * most)
         closing = self._closing(chosen)
         if self._sign > 0:
-            log_a, share = Sheet.of(first), Sheet.of(second)
+            log_a, share = BilinearPatch.of(first), BilinearPatch.of(second)
             if closing is not None:
                 log_a = log_a.plus(closing.real)
                 # K = L² / F, and F has what closes periods.
@@ -106,8 +114,12 @@ class CorrectedCellEnclosures(CellEnclosures):
                 log_a, share = log_a.plus(h.real), share.plus(q)
             a = log_a.exponential()
             return a.corners, a, share.product(a), share
-        eta = Sheet.of(second)
-        log_a = log_modulus_of_metric(Sheet.of(first), eta) if self._is_metric else Sheet.of(first)
+        eta = BilinearPatch.of(second)
+        log_a = (
+            log_modulus_of_metric(BilinearPatch.of(first), eta)
+            if self._is_metric
+            else BilinearPatch.of(first)
+        )
         if closing is not None:
             log_a = log_a.plus(closing.real)
         eta, log_a = self._scaled(chosen, eta, log_a)
@@ -119,12 +131,12 @@ class CorrectedCellEnclosures(CellEnclosures):
         b = eta.product(log_a.times(-1.0).exponential())
         return a.corners, a, b, eta.product(log_a.times(-2.0).exponential())
 
-    def _log_l(self, chosen: Cells) -> Patch[np.complex128]:
+    def _log_l(self, chosen: Cells) -> BernsteinPatch[np.complex128]:
         """Return the blend of the keyframes' log F."""
         known = self._log_changes.at(chosen.piece)
         controls = known.controls + self._logs[chosen.piece][:, :, None]
-        weights = self._course.controls_on(chosen.start, chosen.end)
-        return patch_of(EdgeCurves(controls, known.errors), weights)
+        weights = self._time_weights.controls_on(chosen.start, chosen.end)
+        return blend_curves(BoundaryBezier(controls, known.errors), weights)
 
     def _catch_up(self) -> None:
         """Learn the pieces that were added since."""
@@ -137,7 +149,7 @@ class CorrectedCellEnclosures(CellEnclosures):
         middle = first + own.controls[::2, :, -1]
         halves: Complexes = np.stack([first, middle], axis=1).reshape(-1, first.shape[1])
         self._logs = np.concatenate([self._logs, halves])
-        self._log_changes = EdgeCurves(
+        self._log_changes = BoundaryBezier(
             np.concatenate([self._log_changes.controls, own.controls]),
             np.concatenate([self._log_changes.errors, own.errors]),
         )

@@ -12,14 +12,14 @@ from numpy.polynomial import chebyshev
 
 from engine.arrays import Complexes, Floats, Indices
 from engine.interpolation.added import Closing
-from engine.interpolation.enclosing import Patch, Subdivision, followed
+from engine.interpolation.enclosures import BernsteinPatch, Subdivision, append_alternately
 from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 
 LEFT_OUT = 1e-9  # of what closes periods: what its series leave out, and rounding
 
 
-class Chords(NamedTuple):
+class LinearEnclosures(NamedTuple):
     """Series on pieces of time (c,): values at both ends, and how far off the chord is.
 
     Parameters
@@ -41,16 +41,16 @@ class TimeSeries:
         second = chebyshev.chebder(series.coefficients, 2, axis=1)
         self._bends = np.abs(second).sum(axis=1) * (2.0 / lengths[:, None]) ** 2
 
-    def chords(self, starts: Floats, ends: Floats) -> Chords:
+    def linear_enclosures(self, starts: Floats, ends: Floats) -> LinearEnclosures:
         """Return the chords of pieces of time, none of which reaches over a break."""
         middles = (starts + ends) / 2
         piece = np.searchsorted(self.series.breaks, middles, side="right") - 1
         piece = np.clip(piece, 0, len(self._bends) - 1)
         values = np.stack([self.series.at(starts).T, self.series.at(ends).T], axis=1)
-        return Chords(values, self._bends[piece] * ((ends - starts) ** 2 / 8)[:, None])
+        return LinearEnclosures(values, self._bends[piece] * ((ends - starts) ** 2 / 8)[:, None])
 
 
-class Correction:
+class CorrectionEnclosure:
     """The sum of functions of the span times series, on pieces of the boundary.
 
     Parameters
@@ -78,11 +78,11 @@ class Correction:
         self._series = TimeSeries(series)
         self._pieces, self._span = pieces, boundary.span
         count = len(boundary.span.vertices)
-        bending = boundary.span.bending(self._functions)[:count]
-        kernel = np.sqrt(boundary.bending_kernel[:, :count] / (2 * np.pi))
+        bending = boundary.span.singularity_strengths(self._functions)[:count]
+        kernel = np.sqrt(boundary.third_derivative_kernel[:, :count] / (2 * np.pi))
         self._errors = (kernel @ bending) * (boundary.half_lengths**2 / 2)[:, None]
         values = self._values(boundary.points)
-        self._ends = np.stack([values, values[boundary.following]], axis=1)
+        self._ends = np.stack([values, values[boundary.next_samples]], axis=1)
         self._lost = None if constants is None else TimeSeries(constants.series)
         # By the loops of the boundary, of which the outline loses nothing.
         self._by_loop = np.zeros((0, 0))
@@ -97,23 +97,23 @@ class Correction:
 
     def on(
         self, piece: Indices, starts: Floats, ends: Floats
-    ) -> tuple[Patch[np.complex128], Floats]:
+    ) -> tuple[BernsteinPatch[np.complex128], Floats]:
         """Return it on cells, linear in time and along the piece, and what of its error is time's.
 
         The latter, float64 (c,), is due to the pieces of time, the rest to those of the boundary.
         """
         self._catch_up()
         modes, errors = self._ends[piece], self._errors[piece]
-        chords = self._series.chords(starts, ends)
+        chords = self._series.linear_enclosures(starts, ends)
         controls = np.einsum("caj,cbj->cab", chords.ends, modes)
         in_place = (np.abs(chords.ends).max(axis=1) * errors).sum(axis=1) + LEFT_OUT
         in_time = (chords.errors * (np.abs(modes).max(axis=1) + errors)).sum(axis=1)
         if self._lost is not None:
             constants = self._by_loop[self._pieces.loops[piece]]
-            lost = self._lost.chords(starts, ends)
+            lost = self._lost.linear_enclosures(starts, ends)
             controls = controls - np.einsum("caj,cj->ca", lost.ends, constants)[:, :, None]
             in_time += (lost.errors * np.abs(constants)).sum(axis=1)
-        return Patch(controls, in_place + in_time), in_time
+        return BernsteinPatch(controls, in_place + in_time), in_time
 
     def _catch_up(self) -> None:
         """Learn the pieces that were added since."""
@@ -124,9 +124,9 @@ class Correction:
         middles = self._values((pieces.starts[parents] + pieces.ends[parents]) / 2)
         first, last = self._ends[parents, 0], self._ends[parents, 1]
         halves = np.stack([first, middles], axis=1), np.stack([middles, last], axis=1)
-        self._ends = followed(self._ends, *halves)
+        self._ends = append_alternately(self._ends, *halves)
         quarter = self._errors[parents] / 4
-        self._errors = followed(self._errors, quarter, quarter)
+        self._errors = append_alternately(self._errors, quarter, quarter)
 
     def _values(self, points: Complexes) -> Complexes:
         (values,) = self._span.evaluate(self._functions, points, orders=(0,))
@@ -138,7 +138,7 @@ def closing_on(
     boundary: Boundary,
     pieces: Subdivision,
     constants: HoleConstants | None = None,
-) -> Correction:
+) -> CorrectionEnclosure:
     """Return what closes periods around holes."""
     functions, series = closing.functions.coefficients, closing.series
-    return Correction(functions, series, boundary, pieces, constants)
+    return CorrectionEnclosure(functions, series, boundary, pieces, constants)

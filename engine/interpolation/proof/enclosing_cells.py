@@ -5,7 +5,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.arrays import Booleans, Floats, Indices
-from engine.interpolation.enclosing import Changes, EdgeCurves, Patch, Sheet, Subdivision
+from engine.interpolation.enclosures import (
+    BernsteinPatch,
+    BilinearPatch,
+    BlendChanges,
+    BoundaryBezier,
+    Subdivision,
+)
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.correction import closing_on
 from engine.maps import Enclosures
@@ -80,34 +86,36 @@ class CellEnclosures:
             self._by_time(off_in_time, first, second, *(changes or ())),
         )
 
-    def _blended(self, chosen: Cells) -> tuple[Patch[Any], Patch[Any]]:
+    def _blended(self, chosen: Cells) -> tuple[BernsteinPatch[Any], BernsteinPatch[Any]]:
         """Return the two quantities that are blended."""
         first, second = (
-            patch_of(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
-            for curves, course in zip(self._curves, self._blend.courses, strict=True)
+            blend_curves(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
+            for curves, course in zip(self._curves, self._blend.curve_weights, strict=True)
         )
         return first, second
 
-    def _closing(self, chosen: Cells) -> Sheet | None:
+    def _closing(self, chosen: Cells) -> BilinearPatch | None:
         """Return h, which closes periods, less the constants that it makes good."""
-        return None if self._h is None else Sheet.of(self._h.on(*chosen)[0])
+        return None if self._h is None else BilinearPatch.of(self._h.on(*chosen)[0])
 
-    def _scaled(self, chosen: Cells, eta: Sheet, log_fz: Sheet) -> tuple[Sheet, Sheet]:
+    def _scaled(
+        self, chosen: Cells, eta: BilinearPatch, log_fz: BilinearPatch
+    ) -> tuple[BilinearPatch, BilinearPatch]:
         """Return conj(η) and ln |f_z| after Ψ was scaled by ρ."""
         if self._rho is None:
             return eta, log_fz
-        values, errors = self._rho.chords(chosen.start, chosen.end)
-        log_rho = Patch(np.repeat(values[:, :, None], 2, axis=2), errors)
-        rho = Sheet.of(log_rho).exponential()
+        values, errors = self._rho.linear_enclosures(chosen.start, chosen.end)
+        log_rho = BernsteinPatch(np.repeat(values[:, :, None], 2, axis=2), errors)
+        rho = BilinearPatch.of(log_rho).exponential()
         eta = eta.product(rho)
         if self._d is not None:
             d, _ = self._d.on(*chosen)
-            log_fz = log_fz.plus(Sheet.of(_factor(d, log_rho)))
-            rest = Sheet(1.0 - rho.corners, rho.error)
-            eta = eta.product(rho.plus(rest.product(Sheet.of(d).exponential())))
+            log_fz = log_fz.plus(BilinearPatch.of(_factor(d, log_rho)))
+            rest = BilinearPatch(1.0 - rho.corners, rho.error)
+            eta = eta.product(rho.plus(rest.product(BilinearPatch.of(d).exponential())))
         return eta, log_fz
 
-    def _changes(self, chosen: Cells) -> tuple[Changes | None, Floats]:
+    def _changes(self, chosen: Cells) -> tuple[BlendChanges | None, Floats]:
         """Return what the corrections around holes and the scaling of Ψ do to cells.
 
         Beside it, (c,), how far they are off because the cells are long in time.
@@ -115,21 +123,24 @@ class CellEnclosures:
         nothing = np.zeros(len(chosen.piece))
         if self._h is None and self._rho is None:
             return None, nothing
-        none = Patch(np.zeros((len(nothing), 2, 2)), nothing)
+        none = BernsteinPatch(np.zeros((len(nothing), 2, 2)), nothing)
         h, rho, factor, off = none, none, none, nothing
         if self._h is not None:
             known, off = self._h.on(*chosen)
-            h = Patch(known.controls.real, known.error)
+            h = BernsteinPatch(known.controls.real, known.error)
         if self._rho is not None:
-            values, errors = self._rho.chords(chosen.start, chosen.end)
-            rho, off = Patch(np.repeat(values[:, :, None], 2, axis=2), errors), off + errors
+            values, errors = self._rho.linear_enclosures(chosen.start, chosen.end)
+            rho, off = (
+                BernsteinPatch(np.repeat(values[:, :, None], 2, axis=2), errors),
+                off + errors,
+            )
         if self._d is not None:
             d, _ = self._d.on(*chosen)
             factor = _factor(d, rho)
-        return Changes(h, rho, factor), off
+        return BlendChanges(h, rho, factor), off
 
     @staticmethod
-    def _by_time(off_in_time: Floats, *patches: Patch[Any]) -> Booleans:
+    def _by_time(off_in_time: Floats, *patches: BernsteinPatch[Any]) -> Booleans:
         """Tell along which side cells are to be cut."""
         in_time, in_place = off_in_time.copy(), -off_in_time
         for patch in patches:
@@ -148,7 +159,9 @@ class CellEnclosures:
             self._curves = _joined(self._curves[0], first), _joined(self._curves[1], second)
 
 
-def _factor(d: Patch[np.complex128], log_rho: Patch[np.float64]) -> Patch[np.float64]:
+def _factor(
+    d: BernsteinPatch[np.complex128], log_rho: BernsteinPatch[np.float64]
+) -> BernsteinPatch[np.float64]:
     """Return ln |w|, w = ρ + (1 − ρ) e^d, of which f_z is that for ρ = 1 times w.
 
     Between its values at the corners it is off by an eighth of its second derivatives along both
@@ -169,18 +182,18 @@ def _factor(d: Patch[np.complex128], log_rho: Patch[np.float64]) -> Patch[np.flo
     bend = by_d * (1 + by_d) * (along**2 + over**2) + by_rho * (1 + by_rho) * over_rho**2
     bend += 2 * by_both * over * over_rho
     error = bend / 8 + by_d * d.error + by_rho * log_rho.error
-    return Patch(np.log(np.abs(rho + (1.0 - rho) * np.exp(d.controls))), error)
+    return BernsteinPatch(np.log(np.abs(rho + (1.0 - rho) * np.exp(d.controls))), error)
 
 
-def patch_of(curves: EdgeCurves[Any], weights: Floats) -> Patch[Any]:
+def blend_curves(curves: BoundaryBezier[Any], weights: Floats) -> BernsteinPatch[Any]:
     """Blend curves (c, q, b) by weights (c, d, q)."""
-    return Patch(
+    return BernsteinPatch(
         weights @ curves.controls,
         (np.abs(weights) @ curves.errors[..., None])[..., 0].max(axis=1),
     )
 
 
-def _joined(one: EdgeCurves[Any], other: EdgeCurves[Any]) -> EdgeCurves[Any]:
-    return EdgeCurves(
+def _joined(one: BoundaryBezier[Any], other: BoundaryBezier[Any]) -> BoundaryBezier[Any]:
+    return BoundaryBezier(
         np.concatenate([one.controls, other.controls]), np.concatenate([one.errors, other.errors])
     )

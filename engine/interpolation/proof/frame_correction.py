@@ -10,14 +10,14 @@ from engine.deform.correction import (
     INSIDE,
     PointCorrector,
     PointSolution,
-    Targets,
+    PointTargets,
     extremes,
-    limits_of,
-    logarithms,
+    frame_limits,
+    log_limits,
     shorten_solution,
     solve_within,
 )
-from engine.interpolation.added.pins import BaseAt, CorrectionSeries
+from engine.interpolation.added.pins import CorrectionBase, CorrectionSeries
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds
@@ -46,18 +46,18 @@ class FrameCorrection:
     """
 
     known: CorrectionSeries
-    misses: Floats
+    target_errors: Floats
     steps: int
-    is_held_back: bool
+    is_limited: bool
     reached: tuple[float, float, float]
 
 
 def correct_frame(
     inbetweens: Inbetweens,
     corrector: PointCorrector,
-    base: BaseAt,
+    base: CorrectionBase,
     time: float,
-    targets: Targets,
+    targets: PointTargets,
     bounds: Bounds,
 ) -> FrameCorrection:
     """Correct an in-between within bounds, or within its own distortion beyond them.
@@ -71,24 +71,24 @@ def correct_frame(
         As `base_at` wants them.
     corrector : PointCorrector
         For the handles.
-    base : BaseAt
+    base : CorrectionBase
         Of these in-betweens at the time.
     time : float
-    targets : Targets
+    targets : PointTargets
         For the handles.
     bounds : Bounds
     """
     nodes, samples = base.nodes, base.samples
     found = solve_within(corrector, nodes, samples, targets, bounds)
-    if found.is_held_back:
+    if found.is_limited:
         own = extremes(corrector, samples, 0.0 * found.x)
-        if (own > limits_of(bounds)).any():
+        if (own > frame_limits(bounds)).any():
             own = _proven(inbetweens, time) + BEYOND
-        limits = limits_of(bounds, own, inside=-BEYOND)
+        limits = frame_limits(bounds, own, inside=-BEYOND)
 
         def is_kept(solution: PointSolution) -> bool:
             known = CorrectionSeries.of_frame(corrector, solution.x, solution.shift)
-            return bool((_proven(inbetweens.corrected(known), time) <= limits).all())
+            return bool((_proven(inbetweens.with_correction(known), time) <= limits).all())
 
         kept = is_kept(found)
         for inside in INSIDES[1:]:
@@ -104,9 +104,9 @@ def correct_frame(
     reached = extremes(corrector, samples, found.x)
     return FrameCorrection(
         known=CorrectionSeries.of_frame(corrector, found.x, found.shift),
-        misses=found.misses,
+        target_errors=found.target_errors,
         steps=found.steps,
-        is_held_back=found.is_held_back,
+        is_limited=found.is_limited,
         reached=(float(reached[2]), float(np.exp(reached[0])), float(np.exp(-reached[1]))),
     )
 
@@ -114,4 +114,4 @@ def correct_frame(
 def _proven(inbetweens: Inbetweens, time: float) -> Floats:
     """Return the largest ln σ_a, −ln σ_b and k that a frame is proven to have, (3,)."""
     proof = prove(inbetweens, time)
-    return logarithms(proof.sigma_a, proof.sigma_b, proof.k)
+    return log_limits(proof.sigma_a, proof.sigma_b, proof.k)

@@ -2,19 +2,19 @@
 
 In: keyframes, an outline, the course through the keys, bounds.
 Out: the factor ρ at any time.
-Imports: `engine.maps`, `engine.interpolation.courses.course`, `engine.interpolation.added`.
+Imports: `engine.maps`, `engine.interpolation.time_weights.weights`, `engine.interpolation.added`.
 """
 
-from engine.interpolation.scaling.pointwise import (
-    PointSamples as PointSamples,
-    Worst as Worst,
-)
-from engine.interpolation.scaling.sharp import (
+from engine.interpolation.scaling.exact_rho import (
     BESIDE_KEY as BESIDE_KEY,
-    SharpScaling as SharpScaling,
-    looseness as looseness,
+    ExactRho as ExactRho,
+    blend_in_outline_bounds as blend_in_outline_bounds,
 )
-from engine.interpolation.scaling.smooth import (
-    Scaling as Scaling,
-    ScalingEnclosures as ScalingEnclosures,
+from engine.interpolation.scaling.pointwise import (
+    KeyframeExtremes as KeyframeExtremes,
+    PointSamples as PointSamples,
+)
+from engine.interpolation.scaling.smoothed_rho import (
+    RhoEnclosures as RhoEnclosures,
+    SmoothedRho as SmoothedRho,
 )

@@ -7,7 +7,7 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.geometry import next_on_loop
-from engine.interpolation.scaling.pointwise import NEGLIGIBLE, PointSamples, Worst
+from engine.interpolation.scaling.pointwise import NEGLIGIBLE, KeyframeExtremes, PointSamples
 
 # To which the worst bounds are known, or a scaling by them could have no room.
 EXACT = NEGLIGIBLE / 10
@@ -103,13 +103,15 @@ class OutlineCurves:
         return PointSamples.of(*np.split(values, [count, 2 * count, 2 * count + 1]))
 
 
-def worst_of(curves: OutlineCurves) -> Worst:
+def keyframe_extremes(curves: OutlineCurves) -> KeyframeExtremes:
     """Return the extremes of the keyframes along the outline, between the samples too."""
     segments = np.arange(len(curves.following))
     grid = places_around(np.full(len(segments), 0.5), 0.5)
     found = curves.at(segments, grid)
     k, sigma_a = (-_least(curves, grid, -getattr(found, of), of, -1) for of in ("k", "sigma_a"))
-    return Worst(k=k, sigma_a=sigma_a, sigma_b=_least(curves, grid, found.sigma_b, "sigma_b", 1))
+    return KeyframeExtremes(
+        k=k, sigma_a=sigma_a, sigma_b=_least(curves, grid, found.sigma_b, "sigma_b", 1)
+    )
 
 
 def _least(curves: OutlineCurves, places: Floats, values: Floats, of: str, sign: int) -> float:

@@ -23,17 +23,17 @@ type_ = TypeVar("type_", Floats, Complexes)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Worst:
+class KeyframeExtremes:
     """The largest k and sigma_a and the smallest sigma_b of the keyframes on the whole outline."""
 
     k: float
     sigma_a: float
     sigma_b: float
 
-    def widened(self, bounds: Bounds) -> "Worst":
+    def widened(self, bounds: Bounds) -> "KeyframeExtremes":
         """Return the looser of some bounds and these, with slack for what `TOO_HIGH` takes off."""
         slack = 5 * TOO_HIGH
-        return Worst(
+        return KeyframeExtremes(
             k=max(self.k * (1 + slack), bounds.k),
             sigma_a=max(self.sigma_a * (1 + slack), bounds.sigma_a),
             sigma_b=min(self.sigma_b * (1 - slack), bounds.sigma_b),
@@ -53,7 +53,7 @@ class PointSamples:
         The larger k and sigma_a and the smaller sigma_b of the keyframes: Properties 5 to 7.
     conformal : complex128, shape (i, ...)
         The modes of d; none without holes.
-    widest : Worst or None
+    widest : KeyframeExtremes or None
         Around holes h takes more of a point's own bounds than is left; they are wider by as much
         as h and d change the map, but not wider than this. None leaves them as they are.
     """
@@ -64,7 +64,7 @@ class PointSamples:
     sigma_a: Floats
     sigma_b: Floats
     conformal: Complexes
-    widest: Worst | None = None
+    largest_extremes: KeyframeExtremes | None = None
 
     @classmethod
     def of(cls, fz: Complexes, g: Complexes, h: Complexes, d: Complexes) -> Self:
@@ -90,14 +90,14 @@ class PointSamples:
             conformal=self.conformal.take(chosen, axis=1),
         )
 
-    def bounded(self, worst: Worst | None) -> Self:
+    def with_bounds(self, worst: KeyframeExtremes | None) -> Self:
         """Return the same points with the worst bounds of the outline, or with their own."""
         if worst is None:
             return self
         k, sigma_a, sigma_b = (np.array([x]) for x in (worst.k, worst.sigma_a, worst.sigma_b))
         return replace(self, k=k, sigma_a=sigma_a, sigma_b=sigma_b)
 
-    def ratios(self, weights: Floats) -> Floats:
+    def largest_rhos(self, weights: Floats) -> Floats:
         """Return the largest scaling that each point allows at a time.
 
         Departs from the paper: in these equations and in the denominators of Section 7.3 the bars
@@ -118,17 +118,17 @@ class PointSamples:
         b = np.abs(_total(weights[: len(self.conj_eta)], self.conj_eta)) / a
         k, sigma_a, sigma_b = self.k, self.sigma_a, self.sigma_b
         d = _total(weights[count:], self.conformal) if len(self.conformal) else None
-        if d is not None and self.widest is not None:
+        if d is not None and self.largest_extremes is not None:
             keys = len(self.conj_eta)
             h = _total(weights[keys:count], self.log_modulus[keys:])
             change = np.exp(np.abs(h) + np.abs(d.real))
-            k = np.minimum(self.widest.k, k * change * change)
-            sigma_a = np.minimum(self.widest.sigma_a, sigma_a * change)
-            sigma_b = np.maximum(self.widest.sigma_b, sigma_b / change)
-        return allowed(a, b, d, (k, sigma_a, sigma_b))
+            k = np.minimum(self.largest_extremes.k, k * change * change)
+            sigma_a = np.minimum(self.largest_extremes.sigma_a, sigma_a * change)
+            sigma_b = np.maximum(self.largest_extremes.sigma_b, sigma_b / change)
+        return largest_rho(a, b, d, (k, sigma_a, sigma_b))
 
 
-def allowed(
+def largest_rho(
     a: Floats, b: Floats, d: Complexes | None, limits: tuple[Floats | float, ...]
 ) -> Floats:
     """Return the largest ρ within limits of k, σ_a and σ_b for |F_1| = a, |G_1| = b, F_0 = F_1 e^d.

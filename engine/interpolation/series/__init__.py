@@ -8,12 +8,12 @@ Imports: `engine.arrays`.
 from engine.interpolation.series import chebyshev as chebyshev
 from engine.interpolation.series.chebyshev import (
     PiecewiseSeries as PiecewiseSeries,
+    constant_one as constant_one,
     finish as finish,
-    one as one,
-    separate as separate,
+    separate_variables as separate_variables,
 )
 from engine.interpolation.series.residual import (
     HoleConstants as HoleConstants,
     Residual as Residual,
-    combined as combined,
+    combine_arrays as combine_arrays,
 )

@@ -25,7 +25,7 @@ SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
 
 @cache
-def nodes(degree: int) -> Floats:
+def chebyshev_nodes(degree: int) -> Floats:
     """Return the extrema (degree + 1,) of T_degree, from −1 to 1.
 
     Every other one of them is one of half the degree.
@@ -36,11 +36,11 @@ def nodes(degree: int) -> Floats:
 @cache
 def to_coefficients(degree: int) -> Floats:
     """Return the matrix that takes the values at `nodes` to the coefficients of their series."""
-    inverse = np.linalg.inv(chebyshev.chebvander(nodes(degree), degree))
+    inverse = np.linalg.inv(chebyshev.chebvander(chebyshev_nodes(degree), degree))
     return freeze(np.asarray(inverse, dtype=np.float64))
 
 
-def basis(x: float, count: int) -> Floats:
+def chebyshev_basis(x: float, count: int) -> Floats:
     """Return T_0 … T_(count − 1) at x in [−1, 1], (count,)."""
     # Several times faster than a recurrence in Python, and exact at both ends.
     values: Floats = np.cos(_orders(count) * math.acos(max(-1.0, min(1.0, x))))
@@ -73,9 +73,9 @@ class PiecewiseSeries:
         piece = min(int(np.searchsorted(self.breaks, time, side="right")) - 1, last)
         start, end = self.breaks[piece], self.breaks[piece + 1]
         coefficients = self.coefficients[piece]
-        values: Floats = basis((2 * time - start - end) / (end - start), len(coefficients)) @ (
-            coefficients
-        )
+        values: Floats = chebyshev_basis(
+            (2 * time - start - end) / (end - start), len(coefficients)
+        ) @ (coefficients)
         return values
 
     def at(self, times: Floats) -> Floats:
@@ -89,7 +89,7 @@ class PiecewiseSeries:
         return values
 
 
-def one() -> PiecewiseSeries:
+def constant_one() -> PiecewiseSeries:
     """Return one function, which is 1 at all times."""
     return PiecewiseSeries(
         breaks=freeze(np.array([0.0, 1.0])), coefficients=freeze(np.ones((1, 1, 1)))
@@ -114,7 +114,7 @@ class Resolved(NamedTuple):
     missing: float
 
 
-def resolve(
+def resolve_series(
     values: Callable[[Floats], Floats],
     *,
     tolerance: float,
@@ -171,7 +171,7 @@ def _tried(
     """Write functions of time as series on one piece, of the first degree that does."""
     at_nodes, before = None, inf
     for degree in degrees:
-        times = start + (end - start) * (1.0 + nodes(degree)) / 2
+        times = start + (end - start) * (1.0 + chebyshev_nodes(degree)) / 2
         if at_nodes is None:
             at_nodes = values(times)
         else:
@@ -188,7 +188,7 @@ def _tried(
     return Resolved(start, end, coefficients, missing)
 
 
-def separate(
+def separate_variables(
     values: Callable[[Floats], Floats],
     *,
     tolerance: float,
@@ -216,16 +216,18 @@ def separate(
         Of the j coefficients; the functions are `forms @ series(t)`.
     """
     pieces = finish(
-        resolve(values, tolerance=tolerance, degrees=degrees, breaks=breaks, shortest=shortest)
+        resolve_series(
+            values, tolerance=tolerance, degrees=degrees, breaks=breaks, shortest=shortest
+        )
     )
-    forms, series = in_few_forms(pieces, left_out)
+    forms, series = compress_series(pieces, left_out)
     if vanishing:
         coefficients = freeze(_vanishing_at_ends(series.breaks, series.coefficients))
         series = replace(series, coefficients=coefficients)
     return forms, series
 
 
-def in_few_forms(
+def compress_series(
     pieces: Sequence[Resolved], left_out: float, *, least: int = 1
 ) -> tuple[Floats, PiecewiseSeries]:
     """Write resolved functions as sums of forms (N, j) times series, but for a small rest.

@@ -48,13 +48,13 @@ class Residual:
     def add_to(self, logarithm: Complexes, logarithm_z: Complexes, time: float) -> None:
         """Add it to log f_z and its derivative, each (s,), in place."""
         coefficients = self.series(time)
-        logarithm += combined(coefficients, self.modes)
+        logarithm += combine_arrays(coefficients, self.modes)
         single = coefficients.astype(np.float32)
         logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
 
     def at_times(self, times: Floats) -> Complexes:
         """Return what is added to log f_z at times (t,), (t, s)."""
-        return combined(self.series.at(times).T, self.modes)
+        return combine_arrays(self.series.at(times).T, self.modes)
 
 
 class HoleConstants(NamedTuple):
@@ -76,7 +76,7 @@ class HoleConstants(NamedTuple):
         return constants
 
 
-def combined(weights: Floats, values: Complexes) -> Complexes:
+def combine_arrays(weights: Floats, values: Complexes) -> Complexes:
     """Return the products of real weights (..., q) with arrays (q, s), (..., s)."""
     # As reals: a complex product with real weights would do half its work on zeros.
     sums: Complexes = (weights @ values.view(np.float64)).view(np.complex128)

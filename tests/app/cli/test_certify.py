@@ -150,7 +150,7 @@ def interval(k=0.5, sigma_a=2.0, sigma_b=0.5, *, reached=(0.4, 1.8, 0.6), unsett
         keys=DistortionRange(0.5, 2.0, 0.5),
         correction=0.0,
         limits=DistortionRange(0.5, 2.0, 0.5),
-        proof=Proof(k=k, sigma_a=sigma_a, sigma_b=sigma_b, unsettled=(), loose=()),
+        proof=Proof(k=k, sigma_a=sigma_a, sigma_b=sigma_b, unproven_times=(), not_tight=()),
         unsettled=unsettled,
         loose=loose,
     )
@@ -196,8 +196,8 @@ def test_tracked_frames_are_judged_with_the_same_tolerance(reached, proven, verd
     ],
 )
 def test_an_interval_has_one_verdict(made, verdict, monkeypatch, capsys):
-    key = Certificate(k=0.5, sigma_a=2.0, sigma_b=0.5, winding=0, certified=True)
-    other = replace(key, certified=False)
+    key = Certificate(k=0.5, sigma_a=2.0, sigma_b=0.5, winding=0, is_certified=True)
+    other = replace(key, is_certified=False)
     assert made.verdict == verdict
     assert Report(keys=((0, key),), segments=(interval(), made)).verdict == verdict
     assert Report(keys=((0, other),), segments=(made,)).verdict == "over"

@@ -220,7 +220,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
 
             session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
             begun.wait()
-            saving.leave(session)
+            saving.close_window(session)
             left.set()
             farewell()
 

@@ -11,7 +11,7 @@ from app.cli.main import main
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import polygon
 from engine.geometry.polygon import CAGE_ORDER, CAGE_TOUCHES, OUTSIDE_OUTLINE
-from engine.interpolation.passage.keyframe_samples import FOLDS
+from engine.interpolation.keyframe_blend.keyframe_samples import FOLDS
 from engine.interpolation.preparation import TWO_KEYFRAMES
 from engine.paths.complex_log import TURN_COUNT
 from engine.paths.path_network import MESH_POINTS

@@ -14,7 +14,7 @@ from app.cli.commands import doctor, window
 from app.cli.main import EXIT_FAILED, main
 from app.document import History
 from app.document.commands import scene_commands
-from app.editor import failures
+from app.editor import error_reports
 from app.editor.actions import saving
 from app.editor.dialogs import ProblemReport
 from app.editor.project import Project
@@ -141,7 +141,11 @@ class EndedWindow:
     def run(self, *, is_over, farewell):
         document = disc_document()
         project = Project(
-            name="disc", history=History(document, saved=True), path=None, puppets={}, active=0
+            name="disc",
+            history=History(document, saved=True),
+            path=None,
+            layer_runtimes={},
+            active=0,
         )
         project.history.do(scene_commands.add_marker(0, "unsaved"))
         self.session.project = project
@@ -213,7 +217,7 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
             history = History(disc_document(), saved=True)
             history.do(scene_commands.add_marker(0, "unsaved"))
             self.session.project = Project(
-                name="disc", history=history, path=None, puppets={}, active=0
+                name="disc", history=history, path=None, layer_runtimes={}, active=0
             )
             display.handler(None)
             assert list(tmp_path.rglob("unsaved-*.lissom"))
@@ -244,10 +248,10 @@ def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
     )
     assert ended.returncode == -signal.SIGABRT
     session = Session(clock=float, jobs=Jobs(), folder=tmp_path)
-    failures.keep_faults(session)
+    error_reports.keep_fault_report(session)
     assert "Fatal Python error: Aborted" in load_report(tmp_path)
-    failures.discard_report(session, ProblemReport(text="", is_kept=True))
-    failures.keep_faults(session)
+    error_reports.discard_report(session, ProblemReport(text="", is_kept=True))
+    error_reports.keep_fault_report(session)
     assert load_report(tmp_path) == "", "it is told once"
 
 

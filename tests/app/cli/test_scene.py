@@ -120,10 +120,10 @@ def test_a_script_poses_the_layers_that_it_names(project):
     # The joint of a joint is closed, and the patch keeps its own turn.
     joints = ParentTransforms(document)
     at = np.array([patch.attachments[0].parent_point])
-    arm_place = joints.placement(arm.id, 8).on(arm.map_of(arm.keys[1].pose)(at))
+    arm_place = joints.placement(arm.id, 8).apply(arm.map_of(arm.keys[1].pose)(at))
     own = joints.placement(patch.id, 8)
     assert own.factor == 1
-    assert abs(own.on(patch.map_of(patch.keys[0].pose)(at))[0] - arm_place[0]) < 1e-9 * WIDTH
+    assert abs(own.apply(patch.map_of(patch.keys[0].pose)(at))[0] - arm_place[0]) < 1e-9 * WIDTH
 
 
 def test_certify_tells_of_each_layer(project, capsys):
@@ -296,7 +296,7 @@ def test_layer_attached_by_another_anchor_comes_to_its_parent(drawing):
         f, g = (each.map_of(each.keys[index].pose) for each in (arm, body))
         at = np.array([95 + 120j])
         own = joints.placement(arm.id, frame)
-        here = own.on(f(np.array([190 + 120j])))[0]
+        here = own.apply(f(np.array([190 + 120j])))[0]
         assert abs(here - g(at)[0]) < 1e-9 * WIDTH
         fz = g.derivatives(at)[0][0]
         assert abs(own.factor - fz / abs(fz)) < 1e-12

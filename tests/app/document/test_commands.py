@@ -56,7 +56,7 @@ def test_a_new_document_shows_the_picture_as_it_is():
     points = np.array([CENTRE, CENTRE + 40j])
     (key,) = document.layers[0].keys
     assert_allclose(document.layers[0].map_of(key.pose)(points), points, rtol=0, atol=1e-12)
-    assert key.pose.certificate.certified
+    assert key.pose.certificate.is_certified
     assert document.played_frames == document.frames
 
 
@@ -96,7 +96,7 @@ def test_a_variant_may_be_given_by_its_name_in_files():
 def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
     (layer,) = disc_document().layers
     pose = layer.keys[0].pose
-    stretched = Certificate(k=0.3, sigma_a=2.0, sigma_b=0.5, winding=0, certified=True)
+    stretched = Certificate(k=0.3, sigma_a=2.0, sigma_b=0.5, winding=0, is_certified=True)
     for bounds, is_proven in (
         (Bounds(), True),
         (Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5), True),
@@ -106,7 +106,7 @@ def test_a_pose_is_proven_for_bounds_that_its_certificate_keeps():
     ):
         bounded = replace(layer, bounds=bounds)
         assert bounded.is_proven(replace(pose, certificate=stretched)) == is_proven
-        folded = replace(stretched, certified=False)
+        folded = replace(stretched, is_certified=False)
         assert not bounded.is_proven(replace(pose, certificate=folded))
 
 

@@ -65,10 +65,10 @@ def test_a_layer_is_moved_from_key_to_key():
     )
     layer = document.layer(0)
     at = transform_at(document, layer, 24)
-    assert abs(at.on(np.array([layer.pivot]))[0] - layer.pivot - 30 - 10j) < 1e-12
+    assert abs(at.apply(np.array([layer.pivot]))[0] - layer.pivot - 30 - 10j) < 1e-12
     assert abs(at.factor - np.exp(0.5j)) < 1e-12
     # Midway between two keys at rest.
-    half = transform_at(document, layer, 12).on(np.array([layer.pivot]))[0]
+    half = transform_at(document, layer, 12).apply(np.array([layer.pivot]))[0]
     assert abs(half - layer.pivot - 15 - 5j) < 1e-9
     changed = filming.key_movement(0, 24, 8j, 0.5)(document)
     assert [key.shift for key in changed.layer(0).transform_keys] == [0, 8j]

@@ -14,9 +14,9 @@ from app.document import (
     brushed_stiffness,
     handle_commands,
     layer_commands,
-    material_commands,
     shape_commands,
     stiff_outline,
+    stiffness_commands,
     with_stiffness,
 )
 from app.document.layer import NO_HANDLE
@@ -34,7 +34,7 @@ def boned():
     document = disc_document()
     for name, place in (("hand.L", LEFT), ("hand.R", RIGHT), ("top", CENTRE + 60j)):
         document = handle_commands.add_handle(0, place, name=name)(document)
-    return material_commands.add_bone(0, (0, 1), 20.0)(document)
+    return stiffness_commands.add_bone(0, (0, 1), 20.0)(document)
 
 
 def boundary_of(layer):
@@ -48,9 +48,9 @@ def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
     painted, reached = brushed_stiffness(layer, [CENTRE], radius=40, amount=9.0)
     assert (painted, reached) == (None, False)
     assert (
-        material_commands.paint_stiffness(0, [CENTRE], radius=40, amount=9.0)(document) is document
+        stiffness_commands.paint_stiffness(0, [CENTRE], radius=40, amount=9.0)(document) is document
     )
-    stiff = material_commands.paint_stiffness(0, [RIGHT], radius=50, amount=9.0)(document)
+    stiff = stiffness_commands.paint_stiffness(0, [RIGHT], radius=50, amount=9.0)(document)
     (layer,) = stiff.layers
     assert layer.keys is document.layers[0].keys
     assert not layer.stiffness.flags.writeable
@@ -59,30 +59,34 @@ def test_a_stroke_is_painted_on_the_outline_it_reaches_and_cleared():
     boundary = boundary_of(layer)
     assert boundary.stiffness[0] == pytest.approx(layer.stiffness[0])
     # Painted over as much with the usual one, nothing is left.
-    soft = material_commands.paint_stiffness(0, [RIGHT], radius=50, amount=1.0, softness=0.0)(stiff)
-    again = material_commands.paint_stiffness(0, [RIGHT], radius=90, amount=1.0, softness=0.0)(soft)
+    soft = stiffness_commands.paint_stiffness(0, [RIGHT], radius=50, amount=1.0, softness=0.0)(
+        stiff
+    )
+    again = stiffness_commands.paint_stiffness(0, [RIGHT], radius=90, amount=1.0, softness=0.0)(
+        soft
+    )
     assert again.layers[0].stiffness is None
-    assert material_commands.clear_stiffness(0)(stiff).layers[0].stiffness is None
-    assert material_commands.clear_stiffness(0)(document) is document
+    assert stiffness_commands.clear_stiffness(0)(stiff).layers[0].stiffness is None
+    assert stiffness_commands.clear_stiffness(0)(document) is document
 
 
 def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
     document = boned()
     assert document.layers[0].bones == (Bone(ends=(0, 1), stiffness=20.0),)
-    changed = material_commands.set_bone_stiffness(0, (1, 0), 50.0)(document)
+    changed = stiffness_commands.set_bone_stiffness(0, (1, 0), 50.0)(document)
     assert changed.layers[0].bones[0].stiffness == 50
-    assert material_commands.set_bone_stiffness(0, (1, 0), 50.0)(changed) is changed
-    hidden = material_commands.set_bones_visible(0, shown=False)(document)
+    assert stiffness_commands.set_bone_stiffness(0, (1, 0), 50.0)(changed) is changed
+    hidden = stiffness_commands.set_bones_visible(0, shown=False)(document)
     assert not hidden.layers[0].bones[0].is_shown
     assert_array_equal(
         boundary_of(hidden.layers[0]).stiffness, boundary_of(document.layers[0]).stiffness
     )
-    assert material_commands.set_bones_visible(0, shown=True)(document) is document
+    assert stiffness_commands.set_bones_visible(0, shown=True)(document) is document
     renamed = handle_commands.rename_handle(0, 0, "paw")(document)
     assert renamed.layers[0].bones == document.layers[0].bones
     assert handle_commands.remove_handles(0, {1})(document).layers[0].bones == ()
     assert handle_commands.remove_handles(0, {2})(document).layers[0].bones
-    assert material_commands.remove_bone(0, (1, 0))(document).layers[0].bones == ()
+    assert stiffness_commands.remove_bone(0, (1, 0))(document).layers[0].bones == ()
     copied = layer_commands.duplicate_layer(0)(document)
     assert copied.layers[1].bones == document.layers[0].bones
 
@@ -91,21 +95,24 @@ def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
     ("command", "message"),
     [
         (
-            material_commands.add_bone(0, (1, 0)),
+            stiffness_commands.add_bone(0, (1, 0)),
             "There is a bone from 'hand.R' to 'hand.L' already",
         ),
-        (material_commands.add_bone(0, (0, 0)), "from one handle to another one"),
-        (material_commands.add_bone(0, (0, 9)), says(NO_HANDLE, identity=9)),
-        (material_commands.add_bone(0, (0, 2), 101.0), "from 1/30 to 100, not 101"),
-        (material_commands.add_bone(0, (0, 2), float("nan")), "from 1/30 to 100, not nan"),
-        (material_commands.remove_bone(0, (0, 2)), "There is no bone from 'hand.L' to 'top'"),
-        (material_commands.set_bone_stiffness(0, (1, 2), 3.0), "There is no bone"),
-        (material_commands.set_bone_stiffness(0, (0, 1), 0.0), "from 1/30 to 100, not 0"),
+        (stiffness_commands.add_bone(0, (0, 0)), "from one handle to another one"),
+        (stiffness_commands.add_bone(0, (0, 9)), says(NO_HANDLE, identity=9)),
+        (stiffness_commands.add_bone(0, (0, 2), 101.0), "from 1/30 to 100, not 101"),
+        (stiffness_commands.add_bone(0, (0, 2), float("nan")), "from 1/30 to 100, not nan"),
+        (stiffness_commands.remove_bone(0, (0, 2)), "There is no bone from 'hand.L' to 'top'"),
+        (stiffness_commands.set_bone_stiffness(0, (1, 2), 3.0), "There is no bone"),
+        (stiffness_commands.set_bone_stiffness(0, (0, 1), 0.0), "from 1/30 to 100, not 0"),
         (
-            material_commands.paint_stiffness(0, [CENTRE], radius=-1, amount=2.0),
+            stiffness_commands.paint_stiffness(0, [CENTRE], radius=-1, amount=2.0),
             "radius of a brush is above",
         ),
-        (material_commands.paint_stiffness(0, [CENTRE], radius=9, amount=0.01), "from 1/30 to 100"),
+        (
+            stiffness_commands.paint_stiffness(0, [CENTRE], radius=9, amount=0.01),
+            "from 1/30 to 100",
+        ),
     ],
 )
 def test_what_is_not_possible_says_why(command, message):
@@ -124,10 +131,10 @@ def test_a_bone_that_would_leave_the_drawing_is_refused_and_one_that_came_to_doe
     for place in (CENTRE + 60 * np.exp(1.05j), CENTRE + 60 * np.exp(2.1j)):
         notched = handle_commands.add_handle(0, complex(place))(notched)
     with pytest.raises(EngineError, match=says(BONE_STAYS)):
-        material_commands.add_bone(0, (0, 1))(notched)
+        stiffness_commands.add_bone(0, (0, 1))(notched)
     whole = handle_commands.add_handle(0, CENTRE + 60 * np.exp(1.05j))(document)
     whole = handle_commands.add_handle(0, CENTRE + 60 * np.exp(2.1j))(whole)
-    whole = material_commands.add_bone(0, (0, 1))(whole)
+    whole = stiffness_commands.add_bone(0, (0, 1))(whole)
     assert boundary_of(whole.layers[0]).stiffness.max() > 9
     rest = whole.layers[0].keys[0].pose.with_map(_identity(domain))
     cut = shape_commands.replace_domain(0, domain, Meshing(), [rest])(whole)
@@ -153,7 +160,7 @@ def test_the_larger_of_what_is_painted_and_of_bones_counts():
 
 
 def test_material_stays_in_its_place_on_another_domain():
-    document = material_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
+    document = stiffness_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
     (before,) = document.layers
     domain = disc_domain(40)
     rest = before.keys[0].pose.with_map(_identity(domain))
@@ -163,13 +170,15 @@ def test_material_stays_in_its_place_on_another_domain():
     assert after.bones == before.bones
     assert new.stiffness[0] == pytest.approx(old.stiffness[0], rel=0.05)
     assert new.stiffness[np.argmin(new.points.real)] == pytest.approx(1, abs=0.2)
-    assert_array_equal(material_commands.clear_stiffness(0)(document).layers[0].bones, before.bones)
+    assert_array_equal(
+        stiffness_commands.clear_stiffness(0)(document).layers[0].bones, before.bones
+    )
 
 
 def test_material_is_mirrored_as_handles_are():
-    document = material_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
-    document = material_commands.add_bone(0, (0, 2), 40.0)(document)
-    mirrored = material_commands.mirror_stiffness(0)(document)
+    document = stiffness_commands.paint_stiffness(0, [RIGHT], radius=60, amount=30.0)(boned())
+    document = stiffness_commands.add_bone(0, (0, 2), 40.0)(document)
+    mirrored = stiffness_commands.mirror_stiffness(0)(document)
     (layer,) = mirrored.layers
     assert [bone.ends for bone in layer.bones] == [(0, 1), (0, 2), (1, 2)]
     assert layer.bones[2].stiffness == 40
@@ -177,7 +186,7 @@ def test_material_is_mirrored_as_handles_are():
     opposite = np.abs(outline[:, None] - (2 * layer.axis - outline.conj())).argmin(axis=0)
     assert_allclose(stiffness, stiffness[opposite], rtol=1e-9)
     assert stiffness.max() == document.layers[0].stiffness.max()
-    assert material_commands.mirror_stiffness(0)(mirrored) is mirrored
+    assert stiffness_commands.mirror_stiffness(0)(mirrored) is mirrored
 
 
 def test_a_layer_refuses_material_that_does_not_fit():

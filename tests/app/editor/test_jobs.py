@@ -8,13 +8,13 @@ from importlib import import_module
 import pytest
 
 import app.editor
-from app.editor.work.jobs import Job, Jobs, Kind
+from app.editor.work.jobs import Job, JobKind, Jobs
 from app.errors import CANCELLED, report_progress
 
 
 def job(kind, work, results, *, lane="display"):
     return Job(
-        kind=Kind(kind, lane=lane),
+        kind=JobKind(kind, lane=lane),
         work=work,
         done=lambda result: results.append((kind, result)),
         failed=lambda error: results.append((kind, error)),
@@ -22,7 +22,7 @@ def job(kind, work, results, *, lane="display"):
 
 
 HANGS = 300.0  # seconds after which a worker is taken to hang; no result depends on it
-HAND = {name: Kind(name, lane="hand") for name in ("stuck", "pose")}
+HAND = {name: JobKind(name, lane="hand") for name in ("stuck", "pose")}
 
 
 def labels(kinds):
@@ -42,13 +42,13 @@ def busy():
     assert begun.wait(HANGS)
     yield jobs, gate
     gate.set()
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
 
 
 def test_results_come_on_delivery():
     jobs, results = Jobs(), []
     jobs.put(job("sum", lambda: 1 + 1, results))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     assert results == []
     jobs.deliver()
     assert results == [("sum", 2)]
@@ -57,7 +57,7 @@ def test_results_come_on_delivery():
 def test_failure_is_handed_over():
     jobs, results = Jobs(), []
     jobs.put(job("division", lambda: 1 / 0, results))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert isinstance(results[0][1], ZeroDivisionError)
 
@@ -66,7 +66,7 @@ def test_what_would_end_a_thread_fails_as_a_job_and_the_next_one_runs():
     jobs, results = Jobs(), []
     jobs.put(job("exit", lambda: sys.exit(3), results))
     jobs.put(job("sum", lambda: 1 + 1, results))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert "SystemExit(3)" in str(results[0][1])
     assert results[1] == ("sum", 2)
@@ -83,7 +83,7 @@ def test_a_thread_that_the_system_refuses_is_asked_for_again(monkeypatch):
             jobs.put(job("sum", lambda: 1 + 1, results))
     assert labels(jobs.kinds) == ()
     jobs.put(job("sum", lambda: 1 + 1, results))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("sum", 2)]
 
@@ -113,7 +113,7 @@ def test_running_job_that_was_replaced_is_stale():
     assert begun.wait(HANGS)
     jobs.put(job("pose", lambda: "new", results))
     gate.set()
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("pose", "new")]
 
@@ -122,7 +122,7 @@ def test_dropped_job_never_delivers(busy):
     jobs, gate = busy
     results = []
     jobs.put(job("pose", lambda: 1, results))
-    jobs.drop(Kind("pose"))
+    jobs.drop(JobKind("pose"))
     gate.set()
     assert jobs.settle()
     jobs.deliver()
@@ -132,9 +132,9 @@ def test_dropped_job_never_delivers(busy):
 def test_job_is_unfinished_until_it_is_delivered():
     jobs, results = Jobs(), []
     jobs.put(job("pose", lambda: 1, results))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     assert labels(jobs.kinds) == ("pose",)
-    jobs.drop(Kind("pose"))
+    jobs.drop(JobKind("pose"))
     jobs.deliver()
     assert results == []
 
@@ -143,42 +143,42 @@ def test_result_may_make_the_next_one_stale():
     jobs, results = Jobs(), []
     jobs.put(
         Job(
-            kind=Kind("undo"),
+            kind=JobKind("undo"),
             work=int,
-            done=lambda _: jobs.drop(Kind("pose")),
+            done=lambda _: jobs.drop(JobKind("pose")),
             failed=results.append,
         )
     )
     jobs.put(job("pose", lambda: 1, results))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == []
 
 
 def test_jobs_wait_while_their_kind_is_held_and_others_begin():
     jobs, results = Jobs(), []
-    with jobs.held(Kind("pose")):
+    with jobs.held(JobKind("pose")):
         jobs.put(job("pose", lambda: 1, results))
         jobs.put(job("in-betweens", lambda: 2, results))
         while not results:
             jobs.deliver()
         assert results == [("in-betweens", 2)]
         assert labels(jobs.kinds) == ("pose",)
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("in-betweens", 2), ("pose", 1)]
 
 
 def test_jobs_wait_but_the_first_few_while_their_kind_is_held():
     jobs, results = Jobs(), []
-    with jobs.held(Kind("pose"), first=2):
+    with jobs.held(JobKind("pose"), first=2):
         for number in range(3):
             jobs.add(job("pose", lambda number=number: number, results))
         jobs.add(job("in-betweens", lambda: 3, results))
         while len(results) < 3:
             jobs.deliver()
         assert results == [("pose", 0), ("pose", 1), ("in-betweens", 3)]
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results[3:] == [("pose", 2)]
 
@@ -188,10 +188,10 @@ def test_jobs_of_any_kind_wait_while_all_are_held():
     with jobs.held():
         jobs.put(job("pose", lambda: 1, results))
         jobs.put(job("in-betweens", lambda: 2, results))
-        assert jobs.settle()
+        assert jobs.wait_until_idle()
         assert labels(jobs.kinds) == ("pose", "in-betweens")
-        jobs.drop(Kind("pose"))
-    assert jobs.settle()
+        jobs.drop(JobKind("pose"))
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("in-betweens", 2)]
 
@@ -222,7 +222,7 @@ def test_urgent_jobs_come_one_after_the_other():
     jobs.put(job("save", lambda: 1, results, lane="hand"))
     assert labels(jobs.kinds) == ("pose", "save")
     gate.set()
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("pose", None), ("save", 1)]
 
@@ -241,12 +241,12 @@ def test_jobs_tell_how_long_they_run():
     assert labels(jobs.running_for(0.3)) == ()
     now[0] = 10.4
     assert labels(jobs.running_for(0.3)) == ("factors",)
-    jobs.drop(Kind("factors"))
+    jobs.drop(JobKind("factors"))
     assert labels(jobs.running_for(0.3)) == ("factors",), "in-betweens wait for it"
-    jobs.drop(Kind("in-betweens"))
+    jobs.drop(JobKind("in-betweens"))
     assert labels(jobs.running_for(0.3)) == ()
     gate.set()
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
 
 
 @pytest.fixture
@@ -269,16 +269,16 @@ def test_a_job_that_never_ends_can_be_left_and_the_others_go_on(stuck):
     jobs.put(Job(kind=HAND["stuck"], work=work, done=results.append, failed=failures.append))
     has_begun()
     jobs.put(job("next", lambda: 2, results, lane="hand"))
-    jobs.leave(Kind("nothing of that kind"))
+    jobs.abandon(JobKind("nothing of that kind"))
     assert results == failures == []
-    jobs.leave(HAND["stuck"])
-    assert jobs.settle()
+    jobs.abandon(HAND["stuck"])
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("next", 2)]
     (failure,) = failures
     assert str(failure) == CANCELLED
     jobs.put(job("later", lambda: 3, results, lane="hand"))
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("next", 2), ("later", 3)]
 
@@ -292,8 +292,8 @@ def test_what_is_stale_and_never_ends_can_be_left_by_what_waits_for_it(stuck):
     now[0] = 20.0
     jobs.put(job("pose", lambda: 2, results, lane="hand"))
     assert labels(jobs.running_for(5.0)) == ("pose",)
-    jobs.leave(HAND["pose"])
-    assert jobs.settle()
+    jobs.abandon(HAND["pose"])
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("pose", 2)]
     assert failures == []
@@ -309,9 +309,9 @@ def test_what_was_left_delivers_nothing_when_it_ends_after_all():
         end.wait()
         over.set()
 
-    jobs.put(Job(kind=Kind("slow"), work=work, done=results.append, failed=results.append))
+    jobs.put(Job(kind=JobKind("slow"), work=work, done=results.append, failed=results.append))
     begun.wait()
-    jobs.leave(Kind("slow"))
+    jobs.abandon(JobKind("slow"))
     jobs.deliver()
     results.clear()
     end.set()
@@ -326,9 +326,9 @@ def test_closing_does_not_wait_for_ever(stuck):
     jobs = Jobs()
     jobs.put(job("stuck", work, []))
     has_begun()
-    assert jobs.given_up == 0
-    jobs.leave(Kind("stuck"))
-    assert jobs.given_up == 1
+    assert jobs.abandoned_count == 0
+    jobs.abandon(JobKind("stuck"))
+    assert jobs.abandoned_count == 1
     assert not jobs.close(patience=0.05)
 
 
@@ -337,7 +337,7 @@ def test_closing_does_not_wait_for_what_was_left(stuck):
     jobs = Jobs()
     jobs.put(job("stuck", work, []))
     has_begun()
-    jobs.leave(Kind("stuck"))
+    jobs.abandon(JobKind("stuck"))
     closing = threading.Thread(target=jobs.close, args=(2 * HANGS,), daemon=True)
     closing.start()
     closing.join(HANGS)
@@ -416,13 +416,13 @@ def test_a_job_that_tells_how_far_it_is_ends_when_it_is_given_up():
 
     jobs.put(job("slow", work, results))
     assert told.wait(HANGS)
-    assert jobs.share_of(Kind("slow")) == 0.25
-    assert jobs.share_of(Kind("other")) is None
-    jobs.leave(Kind("slow"))
+    assert jobs.share_of(JobKind("slow")) == 0.25
+    assert jobs.share_of(JobKind("other")) is None
+    jobs.abandon(JobKind("slow"))
     left.set()
     jobs.put(job("next", lambda: 2, results))
-    assert jobs.settle()
-    assert jobs.share_of(Kind("next")) is None
+    assert jobs.wait_until_idle()
+    assert jobs.share_of(JobKind("next")) is None
     assert jobs.close()
     assert over == ["ended"]
     jobs.deliver()
@@ -446,6 +446,6 @@ def test_what_tells_how_far_it_is_does_not_hold_up_the_end_of_the_program():
 def test_labels_of_work_are_plain_words():
     names = [each.name for each in pkgutil.walk_packages(app.editor.__path__, "app.editor.")]
     values = [value for name in names for value in vars(import_module(name)).values()]
-    words = [value.label for value in values if isinstance(value, Kind)]
+    words = [value.label for value in values if isinstance(value, JobKind)]
     assert len(words) > 20
     assert [label for label in words if not re.fullmatch("[A-Z][a-z -]+", label)] == []

@@ -15,7 +15,7 @@ from app.editor.actions import editing
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import keys
 from app.editor.actions.timing.keys import NO_LAST_FRAME
-from app.editor.timeline_view import TrackRow, measure_shortfalls
+from app.editor.timeline_view import TrackRow, measure_target_errors
 from app.editor.work import Derived
 from app.errors import LissomError
 
@@ -38,8 +38,8 @@ def test_deleting_all_keys_keeps_the_first_of_each_layer(session):
     project = session.project
     first, second = (layer.id for layer in project.document.layers)
     everything = {first: {0, 6}, second: {0, 6}, TrackRow(first, 0): {0, 4}}
-    editing.choose_keys_of(session, {row: frozenset(at) for row, at in everything.items()})
-    editing.delete(session)
+    editing.select_keys_in_rows(session, {row: frozenset(at) for row, at in everything.items()})
+    editing.delete_selection(session)
     assert [layer.key_frames for layer in project.document.layers] == [{0}, {0}]
     assert not project.document.layer(first).tracks
     (text,) = texts(session)
@@ -51,13 +51,13 @@ def test_deleting_all_keys_keeps_the_first_of_each_layer(session):
 def test_deleting_some_keys_deletes_those_alone(session):
     project = session.project
     first, second = (layer.id for layer in project.document.layers)
-    editing.choose_keys_of(session, {first: frozenset({0}), second: frozenset({6})})
-    editing.delete(session)
+    editing.select_keys_in_rows(session, {first: frozenset({0}), second: frozenset({6})})
+    editing.delete_selection(session)
     assert [layer.key_frames for layer in project.document.layers] == [{6}, {0}]
     assert not texts(session)
-    editing.choose_keys_of(session, {first: frozenset({6})})
+    editing.select_keys_in_rows(session, {first: frozenset({6})})
     with pytest.raises(LissomError, match="at least one key"):
-        editing.delete(session)
+        editing.delete_selection(session)
 
 
 @pytest.mark.parametrize("last", [0, -5, LAST_FRAME + 1])
@@ -75,10 +75,10 @@ def test_handle_falls_short_no_longer_when_it_gets_a_spring():
         document, keys=(replace(layer.keys[0], pose=replace(pose, targets={0: away})),)
     )
     layer, shortfalls = document.layers[0], Derived({})
-    shortfalls.set(layer, measure_shortfalls(layer, shortfalls))
+    shortfalls.set(layer, measure_target_errors(layer, shortfalls))
     (lags,) = shortfalls.value.values()
     assert lags == {0: pytest.approx(60)}
     spring = Spring(handle=0, frequency=2, damping=0.3)
     follower = track_commands.put_spring(0, spring)(document).layers[0]
-    (lags,) = measure_shortfalls(follower, shortfalls).values()
+    (lags,) = measure_target_errors(follower, shortfalls).values()
     assert lags == {}

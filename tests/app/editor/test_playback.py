@@ -21,17 +21,17 @@ def session(tmp_path):
 
 def test_playhead_goes_to_both_ends_of_what_plays(session):
     playback.seek(session, 20)
-    playback.to_start(session)
+    playback.go_to_start(session)
     assert session.project.playhead.frame == 10
-    playback.to_end(session)
+    playback.go_to_end(session)
     assert session.project.playhead.frame == 30
 
 
 def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
     project = session.project
     monkeypatch.setattr(type(project), "chosen_track", 0)
-    assert not tracking.is_under_way(session, project)
+    assert not tracking.is_track_drag_pending(session, project)
     session.pointer = object()
-    assert tracking.is_under_way(session, project)
+    assert tracking.is_track_drag_pending(session, project)
     monkeypatch.setattr(type(project), "chosen_track", None)
-    assert not tracking.is_under_way(session, project)
+    assert not tracking.is_track_drag_pending(session, project)

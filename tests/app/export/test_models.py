@@ -40,7 +40,7 @@ from app.export_formats import MeshOptions
 from app.motion import Animation
 from app.storage import decode_picture, load_project, sample_images
 from engine.arrays import Complexes, Floats
-from engine.domain import find_seam
+from engine.domain import find_closed_cuts
 
 TOLERANCE = 0.5
 PIXELS = 100  # a metre
@@ -193,15 +193,15 @@ def test_a_slit_is_closed_in_a_model(tmp_path):
     out = tmp_path / "parted.glb"
     document, _ = exported(moving_document(cut_out=PARTED), out, settings(tolerance=0.01))
     gltf, layer = read(out), document.layers[0]
-    seam = find_seam(layer.domain)
+    seam = find_closed_cuts(layer.domain)
     primitive = gltf.meshes[0].primitives[0]
     rest = places(gltf, primitive.attributes.POSITION) + complex(*gltf.asset.extras["origin"])
-    wanted = seam.closed(layer.domain.mesh.vertices)
+    wanted = seam.close_cuts(layer.domain.mesh.vertices)
     assert np.abs(wanted - layer.domain.mesh.vertices).max() > 0.05
     assert_allclose(rest, wanted, rtol=0, atol=1e-3)
     animation = animation_of(clip_of(document, layer.id))
     last = document.frames.last
-    moved = seam.closed(animation.positions(last))
+    moved = seam.close_cuts(animation.positions(last))
     assert np.abs(played(gltf, 0, last / document.fps) - moved).max() < 0.02
 
 

@@ -219,7 +219,7 @@ def test_attached_layer_is_corrected_about_its_joint_alone():
         own = animation.positions(frame)
         loose = Animation(clip_of(unpinned, 1), points=points)
         assert own[-1] == pytest.approx(loose.positions(frame)[-1], abs=1e-7)
-        hung = joints.placement(1, frame).on(own)[-1]
+        hung = joints.placement(1, frame).apply(own)[-1]
         assert hung == pytest.approx(below.positions(frame)[0], abs=1e-6)
     # In its parent's frame its handles stay.
     ends = [animation.positions(frame)[:3] for frame in (0.0, 10.0)]

@@ -24,7 +24,7 @@ from app.document.layers import Attachment
 from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
 from app.motion import Animation, ParentTransforms, hung_animations, reparent_in_place
-from engine.geometry import HERE
+from engine.geometry import IDENTITY_MOTION
 
 TOL = 1e-9 * 200
 
@@ -61,7 +61,7 @@ def test_reparented_layer_goes_on_without_a_jump(hands):
         there = joints.placement(2, frame)
         turn = fz / abs(fz)
         held.add(
-            tuple(np.round([(there.on(np.array([own]))[0] - at) / turn, there.factor / turn], 7))
+            tuple(np.round([(there.apply(np.array([own]))[0] - at) / turn, there.factor / turn], 7))
         )
     assert len(held) == 1
 
@@ -87,7 +87,7 @@ def test_detached_layer_stays_or_goes_back_as_asked(hands):
         )(hands)
         joints = ParentTransforms(document)
         for frame in (20, 31.5, 48):
-            assert joints.placement(2, frame) == (there if keeps else HERE)
+            assert joints.placement(2, frame) == (there if keeps else IDENTITY_MOTION)
         assert joints.placement(2, 19.5) == before.placement(2, 19.5)
 
 
@@ -95,9 +95,9 @@ def test_before_its_first_joint_a_layer_is_where_it_is_by_itself(hands):
     late = replace(hands.layer(2).joints[0], frame=10, keeps=True)
     document = hands.with_layer(replace(hands.layer(2), joints=(late,)))
     joints = ParentTransforms(document)
-    assert joints.placement(2, 9.9) == HERE
+    assert joints.placement(2, 9.9) == IDENTITY_MOTION
     assert abs(joints.placement(2, 10).shift) < TOL
-    assert joints.placement(2, 30) != HERE
+    assert joints.placement(2, 30) != IDENTITY_MOTION
 
 
 def test_hands_may_take_turns_in_carrying_each_other(hands):
@@ -255,7 +255,7 @@ def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
     assert [len(document.carriers(2, frame)) for frame in (5, 20, 50, 68)] == [1, 2, 1, 2]
     free = ParentTransforms(document)
     for frame in (5, 50, 97):
-        assert free.placement(2, frame) == HERE
+        assert free.placement(2, frame) == IDENTITY_MOTION
     # Led back from where it was caught last, so that nothing jumps.
     before, after = around(free, 2, 48)
     assert abs(before.shift - after.shift) < 1e-4

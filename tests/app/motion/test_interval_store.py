@@ -136,24 +136,24 @@ def test_a_copied_key_costs_nothing(document):
 
 def test_another_method_of_the_split_view_finds_the_layers_own(document, tmp_path):
     session = session_of(document, tmp_path, prepares_ahead=True)
-    project, store = session.project, session.project.puppet.store
-    viewing.compare_with(session, Variant.ETA)
+    project, store = session.project, session.project.layer_runtime.store
+    viewing.compare_with_method(session, Variant.ETA)
     settle(session)
-    twin = project.puppet.twin
+    twin = project.layer_runtime.comparison
     other = store.prepared(twin.clip(project.document))
     assert other is not None
     assert twin.shown.is_current
     # The layer takes the method that it was compared with.
-    keys.set_variant(session, "eta")
+    keys.set_inbetween_method(session, "eta")
     assert store.prepared(project.clip) == other
 
 
 def test_undo_and_redo_find_what_was_made(document, tmp_path):
     session = session_of(document, tmp_path, prepares_ahead=True)
-    project, store = session.project, session.project.puppet.store
+    project, store = session.project, session.project.layer_runtime.store
     made = [store.prepared(project.clip)]
     for variant in ("eta", "nu", "eta"):
-        keys.set_variant(session, variant)
+        keys.set_inbetween_method(session, variant)
         settle(session)
         made.append(store.prepared(project.clip))
     assert made[0] == made[2]
@@ -414,11 +414,11 @@ def test_distortions_are_built_while_they_are_shown(clip, prepared):
 
 def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, clip, tmp_path):
     session = session_of(document, tmp_path, prepares_ahead=True)
-    project, store = session.project, session.project.puppet.store
+    project, store = session.project, session.project.layer_runtime.store
     assert streamed(store, clip) == [True] * 3
     project.playhead = project.playhead.seek(13, 0.0)
     settle(session)
-    assert isinstance(project.puppet.shown.vertices, StreamedVertices)
+    assert isinstance(project.layer_runtime.shown.vertices, StreamedVertices)
     assert store.build is None
     # Another key's pose: its two intervals are built anew, but not while it is being pulled.
     key = clip.layer.keys[1]
@@ -427,8 +427,8 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.history = History(edited, saved=True)
     settle(session)
     assert streamed(store, clip_of(edited, 0)) == [True] * 3
-    project.puppet.store = InbetweenCache(mesh=store.mesh)
-    prepare(project.puppet.store, clip)
+    project.layer_runtime.store = InbetweenCache(mesh=store.mesh)
+    prepare(project.layer_runtime.store, clip)
     project.history = History(document, saved=True)
     pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None, is_keyed=True)
     project.pending.append(pull)
@@ -438,19 +438,19 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
 def test_where_much_is_prepared_layers_that_nobody_edits_come_one_after_the_other(
     document, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
+    monkeypatch.setattr("app.editor.project.MOST_RELEASABLE_BYTES", 0)
     (layer,) = document.layers
     layers = tuple(replace(layer, id=number, name=f"{number}") for number in range(3))
     document = replace(document, layers=layers)
     session = session_of(document, tmp_path, prepares_ahead=True)
     for clip, puppet in zip(
         [clip_of(document, number) for number in range(3)],
-        session.project.puppets.values(),
+        session.project.layer_runtimes.values(),
         strict=True,
     ):
         assert streamed(puppet.store, clip) == [True] * 3
         # What is edited keeps what it is made from, and all others let go of it.
-        is_edited = puppet is session.project.puppet
+        is_edited = puppet is session.project.layer_runtime
         assert (puppet.store.prepared(clip) is not None) == is_edited
 
 
@@ -467,7 +467,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
             if not session.jobs.kinds:
                 return
             asked.extend(session.jobs.kinds)
-            assert session.jobs.settle()
+            assert session.jobs.wait_until_idle()
             session.jobs.deliver()
         raise AssertionError(f"there is no end of {session.jobs.kinds}")
 
@@ -479,7 +479,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
         patch.setattr("app.motion.inbetween_jobs.build_series", broken)
         settle()
         settle()
-    store = project.puppet.store
+    store = project.layer_runtime.store
     assert asked.count(STREAMING) == 1
     assert [toast.text for toast in session.toasts] == ["Playback cannot be made smooth."]
     assert streamed(store, clip) == [False] * 3

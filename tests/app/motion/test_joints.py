@@ -20,7 +20,7 @@ from app.motion import (
 from app.motion.parenting.parent_transforms import BATCH
 from app.storage import load_project, save_project
 from engine.domain.meshing import triangulate
-from engine.geometry import HERE
+from engine.geometry import IDENTITY_MOTION
 from engine.maps import distortion
 
 
@@ -35,8 +35,8 @@ def check_closed(document, frames, earlier=None):
             own, carrier = joints.placement(layer.id, frame), joints.placement(joint.to, frame)
             anchor, _ = exactly(document, layer.id, layer.anchor, frame)
             at, fz = exactly(document, joint.to, joint.at, frame)
-            there = carrier.on(np.array([at]))[0]
-            assert abs(own.on(np.array([anchor]))[0] - there) < 1e-9 * SIZE
+            there = carrier.apply(np.array([at]))[0]
+            assert abs(own.apply(np.array([anchor]))[0] - there) < 1e-9 * SIZE
             if joint.turns:
                 turned = carrier.factor * fz / abs(fz) * np.exp(-1j * joint.rest)
                 assert abs(own.factor - turned) < 1e-9
@@ -55,9 +55,9 @@ def test_joint_stays_closed_and_turns_with_its_parent(variant):
 
 def test_what_hangs_on_nothing_is_where_it_is():
     joints = ParentTransforms(chain())
-    assert joints.placement(0, 17.5) == HERE
+    assert joints.placement(0, 17.5) == IDENTITY_MOTION
     places = np.array([1 + 2j])
-    assert HERE.on(places) is places
+    assert IDENTITY_MOTION.apply(places) is places
 
 
 def test_what_does_not_turn_only_moves():
@@ -80,7 +80,7 @@ def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     assert_allclose([*shown], [*keyed], rtol=0, atol=1e-9)
     f = layer.map_of(pose)
     own, _ = exactly(document, 1, document.layer(1).anchor, 0)
-    assert_allclose(shown.on(own), f(np.array([joint.at]))[0], rtol=0, atol=1e-9)
+    assert_allclose(shown.apply(own), f(np.array([joint.at]))[0], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(("frame", "turns"), [(0, False), (11.5, True)])
@@ -89,7 +89,7 @@ def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     loose = layers.detach_layer(2, 1, 0)(document)
     before = ParentTransforms(loose)
     held, _ = exactly(loose, 2, CENTRE, frame)
-    place = complex(before.placement(2, frame).on(np.array([held]))[0])
+    place = complex(before.placement(2, frame).apply(np.array([held]))[0])
     anchor, joint = attach_in_place(before, 2, 0, frame, place=place, turns=turns)
     assert abs(anchor - CENTRE) < 1e-8
     hung = layers.attach_layer(2, anchor, joint)(loose)
@@ -141,7 +141,7 @@ def test_attached_layer_keeps_its_distance_beside_its_parent():
     for frame in (0, 11.5, 30.2, 48):
         own, _ = exactly(hung, 2, anchor, frame)
         parent, _ = exactly(hung, 0, joint.parent_point, frame)
-        lengths.append(abs(joints.placement(2, frame).on(own) - parent))
+        lengths.append(abs(joints.placement(2, frame).apply(own) - parent))
     assert_allclose(lengths, abs(joint.offset), rtol=1e-9)
 
 
@@ -223,7 +223,8 @@ def test_streamed_joint_stays_closed_on_the_screen():
         shown = [store.vertices(clip, frame) for clip, store in stores]
         assert all(isinstance(each, StreamedVertices) for each in shown)
         places = [
-            joints.placement(number, frame).on(each.positions) for number, each in enumerate(shown)
+            joints.placement(number, frame).apply(each.positions)
+            for number, each in enumerate(shown)
         ]
         for child in (1, 2):
             assert abs(places[child][anchor] - places[child - 1][at]) < 1e-6 * SIZE

@@ -30,7 +30,7 @@ def test_attached_layers_go_along_when_their_parent_moves():
         for layer in (0, 1, 2):
             before = without.placement(layer, frame)
             after = along.placement(layer, frame)
-            assert_allclose(after, motion.after(before), rtol=0, atol=1e-9)
+            assert_allclose(after, motion.compose(before), rtol=0, atol=1e-9)
 
 
 def test_a_layer_is_as_distorted_and_certified_as_without():
@@ -42,7 +42,7 @@ def test_a_layer_is_as_distorted_and_certified_as_without():
     assert [key.pose for key in still.layer(0).keys] == [key.pose for key in moved.layer(0).keys]
     hung = hung_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
     motion = transform_at(moved, moved.layer(0), 13.0)
-    assert_allclose(hung.positions(13.0), motion.on(one.positions), rtol=0, atol=1e-9)
+    assert_allclose(hung.positions(13.0), motion.apply(one.positions), rtol=0, atol=1e-9)
 
 
 def test_layer_is_not_moved_by_itself_while_attached():
@@ -60,8 +60,8 @@ def test_what_is_let_go_goes_on_from_where_it_is():
     at, before = joints.placement(1, 20), joints.placement(1, 20, before=True)
     assert_allclose(at, before, rtol=0, atol=1e-9)
     own = document.layer(1)
-    gone = transform_at(document, own, 30).after(transform_at(document, own, 20).inverse)
-    assert_allclose(joints.placement(1, 30), gone.after(at), rtol=0, atol=1e-9)
+    gone = transform_at(document, own, 30).compose(transform_at(document, own, 20).inverse)
+    assert_allclose(joints.placement(1, 30), gone.compose(at), rtol=0, atol=1e-9)
     assert np.abs(seen(document, 1, 30) - seen(document, 1, 20)).min() > 1
 
 

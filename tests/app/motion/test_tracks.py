@@ -42,8 +42,8 @@ from app.motion.corrected_frames import CorrectedFrames
 from app.motion.inbetweens.spring_offsets import MAX_SPRING_OFFSET, PIECE, SpringOffsets
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
-from engine.geometry import HERE, diameter
-from engine.geometry.kinematics import swing, turn_arm
+from engine.geometry import IDENTITY_MOTION, diameter
+from engine.geometry.kinematics import simulate_spring, turn_arm
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and
@@ -130,7 +130,7 @@ def test_planted_handle_stays_in_the_scene_when_attached():
     hung.carried = lambda frame: joints.parent_transform(1, frame)
     below = Animation(clip_of(scene, 0), points=np.array([60 + 45j]))
     for frame in (0.0, 2.4, 5.8):
-        placed = joints.placement(1, frame).on(hung.positions(frame))
+        placed = joints.placement(1, frame).apply(hung.positions(frame))
         assert abs(placed[IDS["top"]] - place) < 0.1
         assert placed[-1] == pytest.approx(below.positions(frame)[0], abs=1e-6)
 
@@ -358,13 +358,15 @@ def test_pieces_of_a_swing_are_those_of_the_whole(loop, stretch):
     places = np.cumsum(np.random.default_rng(0).normal(0, 20, (301, 4, 2)) @ [1, 1j], axis=0)
     places[40:100] = places[40]  # where the swing fades
     places[-1] = places[0]
-    swings = SpringOffsets(clip, lambda _: HERE)
+    swings = SpringOffsets(clip, lambda _: IDENTITY_MOTION)
     assert PIECE < swings.run_up < 300 - 2 * PIECE
     settings = {"frequency": spring.frequency, "damping": spring.damping, "lag": spring.lag}
     limit = MAX_SPRING_OFFSET * diameter(clip.layer.domain.outline)
     root = places[:, spring_root(clip.layer, spring)]
     roots = None if stretch else root
-    whole = swing(places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, roots=roots, **settings)
+    whole = simulate_spring(
+        places[:, IDS["top"]], clip.fps, limit=limit, loop=loop, roots=roots, **settings
+    )
     for frame in (299.5, 150, 63.9, 64, 0.5, 98, 299, *range(0, 301, 7)):
         here = places[int(frame)]
         found = swings.offset(spring, frame, here, lambda at: places[at])
@@ -383,7 +385,7 @@ def test_spring_is_worked_out_around_the_frame_it_is_asked_for(damping):
         asked.append(frame)
         return np.full(4, np.exp(1j * frame))
 
-    swings = SpringOffsets(clip, lambda _: HERE)
+    swings = SpringOffsets(clip, lambda _: IDENTITY_MOTION)
     for frame in (3, *[500_000] * (damping > 0)):
         swings.offset(spring, frame, at(frame), at)
     assert len(asked) < 1_000
@@ -527,7 +529,7 @@ def test_planted_track_is_solved_anew_when_the_parent_changes():
     for frame in (2, 6):
         expected = fresh.positions(float(frame))
         assert_allclose(paths.positions[frame], expected, rtol=0, atol=1e-6)
-        assert abs(later.placement(1, frame).on(expected)[IDS["top"]] - place) < 0.1
+        assert abs(later.placement(1, frame).apply(expected)[IDS["top"]] - place) < 0.1
     assert np.abs(paths.positions[6] - before.positions[6]).max() > 0.5
 
 

@@ -17,7 +17,7 @@ from app.render.scene import Backdrop, Ghost, Heat, Scene, Wireframe
 from app.render.view import View
 from app.storage.assets import shader_source
 from engine.arrays import Complexes
-from engine.domain import Seam
+from engine.domain import ClosedCuts
 from engine.streaming import MOST_ROWS, Series, SeriesPiece
 
 WIDTH, HEIGHT = 120, 90
@@ -62,10 +62,10 @@ def streamed_pose(easel: Easel, mesh: GpuMesh, series: Series, time: float) -> P
     return easel.pose(mesh, series.values(time).astype(float).view(complex))
 
 
-def some_seam(mesh: GpuMesh) -> Seam:
+def some_seam(mesh: GpuMesh) -> ClosedCuts:
     """A seam of every seventh triangle's first corner."""
     moved, first = np.unique(mesh.triangles[::7, 0], return_index=True)
-    return Seam(
+    return ClosedCuts(
         vertices=moved.astype(np.intp),
         corners=mesh.triangles[::7][first],
         weights=np.tile([1.5, -0.2, -0.3], (len(moved), 1)),
@@ -94,7 +94,7 @@ def test_the_shader_places_vertices_as_the_processor_does(easel, rows, is_parted
         binding.transform(feedback, vertices=len(rest))
         placed = np.frombuffer(feedback.read(), np.float32)
         wanted = series.values(time).reshape(-1, 2)
-        wanted = wanted if seam is None else seam.closed(wanted)
+        wanted = wanted if seam is None else seam.close_cuts(wanted)
         assert_allclose(placed, wanted.ravel(), rtol=0, atol=1e-6 * SIZE)
         if seam is None and time in (0.0, 1.0):
             assert_array_equal(placed, series.pieces[-int(time)].rows[-int(time)])

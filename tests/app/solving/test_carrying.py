@@ -97,7 +97,7 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     assert way.similarity.mirrors == mirrored
     carried = way.carry(Rig.of(layer), pose)
     check_pose(layer, carried)
-    assert carried.certificate.certified
+    assert carried.certificate.is_certified
     for handle in layer.handles:
         wished = pose.targets[way.pairs[handle.id]].position
         image = 2 * AXIS - wished.conjugate() if mirrored else wished + by

@@ -50,7 +50,7 @@ def test_a_symmetric_drawing_is_posed_as_its_mirror_image(raised):
     assert layer.axis == MIDDLE
     (flipped,) = flip_poses(rig, [pose], layer.axis)
     check_pose(layer, flipped)
-    assert flipped.certificate.certified
+    assert flipped.certificate.is_certified
     points = layer.domain.mesh.vertices
     mirrored = 2 * MIDDLE - layer.map_of(pose)(2 * MIDDLE - points.conj()).conj()
     # The cage is not symmetric, so that the same wishes lead to slightly other maps.

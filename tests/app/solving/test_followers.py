@@ -16,7 +16,7 @@ from app.solving import flip_poses, pose_document
 from app.solving.drag_solver import DragSolver, Rig
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script import parse_pose_script
-from engine.deform import Hand
+from engine.deform import BoundedPull
 from engine.maps import Bounds
 
 NAMES = {"end": 210, "middle": 120, "start": 30}
@@ -95,7 +95,7 @@ def test_a_person_who_pulls_at_it_does_pull(bar):
     assert abs(places(layer, pose)[MIDDLE] - to) < 1
     assert pose.targets[MIDDLE].position == to
     # It stays as the hand left it, and is let go by the next pull elsewhere.
-    hand = Hand(frozenset(pulled))
+    hand = BoundedPull(frozenset(pulled))
     drag = DragSolver.begin(Rig.of(layer), pose).step_towards(pose.targets, 600, (), pulled)
     assert drag.release(pose.targets, (hand,))[1].keys() == pulled
     after = drag.step_towards(pose.targets, 600)
@@ -178,10 +178,10 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     project = session.project
 
     def drag(identity, way):
-        place = complex(project.puppet.shown.handle_positions[identity])
-        hand = Hand(frozenset({identity}))
-        posing.pull(session, {identity: Target(position=place + way)}, hand=hand)
-        posing.let_go(session)
+        place = complex(project.layer_runtime.shown.handle_positions[identity])
+        hand = BoundedPull(frozenset({identity}))
+        posing.drag_handles(session, {identity: Target(position=place + way)}, hand=hand)
+        posing.release_drag(session)
         settle(session)
         return places(project.layer, project.layer.keys[0].pose)
 
@@ -190,16 +190,16 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     pose = project.layer.keys[0].pose
     assert_allclose(pose.targets[MIDDLE].position, carried[MIDDLE], rtol=0, atol=1e-9)
     # At once once more, before the first drag has come to rest.
-    posing.pull(session, {END: Target(position=210 + 80j)})
-    posing.let_go(session)
+    posing.drag_handles(session, {END: Target(position=210 + 80j)})
+    posing.release_drag(session)
     assert project.pulls
     again = drag(END, 8j)
     assert abs(again[MIDDLE] - carried[MIDDLE]) > 1
     bent = drag(MIDDLE, 8j)
     assert abs(bent[MIDDLE] - again[MIDDLE] - 8j) < 2
     # So do the arrow keys.
-    project.selected = frozenset({MIDDLE})
-    posing.nudge(session, 5j)
+    project.selected_handles = frozenset({MIDDLE})
+    posing.nudge_handles(session, 5j)
     settle(session)
     nudged = places(project.layer, project.layer.keys[0].pose)
     assert abs(nudged[MIDDLE] - bent[MIDDLE] - 5j) < 2

@@ -99,7 +99,7 @@ def test_the_same_shape_is_posed_as_before(raised):
     points = np.array([60 + 50j, 90 + 50j, 120 + 52j])
     for key, old in zip(layer.keys, before.keys, strict=True):
         assert key.frame == old.frame
-        assert key.pose.certificate.certified
+        assert key.pose.certificate.is_certified
         moved = layer.map_of(key.pose)(points) - before.map_of(old.pose)(points)
         assert np.abs(moved).max() < 1
 
@@ -151,4 +151,4 @@ def test_a_pose_that_cannot_be_carried_over_is_reached_from_rest():
     while not renewal.is_over:
         renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
     assert not renewal.unsolved
-    assert all(pose.certificate.certified for pose in renewal.poses)
+    assert all(pose.certificate.is_certified for pose in renewal.poses)

@@ -12,9 +12,9 @@ from app.document import (
     Meshing,
     Target,
     handle_commands,
-    material_commands,
     measure_target_errors,
     stiff_outline,
+    stiffness_commands,
 )
 from app.errors import LissomError
 from app.solving import pose_document
@@ -23,8 +23,8 @@ from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script import parse_pose_script
 from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT
-from engine.deform import Hand
-from engine.domain import CutOut, Slit
+from engine.deform import BoundedPull
+from engine.domain import CutLine, CutOut
 
 BAR = bar_picture(480)
 PLACES = (30 + 40j, 240 + 40j, 450 + 40j)
@@ -43,7 +43,7 @@ def bar(amount=40.0):
     for place in PLACES:
         document = handle_commands.add_handle(0, place)(document)
     if amount is not None:
-        document = material_commands.add_bone(0, (0, 1), amount)(document)
+        document = stiffness_commands.add_bone(0, (0, 1), amount)(document)
     return document.layers[0]
 
 
@@ -53,7 +53,7 @@ def targets_of(*places):
 
 def pulled(layer, start, targets, steps=300):
     drag = DragSolver.begin(Rig.of(layer), start).step_towards(targets, steps)
-    assert drag.state.certificate.certified
+    assert drag.state.certificate.is_certified
     return drag.make_pose(targets)
 
 
@@ -112,8 +112,8 @@ def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits
     assert layer.is_proven(before)
     drag = DragSolver.begin(Rig.of(layer), before)
     assert np.array_equal(drag.state.map.phi, before.phi)
-    assert drag.state.certificate.certified
-    assert drag.step_towards(UP, 200).state.certificate.certified
+    assert drag.state.certificate.is_certified
+    assert drag.step_towards(UP, 200).state.certificate.is_certified
 
 
 def test_limb_held_back_by_its_bone_is_told_to_be_at_the_limits():
@@ -198,7 +198,7 @@ def arm():
     for place in (30 + 40j, 240 + 40j, 450 + 40j):
         document = handle_commands.add_handle(0, place)(document)
     for ends in ((0, 1), (1, 2)):
-        document = material_commands.add_bone(0, ends, 30.0)(document)
+        document = stiffness_commands.add_bone(0, ends, 30.0)(document)
     return document.layers[0]
 
 
@@ -207,7 +207,7 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
     rest = layer.keys[0].pose
     bent = pulled(layer, rest, targets_of(30 + 40j, 230 + 90j, 430 + 40j))
     targets = targets_of(30 + 40j, 230 + 90j, 900 + 40j)
-    hands = (Hand((2,)),)
+    hands = (BoundedPull((2,)),)
     drag = DragSolver.begin(Rig.of(layer), bent)
     for _ in range(40):
         drag = drag.step_towards(targets, 10, hands)
@@ -232,12 +232,12 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
 
 def test_joints_hold_still_for_hands_within_reach_and_where_they_are_locked():
     layer = arm()
-    rig, hands = Rig.of(layer), (Hand((2,)),)
+    rig, hands = Rig.of(layer), (BoundedPull((2,)),)
     assert [hand.handles for hand in rig.find_yielding_joints(hands)] == [[1]]
-    assert rig.find_yielding_joints((Hand((1,)),)) == []
+    assert rig.find_yielding_joints((BoundedPull((1,)),)) == []
     locked = tuple(replace(handle, locked=handle.id == 1) for handle in layer.handles)
     assert Rig.of(replace(layer, handles=locked)).find_yielding_joints(hands) == []
-    assert rig.build_targets(targets_of(*PLACES), ()).links is None
+    assert rig.build_targets(targets_of(*PLACES), ()).distance_constraints is None
     near = targets_of(30 + 40j, 240 + 40j, 440 + 70j)
     drag = DragSolver.begin(rig, layer.keys[0].pose)
     for _ in range(40):
@@ -254,12 +254,12 @@ def stiffness_near(layer, *places):
 
 @pytest.mark.parametrize("detail", ["coarse", "fine"])
 def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(detail):
-    document = material_commands.paint_stiffness(0, [450 + 40j], radius=70, amount=20.0)(
+    document = stiffness_commands.paint_stiffness(0, [450 + 40j], radius=70, amount=20.0)(
         still_with(bar())
     )
     layer = document.layers[0]
-    slit = Slit(points=np.array([330 + 0j, 331 + 45j]))
-    for cut_out in (layer.cut_out, CutOut(slits=(slit,))):
+    slit = CutLine(points=np.array([330 + 0j, 331 + 45j]))
+    for cut_out in (layer.cut_out, CutOut(cut_lines=(slit,))):
         before = replace(layer, cut_out=cut_out)
         meshing = Meshing(detail=detail, triangles=1_000)
         renewal = KeyResolver(before=before, bounds=before.bounds, meshing=meshing)
@@ -275,7 +275,7 @@ def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(det
 
 
 def test_another_picture_takes_over_what_is_stiff():
-    document = material_commands.paint_stiffness(0, [450 + 40j], radius=70, amount=20.0)(
+    document = stiffness_commands.paint_stiffness(0, [450 + 40j], radius=70, amount=20.0)(
         still_with(bar())
     )
     larger = np.zeros((80, 500, 4), np.uint8)

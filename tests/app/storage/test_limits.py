@@ -36,7 +36,6 @@ from app.document import (
     Spring,
     Track,
     TrackKey,
-    choice_commands,
     filming_commands,
     group_commands,
     handle_commands,
@@ -48,6 +47,7 @@ from app.document import (
     rest_pose,
     scene_commands,
     shape_commands,
+    switch_group_commands,
     track_commands,
 )
 from app.document.checks import MAX_COORDINATE, MAX_ID, MAX_PICTURE_SIDE
@@ -130,8 +130,8 @@ def extreme_command(rng, document):
                 offset=place,
             ),
         ),
-        choice_commands.create_switch_group(name, [each.id for each in document.layers][:2]),
-        choice_commands.choose_at(identity, frame),
+        switch_group_commands.create_switch_group(name, [each.id for each in document.layers][:2]),
+        switch_group_commands.choose_at(identity, frame),
         shape_commands.set_limits(identity, Bounds(k=1 - 1e-9, sigma_a=1e9, sigma_b=1e-9)),
         group_commands.group_layers([identity], name.strip()),
     ]

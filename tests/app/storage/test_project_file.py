@@ -44,7 +44,7 @@ from app.storage.project.archive import MEMBER_TOO_LARGE, MIMETYPE, NOT_ARRAY, a
 from app.storage.project.members import OTHER_CHECKSUM
 from app.storage.project_file import NEWER_LISSOM, load_project, load_thumbnail, save_project
 from engine.arrays import FEW_ENTRIES, NOT_FINITE
-from engine.domain.picture.cut_out import CutOut, Slit
+from engine.domain.picture.cut_out import CutLine, CutOut
 from engine.domain.validity import (
     MESH_CORNERS,
     MESH_FLAT,
@@ -499,7 +499,7 @@ def test_what_a_map_is_said_to_keep_is_not_believed(tmp_path, members):
     forged = with_json(members, "layers", 0, "keys", 1, "certificate", value=said)
     layer = load_project(pack(tmp_path / "a", forged)).layers[0]
     boundary = Boundary.sample(layer.domain)
-    assert [key.pose.certificate.certified for key in layer.keys] == [True, False, True]
+    assert [key.pose.certificate.is_certified for key in layer.keys] == [True, False, True]
     for key in layer.keys:
         proven = certify(layer.map_of(key.pose), boundary, layer.bounds)
         assert astuple(key.pose.certificate)[:3] == pytest.approx(astuple(proven)[:3], rel=1e-9)
@@ -862,10 +862,13 @@ def test_a_domain_that_was_parted_comes_back_so_and_needs_what_closes_it(tmp_pat
     whole = full_document()
     (first, second) = whole.layers
     loops = np.concatenate(first.domain.loops)
-    slits = (Slit(points=np.array([-5 + 20j, 1 / 3])), Slit(points=np.array([3.0 + 199j, 4, 5])))
+    slits = (
+        CutLine(points=np.array([-5 + 20j, 1 / 3])),
+        CutLine(points=np.array([3.0 + 199j, 4, 5])),
+    )
     parted = replace(
         first,
-        cut_out=replace(first.cut_out, slits=slits),
+        cut_out=replace(first.cut_out, cut_lines=slits),
         domain=replace(first.domain, closed=loops + 0.01),
     )
     document = replace(whole, layers=(parted, second))

@@ -50,8 +50,8 @@ def test_layers_that_share_a_picture_share_it_once_it_is_saved_too(drawing, tmp_
     again = load_project(tmp_path / "a.lissom")
     full, right, left = again.layers
     assert left.picture is right.picture is not full.picture
-    shown = files.decoded(again, "a")
-    assert shown.puppets[left.id].picture is shown.puppets[right.id].picture
+    shown = files.decode_project(again, "a")
+    assert shown.layer_runtimes[left.id].picture is shown.layer_runtimes[right.id].picture
 
 
 def test_a_box_on_an_empty_canvas_can_be_posed(tmp_path):

@@ -17,7 +17,7 @@ WAY = 30 - 20j  # pixels of the picture
 def bend_by_nu(window):
     """Bend the bar loosely: which in-between it is that is awaited is not asked."""
     window.again(bend_bar, LAST, "loose")
-    keys.set_variant(window.session, "nu")
+    keys.set_inbetween_method(window.session, "nu")
     window.settle()
 
 
@@ -33,10 +33,10 @@ def come(monkeypatch, window, bent):
     monkeypatch.setattr(window.session.jobs, "deliver", lambda: None)
     pose = bent.layer.key(LAST).pose
     turned = replace(pose, phi=TURN * pose.phi, psi=pose.psi / TURN)
-    editing.edit(window.session, key_commands.replace_key_pose(bent.active, LAST, turned))
+    editing.edit_document(window.session, key_commands.replace_key_pose(bent.active, LAST, turned))
     playback.scrub(window.session, FRAME)
     window.frames(2)
-    assert bent.puppet.shown.placeholder in [key.pose for key in bent.layer.keys]
+    assert bent.layer_runtime.shown.placeholder in [key.pose for key in bent.layer.keys]
 
     def let_come(*, settles=True):
         monkeypatch.setattr(window.session.jobs, "deliver", deliver)
@@ -58,7 +58,7 @@ def pixel(window, project):
 
 
 def drag(robot, window, project):
-    place = complex(project.puppet.shown.handle_positions[1])
+    place = complex(project.layer_runtime.shown.handle_positions[1])
     robot.mouse_move_to_pos(window.point(place))
     robot.mouse_down(0)
     robot.mouse_move_to_pos(window.point(place + WAY / 2))
@@ -105,7 +105,7 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
     window.run(play)
     bent.selected = frozenset({1})
     for _ in range(3):
-        window.act(posing.nudge, 5j)
+        window.act(posing.nudge_handles, 5j)
     assert FRAME not in bent.layer.key_frames
     come()
     target = bent.layer.key(FRAME).pose.targets[1]
@@ -120,7 +120,7 @@ def test_a_turn_goes_on_from_the_in_between(window, bent, come):
     window.frames(2)
 
     def turn(robot):
-        centre = complex(bent.puppet.shown.handle_positions[1])
+        centre = complex(bent.layer_runtime.shown.handle_positions[1])
         arm = window.ring(bent)
         robot.mouse_move_to_pos(window.point(centre + arm))
         robot.mouse_down(0)
@@ -133,7 +133,7 @@ def test_a_turn_goes_on_from_the_in_between(window, bent, come):
     target = bent.layer.key(FRAME).pose.targets[1]
     editing.undo(window.session)
     window.settle()
-    turned = bent.puppet.shown.handle_rotations[1]
+    turned = bent.layer_runtime.shown.handle_rotations[1]
     assert abs(target.position - in_between(bent)[1]) < 1.0
     assert target.rotation - turned == pytest.approx(0.4, abs=0.05)
 
@@ -162,7 +162,7 @@ def test_it_is_taken_back_before_it_began(window, bent, come):
     [
         lambda session: playback.scrub(session, 2),
         playback.toggle_play,
-        exporting.ask,
+        exporting.ask_destination_and_export,
         posing.insert_key,
     ],
 )
@@ -173,7 +173,7 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     window.session.dialog = None
     come()
     window.until(lambda: not bent.pulls)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
     target = bent.layer.key(FRAME).pose.targets[1]
     assert bent.layer.lags(bent.layer.key(FRAME).pose)[1] < 1.0
     while bent.document is not before:
@@ -189,15 +189,17 @@ def test_undo_and_redo_need_not_wait(window, bent):
     for turn in (TURN, TURN**2):
         pose = bent.layer.key(LAST).pose
         turned = replace(pose, phi=turn * pose.phi, psi=pose.psi / turn)
-        editing.edit(window.session, key_commands.replace_key_pose(bent.active, LAST, turned))
+        editing.edit_document(
+            window.session, key_commands.replace_key_pose(bent.active, LAST, turned)
+        )
         window.settle()
     documents = bent.history.nearby
     for step in (editing.undo, editing.redo, editing.undo):
         step(window.session)
         assert bent.document in documents
-        assert bent.puppet.store.has(bent.clip)
+        assert bent.layer_runtime.store.has(bent.clip)
     # What leads on from here is worked out, and then nothing of the way back is lost.
     editing.undo(window.session)
     window.settle()
     editing.redo(window.session)
-    assert bent.puppet.store.has(bent.clip)
+    assert bent.layer_runtime.store.has(bent.clip)

@@ -41,12 +41,12 @@ def ready(window, loose, tmp_path, monkeypatch):
     monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ("true",))
     monkeypatch.setattr("app.editor.actions.exporting.put_on_clipboard", lambda _: None)
     export = replace(loose.document.export, format="picture", framing="canvas")
-    editing.edit(window.session, scene_commands.set_export(export))
-    loose.exports_to["picture"] = tmp_path / "picture.png"
-    saving.write(window.session, tmp_path / "a.lissom", None)
+    editing.edit_document(window.session, scene_commands.set_export(export))
+    loose.export_destinations["picture"] = tmp_path / "picture.png"
+    saving.write_project(window.session, tmp_path / "a.lissom", None)
     playback.scrub(window.session, 0)
     window.settle()
-    copying.copy(window.session)
+    copying.copy_pose_or_keys(window.session)
     loose.selected = frozenset({0})
     return loose
 
@@ -75,7 +75,7 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
             "document": ready.document is dragged,
             "step": ready.history.undo_label == label,
             "drag": ready.pulls == [pull] and ready.pull is pull,
-            "at once": not ready.afterwards and not exporting.is_under_way(session),
+            "at once": not ready.afterwards and not exporting.is_export_under_way(session),
         }
         lost = [what for what, is_held in held.items() if not is_held]
         assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
@@ -128,12 +128,12 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
         (_, save), _ = session.dialog.answers
         session.dialog = None
         save.apply(session)
-        window.until(lambda: session.project is None or session.quitting)
+        window.until(lambda: session.project is None or session.is_quitting)
         check_at_rest(load_project(path), goal)
         return
     session.dialog = None
     window.until(lambda: session.export is None and exporting.PREPARING not in session.jobs.kinds)
-    playback.halt(session)
+    playback.stop_playback(session)
     check_invariants(session)
     if name == "save":
         check_at_rest(load_project(path), goal)

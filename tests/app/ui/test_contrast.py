@@ -14,15 +14,15 @@ from app.document.keyframe import Target
 from app.editor import FileDialog, Question, do, layering
 from app.editor.actions import (
     close_dialog,
-    cutting,
+    cut_out_editing,
     editing,
     playback,
     posing,
     show_dialog,
-    timeline_pointing,
+    timeline_drag,
     viewing,
 )
-from app.editor.timeline_view import Strip
+from app.editor.timeline_view import TimeRangeView
 from app.editor.work.promise import Promise
 from app.solving import KeyResolver
 from app.storage.assets import sample_images
@@ -117,15 +117,15 @@ def test_the_welcome_view(window, tmp_path, check):
 def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
     session = window.session
     width, height = loose.document.canvas
-    posing.wish(session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
+    posing.set_targets(session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
-    viewing.compare_with(session, Variant.LINEAR)
+    viewing.compare_with_method(session, Variant.LINEAR)
     for tab in TABS:
         window.show_tab(tab)
         check(tab)
     solved = loose.layer.poses[:-1]
     renewal = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
-    loose.pending.append(Promise(label="Solving the keys", renewal=renewal))
+    loose.pending.append(Promise(label="Solving the keys", key_resolver=renewal))
     window.show_tab("Deform")
     check("progress")
 
@@ -153,11 +153,11 @@ def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     session = window.session
     viewing.toggle_auto_key(session)
     loose.selected = frozenset({1})
-    posing.nudge(session, 30j)
+    posing.nudge_handles(session, 30j)
     window.settle()
     assert loose.preview_pose is not None
     check("unkeyed")
-    cutting.take_up(session, "remove")
+    cut_out_editing.toggle_cut_tool(session, "remove")
     window.show_tab("Cut-out")
     check("cut-out")
 
@@ -172,13 +172,13 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
     project = window.open(path)
     session = window.session
     (wall, _, arm) = (layer.id for layer in project.document.layers)
-    layering.fade(session, arm, 0.5)
-    layering.show(session, arm)
-    layering.switch_here(session, wall)
+    layering.set_layer_opacity(session, arm, 0.5)
+    layering.toggle_layers_hidden(session, arm)
+    layering.toggle_visibility_key(session, wall)
     playback.seek(session, 12)
-    timeline_pointing.look_at(session, Strip(0.0, 1.0))
+    timeline_drag.set_time_range(session, TimeRangeView(0.0, 1.0))
     for identity in (arm, wall):
-        layering.choose(session, identity)
+        layering.set_active_layer(session, identity)
         window.show_tab("Layers")
         check(identity)
 
@@ -189,7 +189,7 @@ def test_menus_messages_and_dialogs(window, tmp_path, check):
     for tone in ("info", "good", "error"):
         session.tell(f"A message that is {tone}.", tone=tone, details="Its details")
     session.hint = "A hint"
-    editing.select(session, frozenset({0, 1}))
+    editing.select_handles(session, frozenset({0, 1}))
     check("messages")
     session.toasts = []
 

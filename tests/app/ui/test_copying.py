@@ -79,7 +79,9 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
     (key,) = copied.keys
     f = loose.layer.map_of(key.pose)
     places = np.array([handle.position for handle in loose.layer.handles])
-    np.testing.assert_allclose(f(places), loose.puppet.shown.handle_positions, rtol=0, atol=0.5)
+    np.testing.assert_allclose(
+        f(places), loose.layer_runtime.shown.handle_positions, rtol=0, atol=0.5
+    )
     if frame == 0:
         assert key.pose is loose.layer.key(0).pose
 
@@ -91,7 +93,7 @@ def test_a_pose_that_is_copied_as_the_playhead_leaves_another_is_the_one_that_it
         hand.to_drawing()
         # Both in one frame: what is shown is still the pose before.
         playback.scrub(window.session, 0)
-        window.session.in_timeline = False
+        window.session.is_timeline_focused = False
         hand.press(COPY)
 
     play(copy)
@@ -137,7 +139,7 @@ def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):
             begin(hand)
             if begin == Hand.to_drawing:
                 hand.robot.mouse_click(0)
-                editing.choose_keys(window.session, frozenset({24}))
+                editing.select_keys(window.session, frozenset({24}))
             else:
                 playback.scrub(window.session, 12)
             over_a_tab(hand)
@@ -167,25 +169,25 @@ def test_the_menu_says_what_would_be_copied_and_selected(window, play):
 
 
 def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
-    layering.duplicate(window.session, 0)
-    layering.duplicate(window.session, 0)
+    layering.duplicate_layer(window.session, 0)
+    layering.duplicate_layer(window.session, 0)
     window.settle()
     still = loose.active
-    layering.stand_still(window.session, still)
+    layering.make_still(window.session, still)
     window.settle()
-    layering.choose(window.session, 0)
+    layering.set_active_layer(window.session, 0)
     posed = {layer.id for layer in loose.document.layers} - {still}
     assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
         KEYS_COPIED.format(count=4)
     ]
-    assert loose.chosen_of == dict.fromkeys(posed, frozenset({0, 24}))
+    assert loose.selected_keys == dict.fromkeys(posed, frozenset({0, 24}))
 
 
 @pytest.mark.parametrize("item", ["ruler", "ground"])
 def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
     window, loose, play, item
 ):
-    editing.select(window.session, frozenset({1}))
+    editing.select_handles(window.session, frozenset({1}))
     loose.chosen = frozenset({0, 24})
 
     def scrub(hand):
@@ -203,7 +205,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
         hand.robot.mouse_click(0)
 
     play(click)
-    assert not loose.chosen_of
+    assert not loose.selected_keys
     if item == "ruler":
         assert loose.selected == {1}
         assert loose.playhead.frame == 30
@@ -253,11 +255,11 @@ def test_the_menu_of_a_place_between_keys_pastes_there(window, loose, play, item
 
 
 def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, play):
-    editing.select(window.session, frozenset({0, 1}))
+    editing.select_handles(window.session, frozenset({0, 1}))
     before = loose.document
 
     def drag(hand):
-        place = window.point(complex(loose.puppet.shown.handle_positions[1]))
+        place = window.point(complex(loose.layer_runtime.shown.handle_positions[1]))
         hand.robot.mouse_move_to_pos(place)
         hand.robot.mouse_down(0)
         hand.robot.mouse_move_to_pos(place + ImVec2(30, 30))
@@ -272,8 +274,8 @@ def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, pl
     play(lambda hand: (hand.click_key(24, 1), hand.press(ESCAPE)))
     assert loose.chosen == {24}
     play(lambda hand: hand.press(ESCAPE))
-    assert not loose.chosen_of
-    editing.select(window.session, frozenset({0, 1}))
+    assert not loose.selected_keys
+    editing.select_handles(window.session, frozenset({0, 1}))
     play(lambda hand: (hand.to_drawing(), hand.press(ESCAPE)))
     assert not loose.selected
     assert loose.document is before

@@ -13,8 +13,8 @@ from app.document import layer_commands
 from app.document.keyframe import Target
 from app.document.layer import Handle
 from app.editor.actions import editing, saving, upkeep
-from app.editor.layering import arranging
-from app.editor.timeline_view import Strip
+from app.editor.layering import layer_list
+from app.editor.timeline_view import TimeRangeView
 
 MANY = 4_000
 CORNERS = 12_000  # more than those of the rest of the window, at most
@@ -25,9 +25,9 @@ ROWS = 20  # of a list that are in view, at most
 def show(window, document, strip=None):
     """Show a document, of whose in-betweens nothing is made."""
     project = project_of(document, PICTURE, "crowded")
-    project.timing.unfolded = frozenset({0})
-    project.timing.strip = strip
-    saving.put_project(window.session, project)
+    project.timeline.expanded_layers = frozenset({0})
+    project.timeline.time_range = strip
+    saving.set_project(window.session, project)
     window.frames(2)
     return imgui.get_draw_data().total_vtx_count
 
@@ -39,9 +39,9 @@ def test_timeline_draws_no_more_for_more_keys(window, kind):
         few = show(window, crowded(kind, 1))
         some = show(window, crowded(kind, MANY // 4))
         many = show(window, document)
-        close = Strip(start=-50.0, scale=2.0)
+        close = TimeRangeView(start=-50.0, scale=2.0)
         beyond = show(window, document, strip=replace(close, start=-1000.0))
-        saving.put_project(window.session, None)
+        saving.set_project(window.session, None)
     assert max(some, many) - few < CORNERS
     assert beyond - few < CORNERS // 2
 
@@ -83,7 +83,7 @@ def test_lists_draw_the_rows_in_view_alone(window, monkeypatch, tab, document, r
         window.show_tab(tab)
         monkeypatch.setattr(imgui, "selectable", selectable)
         window.frames(1)
-        saving.put_project(window.session, None)
+        saving.set_project(window.session, None)
     rows = [name for name in asked if row in name]
     assert 1 < len(rows) < ROWS
 
@@ -92,21 +92,21 @@ def test_rows_of_layers_stay_until_the_document_changes():
     project = project_of(many_layers(), PICTURE, "crowded")
     rows = project.tree
     assert project.tree is rows
-    project.toggled = frozenset({"group body"})
+    project.toggled_rows = frozenset({"group body"})
     assert project.tree is not rows
 
 
 def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch):
     asked = []
-    monkeypatch.setattr(arranging, "contains", lambda *_: asked.append(1) or np.array([False]))
+    monkeypatch.setattr(layer_list, "contains", lambda *_: asked.append(1) or np.array([False]))
     with window.session.jobs.held():
         show(window, many_layers())
         project = window.session.project
-        assert arranging.layer_at(project, -1000 - 1000j) is None
+        assert layer_list.layer_at(project, -1000 - 1000j) is None
         assert not asked
-        arranging.layer_at(project, 60 + 47j)
+        layer_list.layer_at(project, 60 + 47j)
         assert len(asked) == LAYERS
-        saving.put_project(window.session, None)
+        saving.set_project(window.session, None)
 
 
 def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
@@ -122,7 +122,7 @@ def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
         monkeypatch.setattr(upkeep, "show", counted)
         window.frames(3)
         assert not asked
-        editing.edit(window.session, layer_commands.rename_layer(1, "arm"))
+        editing.edit_document(window.session, layer_commands.rename_layer(1, "arm"))
         window.frames(1)
         assert len(asked) == LAYERS
-        saving.put_project(window.session, None)
+        saving.set_project(window.session, None)

@@ -13,11 +13,11 @@ from messages import says
 from PIL import Image
 
 from app.document import Target
-from app.editor.actions import cutting, editing, posing, rebuilding
+from app.editor.actions import cut_out_editing, editing, posing, resolving
 from app.storage.project_file import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.style import TOAST
-from engine.domain.outline.knife import CUTS_OFF
+from engine.domain.outline.cuts import CUTS_OFF
 from engine.domain.picture.mask import ALL_REMOVED
 
 SIZE = 120
@@ -40,7 +40,7 @@ def drawing(window, ring):
 def rest(window):
     """Let the mesh follow the brush."""
     window.settle()
-    window.clock.now += rebuilding.REST
+    window.clock.now += resolving.REST
     window.settle()
     window.frames(2)
     window.settle()
@@ -64,7 +64,7 @@ def click(window, place):
 
 
 def kept(project):
-    return project.puppet.cut.value.kept
+    return project.layer_runtime.cut.value.kept
 
 
 MIDDLE = complex(SIZE / 2, SIZE / 2)
@@ -83,7 +83,7 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
 
     window.run(accept)
     assert window.session.cutting == "remove"
-    window.act(cutting.set_brush, 20.0)
+    window.act(cut_out_editing.set_brush_radius, 20.0)
     stroke(window, 10 + 10j, 10 + 100j)
     rest(window)
     assert not kept(project).all()
@@ -100,8 +100,8 @@ def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window,
     posing.add_handle(session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     with_handle = drawing.document
-    window.act(cutting.take_up, "remove")
-    window.act(cutting.set_brush, 12.0)
+    window.act(cut_out_editing.toggle_cut_tool, "remove")
+    window.act(cut_out_editing.set_brush_radius, 12.0)
     stroke(window, MIDDLE - 10, MIDDLE + 10)
     stroke(window, MIDDLE)
     layer = drawing.layer
@@ -114,7 +114,7 @@ def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window,
     assert layer.domain is not first.layers[0].domain
     assert len(layer.handles) == 1
     assert not kept(drawing)[SIZE // 2, SIZE // 2]
-    assert drawing.puppet.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0
+    assert drawing.layer_runtime.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0
     assert drawing.history.undo_label == "Brush"
     last = drawing.document
     window.act(editing.undo)
@@ -127,8 +127,8 @@ def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window,
 
 
 def test_a_step_between_two_strokes_gets_a_mesh_of_its_own(window, drawing):
-    window.act(cutting.take_up, "remove")
-    window.act(cutting.set_brush, 8.0)
+    window.act(cut_out_editing.toggle_cut_tool, "remove")
+    window.act(cut_out_editing.set_brush_radius, 8.0)
     stroke(window, MIDDLE)
     stroke(window, complex(5, 5), complex(5, SIZE - 5))
     rest(window)
@@ -151,11 +151,13 @@ def test_alt_and_x_swap_the_brush_and_brackets_change_its_size(window, drawing):
         assert session.cutting == "remove"
         robot.key_press(keys.x)
         assert session.cutting == "keep"
-        radius = cutting.brush_radius(drawing)
+        radius = cut_out_editing.brush_radius(drawing)
         robot.key_press(keys.right_bracket)
-        assert cutting.brush_radius(drawing) == pytest.approx(radius * cutting.BRUSH_STEP)
+        assert cut_out_editing.brush_radius(drawing) == pytest.approx(
+            radius * cut_out_editing.BRUSH_STEP
+        )
         robot.key_press(keys.left_bracket)
-        assert cutting.brush_radius(drawing) == pytest.approx(radius)
+        assert cut_out_editing.brush_radius(drawing) == pytest.approx(radius)
         robot.mouse_move_to_pos(window.point(MIDDLE))
         robot.key_down(imgui.Key.mod_alt)
         robot.mouse_down()
@@ -191,7 +193,7 @@ def test_the_key_of_the_brush_brings_its_tab_to_the_front(window, drawing):
 
 def test_a_stroke_that_is_cancelled_is_none(window, drawing):
     before = drawing.document
-    window.act(cutting.take_up, "keep")
+    window.act(cut_out_editing.toggle_cut_tool, "keep")
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(MIDDLE))
@@ -206,34 +208,34 @@ def test_a_stroke_that_is_cancelled_is_none(window, drawing):
 
 
 def test_the_pipette_takes_the_background_s_colour(window, drawing):
-    window.act(cutting.take_up, "pick")
+    window.act(cut_out_editing.toggle_cut_tool, "pick")
     click(window, complex(4, 4))
     assert drawing.layer.cut_out.background == PAPER
-    window.act(cutting.set_background, "none")
+    window.act(cut_out_editing.set_background, "none")
     rest(window)
     assert kept(drawing).all()
-    window.act(cutting.set_tolerance, 3)
-    window.act(cutting.set_background, "auto")
+    window.act(cut_out_editing.set_background_tolerance, 3)
+    window.act(cut_out_editing.set_background, "auto")
     rest(window)
     assert not kept(drawing).all()
     assert drawing.layer.cut_out.tolerance == 3
 
 
 def test_a_mask_is_saved_and_loaded_again(window, drawing, tmp_path):
-    window.act(cutting.take_up, "remove")
+    window.act(cut_out_editing.toggle_cut_tool, "remove")
     stroke(window, MIDDLE, MIDDLE + 15)
     rest(window)
     by_hand = kept(drawing)
     path = tmp_path / "mask.png"
-    window.act(cutting.save_mask, path)
+    window.act(cut_out_editing.save_mask, path)
     window.settle()
     written = Image.open(path)
     assert written.size == (SIZE, SIZE)
     assert set(np.unique(np.asarray(written.convert("L")))) == {0, 255}
-    window.act(cutting.forget_strokes)
+    window.act(cut_out_editing.clear_cut_out_strokes)
     rest(window)
     assert not np.array_equal(kept(drawing), by_hand)
-    window.act(cutting.load_mask, path)
+    window.act(cut_out_editing.load_mask, path)
     rest(window)
     assert drawing.layer.cut_out.mask is not None
     assert np.array_equal(kept(drawing), by_hand)
@@ -243,7 +245,7 @@ def test_a_mask_is_saved_and_loaded_again(window, drawing, tmp_path):
 def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
     before = drawing.document
     Image.new("L", (10, 10), 255).save(tmp_path / "small.png")
-    window.act(cutting.load_mask, tmp_path / "small.png")
+    window.act(cut_out_editing.load_mask, tmp_path / "small.png")
     window.settle()
     assert drawing.document is before
     assert any("same width and height" in toast.text for toast in window.session.toasts)
@@ -253,8 +255,8 @@ def test_what_cannot_be_is_told_and_undone(window, drawing):
     posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     domain = drawing.layer.domain
-    window.act(cutting.take_up, "remove")
-    window.act(cutting.set_brush, 300.0)
+    window.act(cut_out_editing.toggle_cut_tool, "remove")
+    window.act(cut_out_editing.set_brush_radius, 300.0)
     stroke(window, MIDDLE)
     rest(window)
     assert drawing.layer.is_stale
@@ -266,7 +268,7 @@ def test_what_cannot_be_is_told_and_undone(window, drawing):
 
 
 def test_it_is_saved_and_survives_a_crash(window, drawing, tmp_path):
-    window.act(cutting.take_up, "remove")
+    window.act(cut_out_editing.toggle_cut_tool, "remove")
     stroke(window, MIDDLE, MIDDLE + 15)
     path = tmp_path / "stale.lissom"
     save_project(path, drawing.document)
@@ -287,11 +289,11 @@ def test_a_click_keeps_a_hole_or_fills_it(window, tmp_path):
     window.settle()
     before = project.document
     first = len(project.layer.domain.holes)
-    window.act(cutting.take_up, "holes")
+    window.act(cut_out_editing.toggle_cut_tool, "holes")
     click(window, complex(0.1 * SIZE, SIZE / 2))
     assert project.document is before  # no hole there
     click(window, MIDDLE + 4)
-    assert len(project.layer.cut_out.swapped) == 1
+    assert len(project.layer.cut_out.toggled_holes) == 1
     rest(window)
     assert len(project.layer.domain.holes) == 1 - first
     assert len(project.layer.handles) == 1
@@ -299,7 +301,7 @@ def test_a_click_keeps_a_hole_or_fills_it(window, tmp_path):
     save_project(path, project.document)
     assert not differences(project.document, load_project(path))
     click(window, MIDDLE - 9j)
-    assert project.layer.cut_out.swapped == ()
+    assert project.layer.cut_out.toggled_holes == ()
     rest(window)
     assert len(project.layer.domain.holes) == first
     window.act(editing.undo)
@@ -321,14 +323,16 @@ def test_a_click_opens_what_the_background_shows_through(window, tmp_path, colou
             lambda robot, offer=offer: robot.item_click(f"//{TOAST}{offer.place}/{offer.label}")
         )
     if first:
-        window.act(cutting.take_up, "holes")
+        window.act(cut_out_editing.toggle_cut_tool, "holes")
     assert window.session.cutting == "holes"
     for holes in (1 - first, first):
         click(window, MIDDLE + 4)
         rest(window)
         assert len(project.layer.domain.holes) == holes
-        assert (project.puppet.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0) == bool(holes)
-    window.act(cutting.set_enclosed, "keep" if first else "remove")
+        assert (project.layer_runtime.cut.value.texture[SIZE // 2, SIZE // 2, 3] == 0) == bool(
+            holes
+        )
+    window.act(cut_out_editing.set_enclosed_removed, "keep" if first else "remove")
     rest(window)
     assert len(project.layer.domain.holes) == 1 - first
     path = tmp_path / "ring.lissom"
@@ -356,9 +360,9 @@ POCKET = complex(SIZE / 2, SIZE - 17)
 
 
 def test_a_click_opens_a_pocket_that_is_too_small_for_a_hole_of_the_mesh(window, line_art):
-    window.act(cutting.take_up, "holes")
+    window.act(cut_out_editing.toggle_cut_tool, "holes")
     click(window, POCKET + 0.5)
-    assert len(line_art.layer.cut_out.swapped) == 1
+    assert len(line_art.layer.cut_out.toggled_holes) == 1
     rest(window)
     at = SIZE - 1 - int(POCKET.imag), int(POCKET.real)
     assert not kept(line_art)[at]
@@ -373,13 +377,13 @@ def test_a_click_opens_a_pocket_that_is_too_small_for_a_hole_of_the_mesh(window,
 def test_paper_that_is_left_inside_is_tinted(window):
     places = (MIDDLE, POCKET)
     assert [tuple(pixel(window, place)) for place in places] == [(255, 255, 255)] * 2
-    window.act(cutting.take_up, "holes")
+    window.act(cut_out_editing.toggle_cut_tool, "holes")
     elsewhere = MIDDLE + 20j  # of the mark in the middle
     red, _, blue = pixel(window, elsewhere)
     assert blue > red + 60
     red, _, blue = pixel(window, complex(3, 3))
     assert red > blue + 60  # what is removed
-    window.act(cutting.set_enclosed, "remove")
+    window.act(cut_out_editing.set_enclosed_removed, "remove")
     rest(window)
     red, _, blue = pixel(window, elsewhere)
     assert red > blue + 60
@@ -391,7 +395,7 @@ def test_the_canvas_suits_lines_whose_paper_was_removed(window):
     window.session.preferences = replace(window.session.preferences, theme="dark")
     outside = complex(-10, SIZE / 2)
     assert pixel(window, outside).max() < 80
-    window.act(cutting.set_enclosed, "remove")
+    window.act(cut_out_editing.set_enclosed_removed, "remove")
     rest(window)
     assert pixel(window, outside).min() > 200
     window.act(editing.undo)
@@ -418,9 +422,9 @@ FROM_BELOW = (complex(60, 3), complex(60, 40), complex(60, 70))
 def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, boots):
     document, outline = boots.document, len(boots.layer.domain.outline)
     before = pixel(window, 60 + 40j)
-    window.act(cutting.take_up, "knife")
+    window.act(cut_out_editing.toggle_cut_tool, "knife")
     stroke(window, *FROM_BELOW)
-    (slit,) = boots.layer.cut_out.slits
+    (slit,) = boots.layer.cut_out.cut_lines
     assert slit.points[0] == pytest.approx(FROM_BELOW[0], abs=1)
     assert boots.history.undo_label == "Cut by the knife"
     rest(window)
@@ -428,18 +432,20 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
     assert not layer.is_stale
     assert len(layer.domain.outline) > outline + 8
     assert len(layer.handles) == 3
-    window.act(cutting.take_up, None)
+    window.act(cut_out_editing.toggle_cut_tool, None)
     for place in (60 + 40j, 60 + 12j, 60 + 66j):
         assert tuple(pixel(window, place)) == tuple(before)
     # Both sides can be pulled apart.
     targets = layer.keys[0].pose.targets
     wishes = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
-    posing.wish(window.session, wishes)
+    posing.set_targets(window.session, wishes)
     window.settle()
-    reached = boots.puppet.shown.handle_positions
+    reached = boots.layer_runtime.shown.handle_positions
     assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)
-    assert boots.layer.keys[0].pose.certificate.certified
-    sides = boots.puppet.shown.mesh.posed(boots.puppet.shown.pose)[: len(layer.domain.outline)]
+    assert boots.layer.keys[0].pose.certificate.is_certified
+    sides = boots.layer_runtime.shown.mesh.posed(boots.layer_runtime.shown.pose)[
+        : len(layer.domain.outline)
+    ]
     beside = np.abs(layer.domain.outline - (60 + 20j)) < 8
     assert np.ptp(sides[beside].real) > 10
     assert pixel(window, 60 + 15j).min() > 200  # the canvas
@@ -449,17 +455,17 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
 
 
 def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_path):
-    window.act(cutting.take_up, "knife")
+    window.act(cut_out_editing.toggle_cut_tool, "knife")
     stroke(window, *FROM_BELOW)
     rest(window)
     path = tmp_path / "boots.lissom"
     save_project(path, boots.document)
     assert not differences(boots.document, load_project(path))
     (read,) = load_project(path).layers
-    assert len(read.cut_out.slits) == 1
+    assert len(read.cut_out.cut_lines) == 1
     assert read.domain.closed is not None
     stroke(window, 40 + 3j)  # a click is no line
-    assert len(boots.layer.cut_out.slits) == 1
+    assert len(boots.layer.cut_out.cut_lines) == 1
     stroke(window, 3 + 60j, 117 + 62j)
     rest(window)
     assert any(re.search(says(CUTS_OFF), toast.text) for toast in window.session.toasts)
@@ -476,14 +482,14 @@ def test_a_line_of_the_knife_is_saved_taken_away_and_refused(window, boots, tmp_
         robot.key_up(imgui.Key.mod_alt)
 
     window.run(alt_click)
-    assert boots.layer.cut_out.slits == ()
+    assert boots.layer.cut_out.cut_lines == ()
     rest(window)
     assert boots.layer.domain.closed is None
 
 
 def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
     document = boots.document
-    window.act(cutting.take_up, "knife")
+    window.act(cut_out_editing.toggle_cut_tool, "knife")
     stroke(window, 30 + 3j, 30 + 60j)
     assert boots.document is document
     name = boots.layer.handles[0].name
@@ -494,7 +500,7 @@ def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
 
 
 def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(window, boots):
-    window.act(cutting.take_up, "knife")
+    window.act(cut_out_editing.toggle_cut_tool, "knife")
     before, document = pixel(window, 60 + 40j), boots.document
 
     def play(robot):

@@ -39,15 +39,15 @@ def cycling(window):
 
 def swing(window):
     bent = window.again(bend_bar, None, "loose")
-    editing.edit(window.session, key_commands.copy_keys(bent.active, {0}, 48))
-    editing.edit(window.session, scene_commands.set_frames(FrameRange(0, 150)))
-    editing.choose_keys(window.session, frozenset({0, 24, 48}))
+    editing.edit_document(window.session, key_commands.copy_keys(bent.active, {0}, 48))
+    editing.edit_document(window.session, scene_commands.set_frames(FrameRange(0, 150)))
+    editing.select_keys(window.session, frozenset({0, 24, 48}))
     window.settle()
 
 
 def repeat_swings(window):
     swing(window)
-    window.act(cycles.repeat)
+    window.act(cycles.create_cycle)
     window.settle()
 
 
@@ -77,7 +77,7 @@ class Row:
 
 def drag_end_of_bar(window, project, by):
     """Drag the right handle, where it is shown now."""
-    start = complex(project.puppet.shown.handle_positions[RIGHT])
+    start = complex(project.layer_runtime.shown.handle_positions[RIGHT])
 
     def drag(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -130,17 +130,17 @@ def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
     before = cycling.layer.key(24).pose
     playback.seek(window.session, 72)
     window.settle()
-    shown = complex(cycling.puppet.shown.handle_positions[RIGHT])
+    shown = complex(cycling.layer_runtime.shown.handle_positions[RIGHT])
     drag_end_of_bar(window, cycling, 10 - 40j)
     assert playback.current_frame(window.session, cycling) == 72
     assert frames_of(cycling) == [0, 24]
     after = cycling.layer.key(24).pose
     assert after is not before
-    there = complex(cycling.puppet.shown.handle_positions[RIGHT])
+    there = complex(cycling.layer_runtime.shown.handle_positions[RIGHT])
     assert abs(there - shown - (10 - 40j)) < 3
     playback.seek(window.session, 24)
     window.settle()
-    assert cycling.puppet.shown.pose is after
+    assert cycling.layer_runtime.shown.pose is after
     editing.undo(window.session)
     assert cycling.layer.key(24).pose is before
 
@@ -148,40 +148,40 @@ def test_a_drag_in_a_repeat_poses_the_key_that_is_shown_there(window, cycling):
 def test_a_drag_between_keys_of_a_repeat_makes_one_where_it_repeats(window, cycling):
     playback.seek(window.session, 60)
     window.settle()
-    goal = complex(cycling.puppet.shown.handle_positions[RIGHT]) + 5 - 30j
+    goal = complex(cycling.layer_runtime.shown.handle_positions[RIGHT]) + 5 - 30j
     drag_end_of_bar(window, cycling, 5 - 30j)
     assert frames_of(cycling) == [0, 12, 24]
-    assert abs(complex(cycling.puppet.shown.handle_positions[RIGHT]) - goal) < 3
+    assert abs(complex(cycling.layer_runtime.shown.handle_positions[RIGHT]) - goal) < 3
     window.act(editing.undo)
     window.settle()
     assert frames_of(cycling) == [0, 24]
-    window.act(keys.insert)
+    window.act(keys.insert_key_in_row)
     window.settle()
     assert frames_of(cycling) == [0, 12, 24]
-    assert abs(complex(cycling.puppet.shown.handle_positions[RIGHT]) - goal + 5 - 30j) < 3
+    assert abs(complex(cycling.layer_runtime.shown.handle_positions[RIGHT]) - goal + 5 - 30j) < 3
 
 
 def test_repeats_are_made_into_keys_or_stop(window, cycling):
     first = cycling.document
     playback.seek(window.session, 100)
-    window.act(cycles.make_keys)
+    window.act(cycles.bake_cycle)
     assert frames_of(cycling) == [0, 24, 48, 72, 96, 120]
     assert cycling.layer.cycles == (Cycle(first=96, last=144),)
     window.act(editing.undo)
     assert cycling.document is first
-    window.act(cycles.stop)
+    window.act(cycles.end_cycle)
     assert frames_of(cycling) == [0, 24, 48]
     assert not cycling.layer.cycles
 
 
 def test_keys_wait_before_what_repeats(window, cycling):
-    editing.choose_keys(window.session, frozenset())
+    editing.select_keys(window.session, frozenset())
     window.run(lambda robot: Row(robot).drag("key 24", 40, 44, 70, 90))
     window.settle()
     assert frames_of(cycling) == [0, 44]
     assert not window.session.toasts
     # All of its keys together take the cycle with them.
-    editing.choose_keys(window.session, frozenset({0, 44}))
+    editing.select_keys(window.session, frozenset({0, 44}))
     window.run(lambda robot: Row(robot, 44).drag("key 44", 50, 54))
     window.settle()
     assert frames_of(cycling) == [10, 54]
@@ -190,43 +190,43 @@ def test_keys_wait_before_what_repeats(window, cycling):
 
 def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     arm, body = cycling.active, cycling.active + 1
-    editing.edit(window.session, layer_commands.duplicate_layer(arm))
-    editing.edit(window.session, cycle_commands.delete_cycle(arm, 0))
+    editing.edit_document(window.session, layer_commands.duplicate_layer(arm))
+    editing.edit_document(window.session, cycle_commands.delete_cycle(arm, 0))
     for layer in cycling.document.layers:
-        editing.edit(window.session, key_commands.move_keys(layer.id, {24}, layer.id))
-    editing.edit(window.session, cycle_commands.delete_cycle(body, 0))
+        editing.edit_document(window.session, key_commands.move_keys(layer.id, {24}, layer.id))
+    editing.edit_document(window.session, cycle_commands.delete_cycle(body, 0))
     window.settle()
-    layering.choose_all(window.session, arm, body)
-    editing.choose_keys_of(window.session, {})
+    layering.select_layers(window.session, arm, body)
+    editing.select_keys_in_rows(window.session, {})
     before = cycling.document
-    window.act(cycles.repeat)
+    window.act(cycles.create_cycle)
     cycle = (Cycle(first=0, last=48),)
     assert [layer.cycles for layer in cycling.document.layers] == [cycle, cycle]
     editing.undo(window.session)
     assert cycling.document is before
     # What one of them refuses, none does.
     other = key_commands.insert_pose(body, 48, cycling.document.layer(body).key(25).pose, LINEAR)
-    editing.edit(window.session, other)
+    editing.edit_document(window.session, other)
     before = cycling.document
     with pytest.raises(LissomError, match="bar copy: " + says(TWO_POSES_SHOWN, first=0, last=48)):
-        cycles.repeat(window.session)
+        cycles.create_cycle(window.session)
     assert cycling.document is before
 
 
 def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window, swinging):
     bar, copy = swinging.active, swinging.active + 1
-    editing.edit(window.session, layer_commands.duplicate_layer(bar))
+    editing.edit_document(window.session, layer_commands.duplicate_layer(bar))
     window.settle()
-    layering.stand_still(window.session, copy)
+    layering.make_still(window.session, copy)
     window.settle()
-    layering.choose_all(window.session, bar, copy)
-    editing.choose_keys_of(window.session, {})
-    window.act(cycles.repeat)
+    layering.select_layers(window.session, bar, copy)
+    editing.select_keys_in_rows(window.session, {})
+    window.act(cycles.create_cycle)
     assert [each.cycles for each in swinging.document.layers] == [(Cycle(first=0, last=48),), ()]
     editing.undo(window.session)
     for frame, opacity in ((0, 1.0), (10, 0.2)):
-        editing.edit(window.session, filming_commands.key_opacity(copy, frame, opacity))
-    window.act(cycles.repeat)
+        editing.edit_document(window.session, filming_commands.key_opacity(copy, frame, opacity))
+    window.act(cycles.create_cycle)
     cycle = (Cycle(first=0, last=48),)
     assert [each.cycles for each in swinging.document.layers] == [cycle, cycle]
     faded = opacity_at(swinging.document, swinging.document.layer(copy), 58)
@@ -236,16 +236,16 @@ def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window
 def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling):
     own = tuple(TrackKey(frame=f, place=p) for f, p in ((0, 0j), (8, 12 + 6j), (16, 0j)))
     command = track_commands.put_track(cycling.active, Track(handles=(RIGHT,), keys=own))
-    editing.edit(window.session, command)
-    tracks.choose(window.session, RIGHT)
+    editing.edit_document(window.session, command)
+    tracks.select_track(window.session, RIGHT)
     playback.seek(window.session, 56)
     window.settle()
-    shown = complex(cycling.puppet.shown.handle_positions[RIGHT])
+    shown = complex(cycling.layer_runtime.shown.handle_positions[RIGHT])
     drag_end_of_bar(window, cycling, 4 - 10j)
     track = cycling.layer.track_of(RIGHT)
     assert [key.frame for key in track.keys] == [0, 8, 16]
     assert track.keys[1].place != 12 + 6j
-    assert abs(complex(cycling.puppet.shown.handle_positions[RIGHT]) - shown - (4 - 10j)) < 3
+    assert abs(complex(cycling.layer_runtime.shown.handle_positions[RIGHT]) - shown - (4 - 10j)) < 3
     playback.seek(window.session, 60)
     window.settle()
     drag_end_of_bar(window, cycling, 2 - 5j)

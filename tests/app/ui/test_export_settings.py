@@ -47,7 +47,7 @@ def choose(window, loose, monkeypatch):
 def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path):
     session = window.session
     keys.set_last_frame(session, 24)
-    exporting.set_export(session, ExportSettings(format="gif", size=SIZE))
+    exporting.set_export_settings(session, ExportSettings(format="gif", size=SIZE))
     window.show_tab("Handle")
     seen = []
 
@@ -72,18 +72,18 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
     window.run(lambda robot: robot.key_chars("other.gif"))
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.settle()
-    assert loose.exports_to == {"gif": tmp_path / "other.gif"}
+    assert loose.export_destinations == {"gif": tmp_path / "other.gif"}
     assert [path.name for path in tmp_path.iterdir()] == ["bar.gif"]
 
 
 def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, choose):
     settings = replace(loose.document.export, size=SIZE)
-    exporting.set_export(window.session, settings)
+    exporting.set_export_settings(window.session, settings)
     assert choose("mp4").background == "#ffffff"
     # Chosen for the first time: as large as what was chosen before.
     assert loose.document.export.size == SIZE
     film = replace(loose.document.export, size=(128, 64), background="#203040")
-    exporting.set_export(window.session, film)
+    exporting.set_export_settings(window.session, film)
     assert choose("webm").background == "transparent", "only MP4 needs one"
     for name, size, background in (
         ("png", SIZE, "transparent"),
@@ -92,19 +92,21 @@ def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, 
     ):
         chosen = choose(name)
         assert (chosen.size, chosen.background) == (size, background)
-    saving.write(window.session, tmp_path / "a.lissom", None)
+    saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.settle()
     again = load_project(tmp_path / "a.lissom").export
     assert again == loose.document.export
     assert again.in_format("mp4").background == "#203040"
     # A background that was chosen where it need not be goes along.
-    exporting.set_export(window.session, replace(loose.document.export, background="#ff0000"))
+    exporting.set_export_settings(
+        window.session, replace(loose.document.export, background="#ff0000")
+    )
     assert choose("mov").background == "#ff0000"
 
 
 def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose):
-    exporting.set_export(window.session, ExportSettings(size=SIZE))
-    exporting.export_to(window.session, tmp_path / "walk frames")
+    exporting.set_export_settings(window.session, ExportSettings(size=SIZE))
+    exporting.set_export_destination(window.session, tmp_path / "walk frames")
     for name, file in (
         ("mp4", "walk.mp4"),
         ("png", "walk frames"),
@@ -114,23 +116,23 @@ def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose
         ("spritesheet", "walk.png"),
     ):
         choose(name)
-        out = exporting.destination(loose)
+        out = exporting.export_destination(loose)
         assert out == tmp_path / file
-        exporting.export_to(window.session, out)
+        exporting.set_export_destination(window.session, out)
     # A name of one's own is that format's alone.
     choose("gif")
-    exporting.export_to(window.session, tmp_path / "wave.gif")
+    exporting.set_export_destination(window.session, tmp_path / "wave.gif")
     choose("mp4")
-    assert exporting.destination(loose) == tmp_path / "walk.mp4"
+    assert exporting.export_destination(loose) == tmp_path / "walk.mp4"
     choose("webp")
-    assert exporting.destination(loose) == tmp_path / "wave.webp", "beside the newest one"
+    assert exporting.export_destination(loose) == tmp_path / "wave.webp", "beside the newest one"
 
 
 def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_path, choose):
     session = window.session
     keys.set_last_frame(session, 24)
-    exporting.set_export(session, ExportSettings(format="spritesheet", size=SIZE))
-    window.act(exporting.start_at, tmp_path / "walk.png")
+    exporting.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    window.act(exporting.start_export_at, tmp_path / "walk.png")
     window.until(lambda: (tmp_path / "walk.json").exists() and session.export is None)
     sheet = (tmp_path / "walk.png").read_bytes()
     choose("apng")
@@ -155,11 +157,11 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     monkeypatch.setattr(imgui, "text_unformatted", lambda text: (written.append(text), draw(text)))
     monkeypatch.setattr(imgui, "text_colored", see_fact)
     window.frames()
-    exporting.set_export(session, ExportSettings(size=SIZE))
+    exporting.set_export_settings(session, ExportSettings(size=SIZE))
     window.show_tab("Handle")
     window.clock.cost = 0.02
     try:
-        window.act(exporting.start, tmp_path / "walk frames")
+        window.act(exporting.start_export, tmp_path / "walk frames")
         window.until(lambda: session.export is not None and session.export.done > 2)
         total = len(session.export.plan.times)
         told = [text for text in written if text.startswith("Exporting walk frames: ")]
@@ -174,5 +176,5 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     written.clear()
     window.frames(2)
     assert not any("walk frames" in text for text in written)
-    assert loose.exports_to == {"png": tmp_path / "walk frames"}
+    assert loose.export_destinations == {"png": tmp_path / "walk frames"}
     assert len(heights) == 1, "nothing moves up and down meanwhile"

@@ -10,7 +10,7 @@ from app.document import UnreadMotion
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, files, posing, saving, viewing
-from app.editor.actions.posing.moving import drafting
+from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.dialogs import Question
 from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
@@ -61,9 +61,9 @@ def test_a_dropped_picture_opens(window, drop):
 
 def test_a_dropped_project_opens(window, project, drop, tmp_path):
     path = tmp_path / "mine.LISSOM"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
-    window.act(saving.give_up)
+    window.act(saving.discard_project)
     drop(path)
     assert window.session.project is not project
     assert window.session.project.path == path
@@ -78,7 +78,7 @@ def test_a_motion_that_is_not_known_here_is_told(window, project, tmp_path):
     window.act(files.open_file, path)
     window.settle()
     assert any("motion that this version cannot show" in text for text in texts(window))
-    window.act(drafting.begin)
+    window.act(preset_setup.begin_motion_setup)
     window.settle()
     assert window.session.project.draft is not None
 
@@ -114,7 +114,7 @@ def test_a_picture_dropped_on_a_scene_may_become_a_layer(window, project, drop):
     assert project.layer.name == "bar"
     window.act(editing.redo)
     window.settle()
-    assert set(project.puppets) == {layer.id for layer in project.document.layers}
+    assert set(project.layer_runtimes) == {layer.id for layer in project.document.layers}
 
 
 def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):
@@ -173,7 +173,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project
     path = tmp_path / "unsaved.lissom"
     save_project(path, project.document)
     with window.session.jobs.held():
-        window.act(files.recover, path)
+        window.act(files.recover_file, path)
         window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
@@ -182,9 +182,9 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project
     assert path.exists()
 
 
-@pytest.mark.parametrize("verb", [saving.quit_lissom, saving.close])
+@pytest.mark.parametrize("verb", [saving.request_quit, saving.close_project])
 def test_changes_made_while_the_project_is_saved_are_asked_about(window, project, tmp_path, verb):
-    saving.write(window.session, tmp_path / "bar.lissom", None)
+    saving.write_project(window.session, tmp_path / "bar.lissom", None)
     window.settle()
     change(window, project)
     window.act(verb)
@@ -193,14 +193,14 @@ def test_changes_made_while_the_project_is_saved_are_asked_about(window, project
         window.act(posing.add_handle, complex(*project.document.canvas) / 3)
     window.settle()
     assert window.session.project is project
-    assert not window.session.quitting
+    assert not window.session.is_quitting
     assert len(project.layer.handles) == 2
     assert isinstance(window.session.dialog, Question)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
     window.settle()
     assert len(load_project(tmp_path / "bar.lissom").layers[0].handles) == 2
-    assert window.session.quitting or window.session.project is None
-    window.session.quitting = False
+    assert window.session.is_quitting or window.session.project is None
+    window.session.is_quitting = False
 
 
 @pytest.fixture
@@ -272,7 +272,7 @@ def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept)
     place = complex(*project.document.canvas) / 2
     project.autosaved_at -= SECONDS
     with window.session.jobs.held(posing.POSING):
-        posing.pull(window.session, {0: Target(position=place)})
+        posing.drag_handles(window.session, {0: Target(position=place)})
         window.clock.now += SECONDS / 2
         window.frames(20)
         assert not list(window.folder.glob("unsaved-*.lissom"))
@@ -286,27 +286,27 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     change(window, project)
     change(window, project)
     place = complex(*project.document.canvas)
-    posing.wish(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
+    posing.set_targets(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
     window.frames(2)
     assert project.pull is not None
     path = tmp_path / "bar.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     assert project.pull is None
     assert project.history.is_saved
     (saved,), (now,) = load_project(path).layers[0].keys, project.layer.keys
     assert saved.pose.targets == now.pose.targets
     assert (saved.pose.psi == now.pose.psi).all()
-    window.act(saving.quit_lissom)
+    window.act(saving.request_quit)
     assert window.session.dialog is None
-    window.session.quitting = False
+    window.session.is_quitting = False
 
 
 def test_the_autosave_goes_when_the_work_is_saved(window, project, kept, tmp_path):
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
-    saving.write(window.session, tmp_path / "bar.lissom", None)
+    saving.write_project(window.session, tmp_path / "bar.lissom", None)
     window.settle()
     assert kept() is None
 
@@ -319,17 +319,17 @@ def test_the_autosave_goes_when_the_change_is_undone(window, project, kept):
     assert kept() is None
 
 
-@pytest.mark.parametrize("verb", [saving.give_up, saving.leave])
+@pytest.mark.parametrize("verb", [saving.discard_project, saving.close_window])
 def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, verb):
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
     verb(window.session)
-    window.session.quitting = False
+    window.session.is_quitting = False
     assert list(window.folder.glob("unsaved-*")) == []
 
 
-@pytest.mark.parametrize("verb", [saving.give_up, editing.undo])
+@pytest.mark.parametrize("verb", [saving.discard_project, editing.undo])
 def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, verb):
     with window.session.jobs.held(saving.AUTOSAVING):
         project.autosaved_at = window.clock.now
@@ -343,7 +343,7 @@ def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, verb)
 
 def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, project, tmp_path):
     path = tmp_path / "bar.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     small = read_thumbnail(path)
     assert small.shape[1] / small.shape[0] == pytest.approx(
@@ -351,7 +351,7 @@ def test_a_saved_project_is_known_by_its_picture_in_the_welcome_view(window, pro
     )
     textures = window.program.thumbnails
     assert path not in textures.files
-    window.act(saving.close)
+    window.act(saving.close_project)
     window.frames(30)
     shown = textures.get(path)
     assert shown.size == small.shape[1::-1]
@@ -372,13 +372,13 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     save_project(path, replace(project.document, layers=(layer,)))
     opened = window.open(path)
     place = opened.layer.handles[0].position
-    posing.pull(window.session, {0: Target(position=place + 20j)})
-    window.act(posing.let_go)
+    posing.drag_handles(window.session, {0: Target(position=place + 20j)})
+    window.act(posing.release_drag)
     window.settle()
     target = opened.layer.keys[0].pose.targets[0]
     assert target.position == place + 20j
     assert target.unknown == told
-    window.act(editing.edit, handle_commands.move_handle(opened.active, 0, place - 5))
+    window.act(editing.edit_document, handle_commands.move_handle(opened.active, 0, place - 5))
     assert opened.layer.keys[0].pose.targets[0].unknown == told
 
 
@@ -387,8 +387,8 @@ def test_preferences_are_kept_as_soon_as_they_change(window):
     window.act(viewing.toggle_theme)
     window.settle()
     assert load_preferences(window.folder) == Preferences(theme="light")
-    window.act(viewing.set_ghosts, 1, 99, 99)
-    window.act(viewing.scale_up)
+    window.act(viewing.set_onion_skin, 1, 99, 99)
+    window.act(viewing.enlarge_interface)
     window.settle()
     kept = load_preferences(window.folder)
     assert kept == window.session.preferences

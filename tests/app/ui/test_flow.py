@@ -35,8 +35,8 @@ def handle_places(project):
     return {
         handle.id: complex(place)
         for handle, place in zip(
-            project.puppet.shown.clip.layer.handles,
-            project.puppet.shown.handle_positions,
+            project.layer_runtime.shown.clip.layer.handles,
+            project.layer_runtime.shown.handle_positions,
             strict=True,
         )
     }
@@ -74,27 +74,27 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     assert [key.frame for key in project.layer.keys] == [0, 24]
     assert handle_places(project)[1].imag > height
-    assert all(key.pose.certificate.certified for key in project.layer.keys)
+    assert all(key.pose.certificate.is_certified for key in project.layer.keys)
     assert project.history.undo_label == "Pose"
 
     playback.seek(session, 0)
     window.run(lambda robot: robot.key_press(int(window.Key.space)))
     assert project.playhead.since is not None
     window.frames(10)
-    shown = {project.puppet.shown.frame}
+    shown = {project.layer_runtime.shown.frame}
     window.frames(10)
-    assert project.puppet.shown.frame not in shown
-    assert project.puppet.shown.is_current
+    assert project.layer_runtime.shown.frame not in shown
+    assert project.layer_runtime.shown.is_current
     window.run(lambda robot: robot.key_press(int(window.Key.space)))
     assert project.playhead.since is None
 
     path = tmp_path / "bar.lissom"
-    saving.write(session, path, None)
+    saving.write_project(session, path, None)
     window.settle()
     assert project.history.is_saved
     out = tmp_path / "frames"
-    exporting.set_export(session, ExportSettings(framing="canvas"))
-    exporting.start(session, out)
+    exporting.set_export_settings(session, ExportSettings(framing="canvas"))
+    exporting.start_export(session, out)
     while session.export is not None or session.jobs.kinds:
         window.settle()
     names = sorted(file.name for file in out.iterdir())
@@ -134,8 +134,8 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
 def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     session = window.session
     wanted = handle_places(bar)[1] + 150j
-    posing.pull(session, {1: Target(position=wanted)})
-    posing.let_go(session)
+    posing.drag_handles(session, {1: Target(position=wanted)})
+    posing.release_drag(session)
     leave(session)
     assert bar.pull is None
     assert bar.pulls
@@ -149,7 +149,7 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
 
 def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window, bar):
     session = window.session
-    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    posing.drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     window.settle()
     posed = bar.document
     assert bar.pull.is_held
@@ -162,7 +162,7 @@ def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window,
 def test_undo_takes_back_a_pose_that_the_playhead_has_left(window, bar):
     session = window.session
     before = bar.document
-    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    posing.drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     session.jobs.settle()
     window.frames()
     assert bar.document is not before
@@ -176,11 +176,11 @@ def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar
     posing.insert_key(window.session)
     playback.seek(window.session, 20)
     window.frames(2)
-    shown = bar.puppet.shown
+    shown = bar.layer_runtime.shown
     playback.seek(window.session, 21)
     window.frames(2)
-    assert bar.puppet.shown.frame == 21
-    assert bar.puppet.shown.vertices is shown.vertices
+    assert bar.layer_runtime.shown.frame == 21
+    assert bar.layer_runtime.shown.vertices is shown.vertices
 
 
 def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
@@ -189,35 +189,35 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
     project = window.open(BAR)
     session.full_detail = False
     window.frames(30)
-    assert project.puppet.shown.mesh is project.puppet.fine.mesh
+    assert project.layer_runtime.shown.mesh is project.layer_runtime.fine.mesh
     playback.seek(session, 3)
     window.frames()
-    assert project.puppet.shown.mesh is project.puppet.store.mesh
+    assert project.layer_runtime.shown.mesh is project.layer_runtime.store.mesh
     window.frames(20)
-    assert project.puppet.shown.mesh is project.puppet.fine.mesh
+    assert project.layer_runtime.shown.mesh is project.layer_runtime.fine.mesh
 
 
 def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, bar):
     session = window.session
-    posing.pull(session, {1: Target(position=handle_places(bar)[1] + 9000)})
+    posing.drag_handles(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
-    held = bar.puppet.shown.positions
+    held = bar.layer_runtime.shown.positions
     assert bar.pull.drag.state.status is Status.AT_LIMITS
-    posing.let_go(session)
+    posing.release_drag(session)
     window.settle()
     assert bar.pull is None
-    np.testing.assert_array_equal(bar.puppet.shown.positions, held)
+    np.testing.assert_array_equal(bar.layer_runtime.shown.positions, held)
 
 
 @pytest.mark.usefixtures("everything")
 def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     session = window.session
-    keys.set_variant(session, "metric")
+    keys.set_inbetween_method(session, "metric")
     playback.seek(session, 24)
     window.settle()
-    posing.wish(session, {1: Target(position=handle_places(bar)[1] + 120j)})
+    posing.set_targets(session, {1: Target(position=handle_places(bar)[1] + 120j)})
     window.settle()
-    before = bar.puppet.store.positions(bar.clip, 12)
+    before = bar.layer_runtime.store.positions(bar.clip, 12)
     start = handle_places(bar)[1]
     ghosts, halfway = [], {}
 
@@ -226,13 +226,13 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
         robot.mouse_down(0)
         for step in range(1, 7):
             robot.mouse_move_to_pos(window.point(start + 25j * step))
-            ghosts.append(bar.puppet.store.vertices(bar.puppet.store.whole, 12))
+            ghosts.append(bar.layer_runtime.store.vertices(bar.layer_runtime.store.whole, 12))
         while session.jobs.kinds:
             robot.yield_()
         halfway.update(
             grab=bar.pull,
-            known=bar.puppet.store.has(bar.clip),
-            positions=bar.puppet.store.positions(bar.clip, 12),
+            known=bar.layer_runtime.store.has(bar.clip),
+            positions=bar.layer_runtime.store.positions(bar.clip, 12),
         )
         robot.mouse_up(0)
 
@@ -242,10 +242,10 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     assert halfway["known"]
     assert np.abs(halfway["positions"] - before).max() > 40
     window.settle()
-    assert bar.puppet.store.has(bar.clip)
-    exact = bar.puppet.store.positions(bar.clip, 12)
+    assert bar.layer_runtime.store.has(bar.clip)
+    exact = bar.layer_runtime.store.positions(bar.clip, 12)
     np.testing.assert_allclose(
-        halfway["positions"], exact, rtol=0, atol=0.01 * bar.puppet.picture.size[0]
+        halfway["positions"], exact, rtol=0, atol=0.01 * bar.layer_runtime.picture.size[0]
     )
 
 
@@ -253,29 +253,29 @@ def test_a_new_handle_moves_nothing(window, bar):
     start = handle_places(bar)[1]
     window.run(lambda robot: drag(robot, window, start, start + 120j))
     window.settle()
-    before = bar.puppet.shown.positions
+    before = bar.layer_runtime.shown.positions
     posing.add_handle(window.session, handle_places(bar)[0] + 200)
     window.settle()
-    np.testing.assert_allclose(bar.puppet.shown.positions, before, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(bar.layer_runtime.shown.positions, before, rtol=0, atol=1e-9)
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
-    np.testing.assert_allclose(bar.puppet.shown.positions, before, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(bar.layer_runtime.shown.positions, before, rtol=0, atol=1e-9)
 
 
 def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
     session = window.session
     playback.seek(session, 20)
     window.settle()
-    target = bar.puppet.shown.pose.targets[1]
-    posing.wish(session, {1: Target(position=target.position + 150j)})
+    target = bar.layer_runtime.shown.pose.targets[1]
+    posing.set_targets(session, {1: Target(position=target.position + 150j)})
     window.settle()
     playback.seek(session, 10)
     window.settle()
-    between = bar.puppet.shown.positions
+    between = bar.layer_runtime.shown.positions
     posing.insert_key(session)
     window.settle()
     assert [key.frame for key in bar.document.layers[0].keys] == [0, 10, 20]
-    np.testing.assert_allclose(bar.puppet.shown.positions, between, rtol=0, atol=1.0)
+    np.testing.assert_allclose(bar.layer_runtime.shown.positions, between, rtol=0, atol=1.0)
 
 
 def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
@@ -341,8 +341,8 @@ def test_keys_of_the_pointer(window, bar):
 def test_a_box_selects_the_handles_in_it(window, bar):
     session = window.session
     left, right = handle_places(bar).values()
-    editing.select(session, frozenset())
-    side, above = 0.05 * bar.puppet.picture.size[0], 1j * bar.puppet.picture.size[1]
+    editing.select_handles(session, frozenset())
+    side, above = 0.05 * bar.layer_runtime.picture.size[0], 1j * bar.layer_runtime.picture.size[1]
 
     def span(start, end, key=None):
         window.run(lambda robot: drag(robot, window, start, end, key=key))
@@ -370,7 +370,7 @@ def turned(bar, identity=1):
 def test_alt_drag_turns_the_shape_as_far_as_the_pointer(window, bar, press, angle):
     """It turns from where the pointer leaves the handle, wherever on it that was pressed."""
     start = handle_places(bar)[1]
-    arm = 0.12 * bar.puppet.picture.size[0]
+    arm = 0.12 * bar.layer_runtime.picture.size[0]
     grip = window.grip(bar)
 
     def turn(robot):
@@ -386,7 +386,7 @@ def test_alt_drag_turns_the_shape_as_far_as_the_pointer(window, bar, press, angl
     window.run(turn)
     window.settle()
     assert turned(bar) == pytest.approx(angle, abs=2)
-    assert np.degrees(bar.puppet.shown.handle_rotations[1]) == pytest.approx(angle, abs=6)
+    assert np.degrees(bar.layer_runtime.shown.handle_rotations[1]) == pytest.approx(angle, abs=6)
     assert bar.history.undo_label == "Pose"
 
 
@@ -482,7 +482,7 @@ def test_a_pose_is_copied_and_pasted_by_keys(window, bent):
     window.settle()
     assert bent.layer.key_frames == {0, 24, 40}
     assert bent.layer.key(40).pose.phi is pose.phi
-    assert bent.puppet.shown.is_current
+    assert bent.layer_runtime.shown.is_current
 
 
 def test_wheel_zooms_at_the_pointer(window, bar):
@@ -514,7 +514,7 @@ def corners(points):
 
 
 def move_away(window):
-    viewing.look_from(window.session, View(centre=-5000j, scale=3.0, size=window.session.screen))
+    viewing.set_view(window.session, View(centre=-5000j, scale=3.0, size=window.session.screen))
     window.frames(2)
 
 
@@ -524,7 +524,7 @@ def test_home_fits_the_pose_wherever_it_is(window, bent):
         window.settle()
         move_away(window)
         window.run(lambda robot: robot.key_press(int(window.Key.home)))
-        check_fitted(window, bent, *corners(bent.puppet.shown.positions))
+        check_fitted(window, bent, *corners(bent.layer_runtime.shown.positions))
 
 
 @pytest.mark.usefixtures("everything")
@@ -533,7 +533,7 @@ def test_shift_home_fits_the_whole_motion(window, bent):
     for frame in range(0, 25, 3):
         playback.seek(window.session, frame)
         window.settle()
-        points.append(bent.puppet.shown.positions)
+        points.append(bent.layer_runtime.shown.positions)
     move_away(window)
     chord = int(window.Key.mod_shift) | int(window.Key.home)
     window.run(lambda robot: robot.key_press(chord))
@@ -542,7 +542,7 @@ def test_shift_home_fits_the_whole_motion(window, bent):
 
 
 def test_a_camera_that_is_moved_waits_for_no_motion(window, bent):
-    viewing.fit_motion(window.session)
+    viewing.zoom_to_motion(window.session)
     move_away(window)
     window.settle()
     assert bent.camera.centre == -5000j
@@ -552,7 +552,7 @@ def test_f_fits_the_selected_handles_or_the_shape(window, bent):
     def press(robot):
         robot.key_press(int(window.Key.f))
 
-    whole = corners(bent.puppet.shown.positions)
+    whole = corners(bent.layer_runtime.shown.positions)
     bent.selected = frozenset()
     move_away(window)
     window.run(press)
@@ -572,9 +572,9 @@ def test_f_fits_the_selected_handles_or_the_shape(window, bent):
 
 def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
     session = window.session
-    saving.quit_lissom(session)
+    saving.request_quit(session)
     window.frames(3)
-    assert not session.quitting
+    assert not session.is_quitting
 
     def decline(robot):
         robot.set_ref("//$FOCUSED")
@@ -584,7 +584,7 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
     assert session.dialog is None
     assert session.project is bar
     bar.path = tmp_path / "kept.lissom"
-    saving.save_then(session, do(saving.give_up))
+    saving.save_then(session, do(saving.discard_project))
     window.settle()
     assert bar.path.is_file()
     assert session.project is None
@@ -593,7 +593,7 @@ def test_unsaved_changes_are_asked_about(window, bar, tmp_path):
 def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
     before, wanted = (
         len(bent.document.layers[0].handles),
-        complex(bent.puppet.shown.positions.mean()),
+        complex(bent.layer_runtime.shown.positions.mean()),
     )
 
     def play(robot):
@@ -610,21 +610,23 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
         np.array([bent.document.layers[0].anchor])
     )
     assert abs(moved[0] - wanted) < 3
-    assert abs(marks.find_anchor(bent, bent.puppet.shown) - wanted) < 3
-    posing.anchor_at(window.session, 0)
+    assert abs(marks.find_anchor(bent, bent.layer_runtime.shown) - wanted) < 3
+    posing.toggle_anchor_at_handle(window.session, 0)
     window.settle()
-    assert marks.find_anchor(bent, bent.puppet.shown) is None  # the handle itself shows it
+    assert marks.find_anchor(bent, bent.layer_runtime.shown) is None  # the handle itself shows it
 
 
 @pytest.mark.usefixtures("everything")
 def test_an_anchor_that_was_chosen_for_the_person_is_shown(window, bent):
     assert bent.document.layers[0].anchor is None
-    place = marks.find_anchor(bent, bent.puppet.shown)
-    rest = bent.puppet.store.sampler.sites.anchor
+    place = marks.find_anchor(bent, bent.layer_runtime.shown)
+    rest = bent.layer_runtime.store.sampler.sites.anchor
     moved = bent.document.layers[0].map_of(bent.document.layers[0].keys[1].pose)(np.array([rest]))
     assert abs(place - moved[0]) < 3
     shown = window.picture()
-    editing.edit(window.session, set_anchor(0, complex(bent.document.layers[0].handle(0).position)))
+    editing.edit_document(
+        window.session, set_anchor(0, complex(bent.document.layers[0].handle(0).position))
+    )
     window.settle()
     assert window.picture() != shown
 
@@ -638,12 +640,12 @@ def test_three_hints_lead_to_the_first_motion(window):
     posing.add_handle(session, place)
     window.settle()
     steps.append(hints.find_first_step(project))
-    posing.wish(session, {0: Target(position=place + 60j)})
+    posing.set_targets(session, {0: Target(position=place + 60j)})
     window.settle()
     steps.append(hints.find_first_step(project))
     playback.seek(session, 24)
     window.settle()
-    posing.wish(session, {0: Target(position=place)})
+    posing.set_targets(session, {0: Target(position=place)})
     window.settle()
     steps.append(hints.find_first_step(project))
     assert steps == [0, 1, 2, None]

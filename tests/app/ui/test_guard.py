@@ -150,8 +150,8 @@ def test_failing_panel_is_asked_again_when_its_state_changes(window, parts, bar)
     name = "The panel Timeline"
     draw = parts[name].draw
     changes = (
-        partial(editing.edit, command=scene_commands.add_marker(3, "beat")),
-        partial(editing.select, handles=frozenset({bar.layer.handles[0].id})),
+        partial(editing.edit_document, command=scene_commands.add_marker(3, "beat")),
+        partial(editing.select_handles, handles=frozenset({bar.layer.handles[0].id})),
         partial(playback.scrub, frame=2),
     )
     parts[name].draw = broken = Broken()
@@ -206,7 +206,7 @@ def test_failing_viewport_still_shows_the_drawing(window, parts, bar):
 
 @pytest.mark.usefixtures("bar")
 def test_failing_menu_of_a_handle_leaves_nothing_open(window, parts, bar, monkeypatch):
-    place = window.point(bar.puppet.shown.handle_positions[0])
+    place = window.point(bar.layer_runtime.shown.handle_positions[0])
 
     def open_menu(robot):
         robot.mouse_move_to_pos(place)
@@ -245,6 +245,6 @@ def test_failing_upkeep_rests_until_something_changes(window, monkeypatch):
     window.clock.now += guard.PAUSE
     window.frames(1)
     assert broken.asked == 2
-    window.act(editing.edit, scene_commands.add_marker(3, "beat"))
+    window.act(editing.edit_document, scene_commands.add_marker(3, "beat"))
     window.frames(2)
     assert broken.asked == 3

@@ -12,12 +12,12 @@ from app.editor.actions import (
     editing,
     exporting,
     files,
-    guiding,
     keys,
-    material,
     playback,
     posing,
     saving,
+    stiffness_editing,
+    tutorials,
     viewing,
 )
 from app.storage.assets import sample_images
@@ -31,8 +31,8 @@ class Pupil(Newcomer):
     @property
     def step(self):
         """The step that the card tells; empty where there is none."""
-        guide = self.window.session.guide
-        return "" if guide is None else guide.step
+        guide = self.window.session.tutorial
+        return "" if guide is None else guide.stage
 
     def wait(self):
         """Wait for a few pictures, and not for all that is measured of the drawing."""
@@ -64,7 +64,7 @@ class Pupil(Newcomer):
         session.preferences = type(session.preferences)(folder=folder)
         self.click("//Export/**/###start")
         self.click("//###dialog/Export")
-        self.window.until(lambda: not exporting.is_under_way(session))
+        self.window.until(lambda: not exporting.is_export_under_way(session))
         self.window.frames(2)
 
 
@@ -79,7 +79,7 @@ def led(window, pupil):
     window.frames(10)
     pupil.click("//Welcome/**/…or with your own drawing")
     dialog = window.session.dialog
-    window.act(viewing.choose, dialog, sample_images() / "bar.png")
+    window.act(viewing.choose_file, dialog, sample_images() / "bar.png")
     window.settle()
     assert pupil.step == "handle"
     return pupil
@@ -113,7 +113,7 @@ def words(window):
 
 def test_the_giraffe_bows(window):
     window.frames(10)
-    before = (sample_images() / guiding.SAMPLE).read_bytes()
+    before = (sample_images() / tutorials.SAMPLE).read_bytes()
     pupil = Pupil(window)
     pupil.click("//Welcome/**/make it bow")
     pupil.reach("handle")
@@ -121,25 +121,25 @@ def test_the_giraffe_bows(window):
     assert project.path is None
     assert [len(project.layer.keys), len(project.layer.handles)] == [1, 7]
     export = project.document.export
-    assert (export.format, export.size) == (guiding.FORMAT, guiding.SIZE)
+    assert (export.format, export.size) == (tutorials.FORMAT, tutorials.SIZE)
     window.frames(3)
-    aim, goal = session.guide.aim, session.guide.goal
+    aim, goal = session.tutorial.update_targets, session.tutorial.goal
     pupil.tap(aim)
     assert pupil.step == "time"
     pupil.drag_playhead(0.5)
     assert pupil.step == "pose"
     pupil.drag(aim, goal)
     pupil.reach("play")
-    window.until(lambda: abs(complex(project.puppet.shown.handle_positions[-1]) - goal) < 20)
+    window.until(lambda: abs(complex(project.layer_runtime.shown.handle_positions[-1]) - goal) < 20)
     pupil.play()
     assert pupil.step == "export"
-    assert (sample_images() / guiding.SAMPLE).read_bytes() == before
+    assert (sample_images() / tutorials.SAMPLE).read_bytes() == before
 
 
 def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
     project = window.session.project
     # Neither is needed, but with them in-betweens and the export take less.
-    window.act(keys.set_variant, "nu")
+    window.act(keys.set_inbetween_method, "nu")
     window.act(keys.set_last_frame, 12)
     for place in places_of_bar(window):
         assert led.step == "handle"
@@ -154,7 +154,9 @@ def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
     led.reach("export")
     led.show_tab("Export")
     assert "Choose GIF" in words(window)
-    window.act(exporting.set_export, ExportSettings(format=guiding.FORMAT, size=(120, 40)))
+    window.act(
+        exporting.set_export_settings, ExportSettings(format=tutorials.FORMAT, size=(120, 40))
+    )
     window.frames(2)
     assert "Click Export" in words(window)
     led.export(tmp_path)
@@ -170,7 +172,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     first, second = places_of_bar(window)
     window.act(playback.toggle_play)
     assert led.step == "handle"
-    window.act(material.take_up, "stiff")
+    window.act(stiffness_editing.toggle_stiffness_tool, "stiff")
     window.frames(2)
     assert "goes back" in words(window)
     window.run(lambda robot: robot.key_press(window.Key.escape))
@@ -182,7 +184,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     window.act(posing.add_handle, first)
     window.act(posing.add_handle, second)
     led.reach("pose")  # the playhead was moved before
-    window.act(keys.insert)
+    window.act(keys.insert_key_in_row)
     window.until(lambda: len(session.project.layer.keys) == 2)
     window.frames(2)
     assert led.step == "pose", "two keys with one pose do not move"
@@ -190,10 +192,10 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     assert led.step == "time"
     window.act(playback.scrub, 30)
     window.act(viewing.toggle_auto_key)
-    posing.wish(session, {1: Target(position=second + 100j)})
+    posing.set_targets(session, {1: Target(position=second + 100j)})
     window.settle()
     assert led.step == "pose", "no key has the pose"
-    window.act(keys.insert)
+    window.act(keys.insert_key_in_row)
     led.reach("play")
     window.act(editing.undo)
     led.reach("pose")
@@ -202,7 +204,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     window.act(playback.toggle_play)
     window.frames(3)
     assert led.step == "export"
-    window.act(saving.give_up)
+    window.act(saving.discard_project)
     assert led.step == "", "it was about that drawing"
 
 
@@ -216,21 +218,21 @@ def test_a_guide_can_be_left_at_any_time(window):
     for place in places_of_bar(window):
         window.act(posing.add_handle, place)
     window.settle()
-    guide, selected = session.guide, session.project.selected
+    guide, selected = session.tutorial, session.project.selected
     assert selected
-    for step in guiding.STEPS:
-        session.guide = type(guide)(project=guide.project, handles=guide.handles, step=step)
+    for step in tutorials.STEPS:
+        session.tutorial = type(guide)(project=guide.project, handles=guide.handles, step=step)
         # The hand is at something, so that the step stays.
         window.run(press)
         window.frames(2)
-        assert session.guide is None, step
+        assert session.tutorial is None, step
         assert session.project.selected == selected, "only the guide is left"
     window.run(press)
     assert not session.project.selected
-    session.guide = guide
+    session.tutorial = guide
     window.frames(3)
     window.run(lambda robot: robot.item_click(f"//{NAME}###guide/###leave"))
-    assert session.guide is None
+    assert session.tutorial is None
 
 
 def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):
@@ -245,7 +247,7 @@ def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):
 
 
 def test_samples_have_stories_and_move_under_the_pointer(window):
-    for sample in files.samples():
+    for sample in files.sample_files():
         assert sample.story, f"{sample.name} has no story"
         assert sample.moving.exists() == (sample.what == "animated"), sample.name
     window.frames(20)

@@ -31,7 +31,7 @@ def places(project):
     return dict(
         zip(
             (handle.id for handle in project.layer.handles),
-            map(complex, project.puppet.shown.handle_positions),
+            map(complex, project.layer_runtime.shown.handle_positions),
             strict=True,
         )
     )
@@ -85,14 +85,14 @@ def test_suggestions_are_taken_back_after_other_steps(window, bar, play):
     play(lambda robot: robot.item_click("**/###Suggest handles"))
     suggested = {handle.id for handle in bar.layer.handles} - {0, 1}
     assert len(suggested) == 1, "there are handles at both ends already"
-    editing.select(window.session, frozenset({0}))
-    editing.lock(window.session)
+    editing.select_handles(window.session, frozenset({0}))
+    editing.toggle_handles_locked(window.session)
     window.run(lambda robot: robot.item_click("**/Take back"))
     assert [(handle.id, handle.locked) for handle in bar.layer.handles] == [(0, True), (1, False)]
 
 
 def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
-    editing.select(window.session, frozenset({0}))
+    editing.select_handles(window.session, frozenset({0}))
     play(lambda robot: robot.item_click("**/###lock"))
     assert bar.layer.handle(0).locked
     playback.seek(window.session, 24)
@@ -101,14 +101,14 @@ def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     start = places(bar)[0]
     drag(window, start, start + 60j)
     drag(window, start, start + 60j, key=window.Key.mod_alt)
-    posing.nudge(window.session, 5j)
+    posing.nudge_handles(window.session, 5j)
     window.settle()
     assert bar.document is before, "neither dragged nor turned, nudged or deleted"
     assert bar.selected == {0}, "but selected"
     other = places(bar)[1]
     # Far beyond the limits: a free handle would be drawn along.
     drag(window, other, other + 0.4 * bar.document.canvas[0])
-    posing.wish(window.session, {1: Target(position=4 * other)})
+    posing.set_targets(window.session, {1: Target(position=4 * other)})
     window.settle()
     layer = bar.layer
     lags = layer.lags(layer.key(24).pose)
@@ -123,7 +123,7 @@ def test_a_group_is_taken_together(window, bar, play):
     editing.select_all(window.session)
     play(lambda robot: robot.item_click("**/###group"))
     assert {handle.group for handle in bar.layer.handles} == {"group 1"}
-    editing.select(window.session, frozenset())
+    editing.select_handles(window.session, frozenset())
     playback.seek(window.session, 24)
     window.settle()
     before = places(bar)
@@ -145,14 +145,14 @@ def test_how_firmly_handles_hold_is_said_in_words(window, bar, play):
     editing.select_all(window.session)
     play(lambda robot: robot.item_click("**/hold/###Firm"))
     assert {handle.weight for handle in bar.layer.handles} == {10.0}
-    editing.select(window.session, frozenset({1}))
+    editing.select_handles(window.session, frozenset({1}))
     play(lambda robot: robot.item_click("**/hold/###Soft"))
     assert [handle.weight for handle in bar.layer.handles] == [10.0, 0.1]
 
 
 def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
     width, height = loose.document.canvas
-    posing.wish(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
+    posing.set_targets(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
     assert max(layer.lags(layer.key(24).pose).values()) > 20
@@ -167,7 +167,7 @@ def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
 
 def test_partners_are_made_and_found_by_their_names(window, bar, play):
     posing.remove_handles(window.session, frozenset({1}))
-    editing.select(window.session, frozenset({0}))
+    editing.select_handles(window.session, frozenset({0}))
     window.frames(2)
     play(lambda robot: robot.item_click("**/###mirror"))
     one, other = bar.layer.handles
@@ -177,7 +177,7 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
     editing.undo(window.session)
     assert [handle.name for handle in bar.layer.handles] == ["handle 1"], "one step"
     editing.redo(window.session)
-    editing.select(window.session, frozenset({one.id}))
+    editing.select_handles(window.session, frozenset({one.id}))
     play(lambda robot: robot.item_click("**/###mirrored"))
     assert bar.selected == {other.id}
     np.testing.assert_equal(len(bar.layer.handles), 2)
@@ -185,7 +185,7 @@ def test_partners_are_made_and_found_by_their_names(window, bar, play):
 
 def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loose):
     before = loose.document
-    editing.select(window.session, frozenset({0, 1}))
+    editing.select_handles(window.session, frozenset({0, 1}))
     seen = []
 
     def press(robot):
@@ -199,7 +199,7 @@ def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loo
     assert seen == [{0, 1}], "until it is let go both might be dragged"
     assert loose.selected == {1}
     assert loose.document is before
-    editing.select(window.session, frozenset({0, 1}))
+    editing.select_handles(window.session, frozenset({0, 1}))
     start = places(loose)
     drag(window, start[1], start[1] + 20 + 10j)
     assert loose.selected == {0, 1}
@@ -209,8 +209,8 @@ def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loo
 
 
 def test_a_click_on_one_of_several_selected_selects_its_group(window, loose):
-    editing.select(window.session, frozenset({0, 1}))
-    editing.group(window.session)
+    editing.select_handles(window.session, frozenset({0, 1}))
+    editing.group_handles(window.session)
     click(window, places(loose)[1])
     assert loose.selected == {0, 1}
 
@@ -221,7 +221,7 @@ def short(window, loose):
     place, pose = places(loose)[1], loose.layer.key(24).pose
     targets = {**pose.targets, 1: Target(position=place - 120 + 80j)}
     wished = key_commands.replace_key_pose(0, 24, replace(pose, targets=targets))
-    editing.edit(window.session, wished)
+    editing.edit_document(window.session, wished)
     window.settle()
     assert abs(targets[1].position - place) > 4 * window.grip(loose)
     return loose
@@ -246,7 +246,7 @@ def test_a_handle_that_has_not_arrived_is_taken_where_it_is_wanted_too(window, s
 
 def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short):
     before = short.document
-    editing.select(window.session, frozenset({0}))
+    editing.select_handles(window.session, frozenset({0}))
     target = short.layer.key(24).pose.targets[1].position
     click(window, target)
     assert short.selected == {1}
@@ -263,8 +263,8 @@ def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short)
 
 def test_a_handle_is_taken_only_where_something_is_seen_of_it(window, short):
     target = short.layer.key(24).pose.targets[1].position
-    editing.select(window.session, frozenset({1}))
-    posing.pin_here(window.session)
+    editing.select_handles(window.session, frozenset({1}))
+    posing.pin_selected_handles(window.session)
     window.settle()
     click(window, target)
     assert not short.selected

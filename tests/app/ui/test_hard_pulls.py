@@ -6,7 +6,7 @@ from bars import open_bar
 
 from app.document import NATURAL, RUBBERY
 from app.editor.actions import editing
-from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
+from app.editor.actions.posing.reach_limit import STOPPED_AT_LIMIT
 
 HAND, OUT = 0, 500 + 40j  # pixels of the picture
 
@@ -15,14 +15,14 @@ HAND, OUT = 0, 500 + 40j  # pixels of the picture
 def bar(window):
     """The bar, held at its left end and in its middle; its right end is the hand."""
     project = window.again(open_bar, 0.9, 0.5, 0.1)
-    editing.select(window.session, frozenset())
+    editing.select_handles(window.session, frozenset())
     window.settle()
     assert project.layer.bounds == NATURAL.bounds
     return project
 
 
 def places(bar):
-    return np.array(bar.puppet.shown.handle_positions)
+    return np.array(bar.layer_runtime.shown.handle_positions)
 
 
 def told(window):

@@ -25,13 +25,13 @@ from app.document import (
 )
 from app.editor import layering
 from app.editor.actions import editing, files, playback, posing, viewing
-from app.editor.layering.hanging import HANGS_IN_CIRCLE
+from app.editor.layering.parenting import PARENT_IS_DESCENDANT
 from app.motion import ParentTransforms
 from app.motion.parenting import layer_animation
 from app.storage import Autosave, SourceInfo, make_still_layer
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import find_anchor, mark_all
-from engine.geometry import HERE
+from engine.geometry import IDENTITY_MOTION
 
 WIDTH, HEIGHT = 240, 200
 LAYERS = {
@@ -62,7 +62,7 @@ def scene(window, drawing):
 
 def open_with_arm(window, drawing):
     project = window.open(drawing)
-    window.act(layering.choose, identity(project, "arm"))
+    window.act(layering.set_active_layer, identity(project, "arm"))
     window.settle()
 
 
@@ -71,7 +71,7 @@ def identity(project, name):
 
 
 def on_scene(project, name):
-    shown = project.puppets[identity(project, name)].shown
+    shown = project.layer_runtimes[identity(project, name)].shown
     return shown.placement.on(shown.positions)
 
 
@@ -83,7 +83,7 @@ def drag(window, scene):
         told = []
 
         def run(robot):
-            shown = scene.puppet.shown
+            shown = scene.layer_runtime.shown
             start = find_anchor(scene, shown)
             start = shown.handle_positions[0] if start is None else start
             robot.mouse_move_to_pos(window.point(complex(start)))
@@ -92,7 +92,9 @@ def drag(window, scene):
                 robot.key_down(int(key))
             robot.mouse_down(0)
             for place in places:
-                robot.mouse_move_to_pos(window.point(scene.puppet.shown.placement.back(place)))
+                robot.mouse_move_to_pos(
+                    window.point(scene.layer_runtime.shown.placement.back(place))
+                )
                 robot.yield_(3)
                 told.append(window.session.hint)
             if gives_up:
@@ -155,7 +157,7 @@ def test_the_layer_under_the_pointer_is_marked(window, scene):
         return int((np.abs(part - colour).max(axis=2) < 12).sum())
 
     def run(robot):
-        start = complex(find_anchor(scene, scene.puppet.shown))
+        start = complex(find_anchor(scene, scene.layer_runtime.shown))
         robot.mouse_move_to_pos(window.point(start))
         robot.mouse_down(0)
         robot.mouse_move_to_pos(window.point(HIP))
@@ -182,25 +184,25 @@ def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag
 def test_a_circle_is_refused_in_words(window, scene, drag):
     hand, arm, body = (identity(scene, name) for name in ("hand", "arm", "body"))
     drag(SHOULDER)
-    window.act(layering.choose, hand)
+    window.act(layering.set_active_layer, hand)
     window.settle()
     drag(170 + 118j)
     assert scene.document.layer(hand).joints[0].to == arm
     before = scene.document
-    window.act(layering.choose, body)
+    window.act(layering.set_active_layer, body)
     window.settle()
     told = drag(212 + 120j)
     assert "hangs on body itself" in told[-1]
     assert scene.document is before
     assert window.session.toasts[-1].tone == "error"
     assert re.search(
-        says(HANGS_IN_CIRCLE, name="hand", parent="body", other="body"),
+        says(PARENT_IS_DESCENDANT, name="hand", parent="body", other="body"),
         window.session.toasts[-1].text,
     )
 
 
 def test_a_click_on_the_anchor_adds_a_handle_there_as_ever(window, scene):
-    place = complex(find_anchor(scene, scene.puppet.shown))
+    place = complex(find_anchor(scene, scene.layer_runtime.shown))
 
     def click(robot):
         robot.mouse_move_to_pos(window.point(place))
@@ -233,13 +235,13 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     window.act(posing.add_handle, PALM)
     window.settle()
     hand = scene.layer.handles[0].id
-    window.act(editing.edit, layer_commands.set_depth(arm, hand, -0.5, 70.0))
+    window.act(editing.edit_document, layer_commands.set_depth(arm, hand, -0.5, 70.0))
     layer = scene.document.layer(body)
     pose = layer.keys[0].pose
     turned = replace(pose, phi=90 + (layer.domain.cage - 90) * np.exp(-0.4j))
-    window.act(editing.edit, key_commands.insert_key(body, 12, turned))
-    window.act(editing.edit, key_commands.insert_key(arm, 12, scene.layer.keys[0].pose))
-    window.act(editing.edit, layer_commands.key_depth(arm, 12, hand, 1.0))
+    window.act(editing.edit_document, key_commands.insert_key(body, 12, turned))
+    window.act(editing.edit_document, key_commands.insert_key(arm, 12, scene.layer.keys[0].pose))
+    window.act(editing.edit_document, layer_commands.key_depth(arm, 12, hand, 1.0))
     window.act(playback.seek, 6)
     window.settle()
     was = {name: on_scene(scene, name) for name in LAYERS}
@@ -247,7 +249,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     Autosave(tmp_path).write(scene.document, SourceInfo("man", None))
     (kept,) = tmp_path.glob("unsaved-*.lissom")
     window.session.project = None
-    window.act(files.recover, kept)
+    window.act(files.recover_file, kept)
     window.settle()
     again = window.session.project
     assert not differences(again.document, scene.document)
@@ -270,26 +272,26 @@ def swung(window, scene):
     joint = layer_commands.attach_layer(
         arm, SHOULDER, Attachment(parent=body, parent_point=SHOULDER)
     )
-    window.act(editing.edit, joint)
+    window.act(editing.edit_document, joint)
     window.act(playback.seek, 24)
     window.settle()
     window.act(posing.add_handle, PALM)
     for overlay in ("paths", "onion"):
-        window.act(viewing.toggle, overlay)
+        window.act(viewing.toggle_overlay, overlay)
     window.settle()
     return scene
 
 
 def ways(window, project):
     """Return the ways of handles that are drawn."""
-    lines, _ = mark_all(window.session, project, project.puppet.shown, PALETTES["dark"])
+    lines, _ = mark_all(window.session, project, project.layer_runtime.shown, PALETTES["dark"])
     return [line.points for line in lines if len(line.points) > 2]
 
 
 def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
     (way,) = ways(window, swung)
     assert abs(way[-1] - way[0]) > 10
-    window.act(layering.let_hang, identity(swung, "arm"))
+    window.act(layering.detach_layer, identity(swung, "arm"))
     window.settle()
     assert ways(window, swung) == []
     window.act(editing.undo)
@@ -301,14 +303,14 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
     arm = identity(swung, "arm")
     moves = (TransformKey(frame=0), TransformKey(frame=12, shift=20 + 5j, turn=0.4))
     moved = replace(swung.document.layer(arm), movement=moves)
-    window.act(editing.edit, Command("Move", lambda document: document.with_layer(moved)))
+    window.act(editing.edit_document, Command("Move", lambda document: document.with_layer(moved)))
     window.act(playback.seek, 6)
     window.settle()
-    shown = swung.puppets[arm].shown
+    shown = swung.layer_runtimes[arm].shown
     before = shown.placement.on(shown.positions)
-    window.act(layering.let_hang, arm)
+    window.act(layering.detach_layer, arm)
     window.settle()
-    after = swung.puppets[arm].shown
+    after = swung.layer_runtimes[arm].shown
     assert not swung.document.layer(arm).has_parent
     assert after.placement == transform_at(swung.document, swung.document.layer(arm), 6)
     np.testing.assert_allclose(after.placement.on(after.positions), before, rtol=0, atol=0.01)
@@ -320,9 +322,9 @@ def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, 
     joints = swung.joints.value
     layer = swung.document.layer(identity(swung, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 50)
-    editing.edit(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
+    editing.edit_document(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
     assert swung.joints.value is joints
-    assert swung.placements([0], HERE) == [HERE]
+    assert swung.placements([0], IDENTITY_MOTION) == [IDENTITY_MOTION]
     assert swung.placed_at(swung.active, [0]) is None
     assert ways(window, swung) == [], "a way at a place where its layer is no more"
     window.settle()
@@ -333,12 +335,12 @@ def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, 
 def test_a_layer_that_comes_to_a_scene_with_joints_has_its_own_way(window, swung, tmp_path):
     path = tmp_path / "ball.png"
     Image.new("RGBA", (40, 40), (90, 200, 90, 255)).save(path)
-    window.act(layering.add, [path])
+    window.act(layering.add_layers, [path])
     window.settle()
     assert swung.layer.name == "ball"
-    shown = swung.puppet.shown
+    shown = swung.layer_runtime.shown
     window.act(posing.add_handle, complex(shown.positions.mean()))
-    window.act(posing.nudge, 12)
+    window.act(posing.nudge_handles, 12)
     window.settle()
     (way,) = ways(window, swung)
     assert abs(way[-1] - way[0] - 12) < 1e-6
@@ -349,7 +351,7 @@ def ghosts_of(window):
     pictures = []
     for onion in (False, True):
         if window.session.overlays.onion != onion:
-            window.act(viewing.toggle, "onion")
+            window.act(viewing.toggle_overlay, "onion")
         window.settle()
         pictures.append(np.asarray(window.picture()).astype(int)[..., :3])
     return pictures
@@ -373,12 +375,12 @@ def nodding(window, swung):
     )
     wall = make_still_layer(wall)
     swung.history.do(layer_commands.add_layer(wall), gesture=None)
-    editing.follow_layers(swung)
-    window.act(layering.move, wall.id, 0)
-    window.act(viewing.set_ghosts, 1, 1, 12)
+    editing.update_layer_runtimes(swung)
+    window.act(layering.move_layer, wall.id, 0)
+    window.act(viewing.set_onion_skin, 1, 1, 12)
     window.act(playback.seek, 12)
-    window.act(viewing.toggle, "handles")
-    window.act(viewing.toggle, "paths")
+    window.act(viewing.toggle_overlay, "handles")
+    window.act(viewing.toggle_overlay, "paths")
     window.settle()
     return swung
 
@@ -391,7 +393,7 @@ def placed(project, name, frame, place):
         project.document, layer.id, np.array([place]), project.samplers, None
     )
     own = animation.frame(frame).positions
-    return complex(joints.placement(layer.id, frame).on(own)[0])
+    return complex(joints.placement(layer.id, frame).apply(own)[0])
 
 
 def test_ghosts_are_of_all_layers_where_their_joints_have_them_then(window, nodding):
@@ -434,9 +436,9 @@ def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_w
     ghosts_of(window)
     layer = nodding.document.layer(identity(nodding, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 40j)
-    editing.edit(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
+    editing.edit_document(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
     assert nodding.placed_at(identity(nodding, "arm"), [0]) is None
-    assert nodding.placed_at(layer.id, [0]) == [HERE]
+    assert nodding.placed_at(layer.id, [0]) == [IDENTITY_MOTION]
     window.settle()
     (there,) = nodding.placed_at(identity(nodding, "arm"), [0])
     assert there.on(np.array([SHOULDER]))[0] == pytest.approx(SHOULDER + 40j, abs=1e-6)
@@ -450,14 +452,14 @@ def test_while_a_layer_is_posed_itself_its_way_stays_where_it_hangs(window, swun
     layer = swung.document.layer(swung.active)
     other = replace(layer, handles=(replace(handle, weight=2.0),))
     swung.history.do(Command("Weigh", lambda document: document.with_layer(other)), gesture=None)
-    assert swung.hung is None
+    assert swung.current_parent_transforms is None
     np.testing.assert_allclose(ways(window, swung), [way], rtol=0, atol=1e-9)
 
 
 def test_ways_are_of_what_plays_or_of_some_frames_around_the_playhead(window, swung):
     (whole,) = ways(window, swung)
     assert len(whole) == 49
-    window.act(editing.edit, scene_commands.set_preview(FrameRange(6, 20)))
+    window.act(editing.edit_document, scene_commands.set_preview(FrameRange(6, 20)))
     window.settle()
     (played,) = ways(window, swung)
     np.testing.assert_allclose(played, whole[6:21], rtol=0, atol=1e-9)
@@ -475,10 +477,10 @@ def test_ways_are_of_what_plays_or_of_some_frames_around_the_playhead(window, sw
 
 
 def test_the_cage_is_drawn_where_its_layer_hangs(window, swung):
-    window.act(viewing.toggle, "paths")
-    window.act(viewing.toggle, "cage")
+    window.act(viewing.toggle_overlay, "paths")
+    window.act(viewing.toggle_overlay, "cage")
     window.settle()
-    shown = swung.puppet.shown
+    shown = swung.layer_runtime.shown
     assert abs(shown.placement.factor - 1) > 0.1
     lines, _ = mark_all(window.session, swung, shown, PALETTES["dark"])
     (cage,) = [line.points for line in lines if line.dash]

@@ -67,7 +67,7 @@ def test_after_a_question_arrows_nudge_again(window, asked):
     del asked
     press(window, imgui.Key.escape)
     project = window.again(open_bar, 0.5)
-    place = complex(*project.puppet.picture.size) / 2
+    place = complex(*project.layer_runtime.picture.size) / 2
     press(window, imgui.Key.up_arrow)
     window.settle()
     target = project.layer.keys[0].pose.targets[0].position
@@ -88,7 +88,7 @@ def test_escape_closes_a_menu_and_the_next_click_counts(window):
         robot.key_press(int(imgui.Key.escape))
         robot.yield_()
         assert count_menus() == 0
-        robot.mouse_move_to_pos(window.point(complex(*project.puppet.picture.size) / 2))
+        robot.mouse_move_to_pos(window.point(complex(*project.layer_runtime.picture.size) / 2))
         robot.mouse_click(0)
 
     window.run(play)
@@ -180,7 +180,7 @@ def test_menus_are_made_from_the_table(window):
 
 
 def test_greyed_entries_tell_what_is_on_without_a_project(window):
-    window.act(viewing.toggle, "wireframe")
+    window.act(viewing.toggle_overlay, "wireframe")
     told = {}
 
     def look(robot):

@@ -17,7 +17,7 @@ def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
     wish = Target(position=bar.document.layers[0].handle(1).position + by)
     assert window.session.jobs.settle()
-    window.act(posing.pull, {1: wish})
+    window.act(posing.drag_handles, {1: wish})
     assert window.session.jobs.settle()
     window.frames()
     return wish
@@ -26,7 +26,7 @@ def pull(window, bar, by):
 def test_the_picture_follows_a_pull_in_the_next_frame(window, bar):
     for step in range(1, 6):
         wish = pull(window, bar, 40j * step)
-        assert bar.puppet.shown.pose.targets[1] == wish
+        assert bar.layer_runtime.shown.pose.targets[1] == wish
 
 
 def test_a_slow_solver_shows_every_step(window, bar):
@@ -61,15 +61,15 @@ def test_nothing_moves_once_the_pose_rests(window, bar):
     assert not bar.pull.is_at_rest
     window.settle()
     assert bar.pull.is_at_rest
-    rested, shown = bar.document, bar.puppet.shown.positions
+    rested, shown = bar.document, bar.layer_runtime.shown.positions
     window.frames(20)
     assert posing.POSING not in window.session.jobs.kinds
-    window.act(posing.let_go)
+    window.act(posing.release_drag)
     window.settle()
     window.frames(20)
     assert bar.pull is None
     assert bar.document is rested
-    np.testing.assert_array_equal(bar.puppet.shown.positions, shown)
+    np.testing.assert_array_equal(bar.layer_runtime.shown.positions, shown)
 
 
 @pytest.mark.usefixtures("everything")
@@ -81,13 +81,13 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
     while bent.pulls:
         assert window.session.jobs.settle()
         window.frames()
-        shown = bent.puppet.shown
+        shown = bent.layer_runtime.shown
         assert (shown.frame, shown.clip) == (12, bent.clip)
         # Of the motion from key to key; how handles stay in it comes a moment later.
         is_exact = shown.placeholder is None
         if is_exact and not any(exact):
             # It comes alone, before the others of its interval.
-            assert not bent.puppet.store.has(bent.clip)
+            assert not bent.layer_runtime.store.has(bent.clip)
         exact.append(is_exact)
         check()
         assert len(exact) < 200
@@ -106,10 +106,10 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
 @pytest.fixture
 def check(bent):
     """What fails unless the right key is shown, or exactly an in-between of the right two."""
-    sampler = PoseSampler(bent.puppet.store.mesh.domain, anchor=None)
+    sampler = PoseSampler(bent.layer_runtime.store.mesh.domain, anchor=None)
 
     def look():
-        shown, clip = bent.puppet.shown, bent.clip
+        shown, clip = bent.layer_runtime.shown, bent.clip
         assert shown.clip == clip
         moment = segment_time_at(clip, shown.frame)
         if shown.pose is None and not isinstance(shown.placeholder, Pose):
@@ -135,38 +135,38 @@ def check(bent):
 def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window, bent, check):
     window.session.clock = count().__next__  # the solver takes one step at a time
     pull(window, bent, 80j)
-    window.act(posing.let_go)
+    window.act(posing.release_drag)
     while bent.pull.ready is None:
         assert window.session.jobs.settle()
         window.frames()
-    newest, prepared = bent.puppet.shown.pose, bent.pull.ready
+    newest, prepared = bent.layer_runtime.shown.pose, bent.pull.ready
     assert not bent.pull.is_at_rest
     assert newest is not prepared
     window.act(playback.scrub, 12)
-    assert bent.puppet.shown.placeholder is None
+    assert bent.layer_runtime.shown.placeholder is None
     assert bent.layer.key(24).pose is prepared
     check()
     # Back at the key nothing is lost of what the solver found.
     window.act(playback.scrub, 24)
-    assert bent.puppet.shown.pose is not prepared
+    assert bent.layer_runtime.shown.pose is not prepared
     check()
     # Nor where the program may end at any moment.
     window.act(playback.scrub, 12)
     (moving,) = bent.pulls
-    posing.bring_all(window.session, bent)
+    posing.commit_all_poses(window.session, bent)
     assert bent.layer.key(24).pose is moving.newest
 
 
 @pytest.mark.parametrize(
     ("variant", "ends"),
     [
-        ("nu", (posing.let_go,)),
-        pytest.param("metric", (posing.let_go, None), marks=pytest.mark.long),
+        ("nu", (posing.release_drag,)),
+        pytest.param("metric", (posing.release_drag, None), marks=pytest.mark.long),
     ],
     ids=["let go", "held, too"],
 )
 def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant, ends):
-    keys.set_variant(window.session, variant)
+    keys.set_inbetween_method(window.session, variant)
     window.settle()
     window.session.clock = count(step=1 / 60).__next__
 
@@ -178,7 +178,7 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
             window.frames()
             check()
 
-    window.act(editing.edit, key_commands.copy_keys(bent.active, {0}, 48))
+    window.act(editing.edit_document, key_commands.copy_keys(bent.active, {0}, 48))
     window.settle()
     for end in ends:
         playback.scrub(window.session, 24)
@@ -189,8 +189,8 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
         for frame in (23, 40, 2):
             on(playback.scrub, frame)
         on(playback.toggle_play)
-        on(playback.halt)
+        on(playback.stop_playback)
         on(editing.undo)
         on(editing.redo)
-    on(editing.edit, key_commands.delete_keys(bent.active, {48}))
+    on(editing.edit_document, key_commands.delete_keys(bent.active, {48}))
     on(playback.scrub, 12)

@@ -29,10 +29,10 @@ from app.editor.actions import (
     playback,
     posing,
     saving,
-    timeline_pointing,
+    timeline_drag,
 )
 from app.editor.poses import pasting
-from app.editor.timeline_view import Strip
+from app.editor.timeline_view import TimeRangeView
 from app.errors import EMPTY_IMPORT_LOG
 from app.motion import ParentTransforms
 from app.storage import load_project, save_project
@@ -80,7 +80,7 @@ def test_a_click_chooses_the_layer_that_is_seen(window, scene):
 
     def click(place, key=None):
         def run(robot):
-            robot.mouse_move_to_pos(window.point(scene.puppet.shown.placement.back(place)))
+            robot.mouse_move_to_pos(window.point(scene.layer_runtime.shown.placement.back(place)))
             if key is not None:
                 robot.key_down(int(key))
             robot.mouse_click(0)
@@ -230,7 +230,7 @@ def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scen
     window.show_tab("Export")
     listed(by_key)
     assert scene.document.layer(body).name == "torso"
-    window.act(layering.choose, arm)
+    window.act(layering.set_active_layer, arm)
     window.show_tab("Layers")
 
     def by_menu(rows):
@@ -265,8 +265,8 @@ def test_the_menu_of_a_layer(window, scene, listed):
     window.act(close_dialog)
     # What hung on a layer that is deleted hangs on it again when that is undone.
     joint = Attachment(parent=body, parent_point=95 + 118j)
-    window.act(editing.edit, layer_commands.attach_layer(arm, 95 + 118j, joint))
-    window.act(layering.choose, body)
+    window.act(editing.edit_document, layer_commands.attach_layer(arm, 95 + 118j, joint))
+    window.act(layering.set_active_layer, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
     window.settle()
@@ -284,13 +284,13 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     window.act(playback.seek, 6)
     window.settle()
     window.session.toasts = []
-    window.act(layering.duplicate, arm)
+    window.act(layering.duplicate_layer, arm)
     assert not window.session.toasts
-    assert keyed.puppet.shown is not None
+    assert keyed.layer_runtime.shown is not None
     assert keyed.layer.name == "arm copy"
-    window.act(layering.remove, keyed.active)
+    window.act(layering.delete_layers, keyed.active)
     window.act(editing.undo)
-    assert all(puppet.shown is not None for puppet in keyed.puppets.values())
+    assert all(puppet.shown is not None for puppet in keyed.layer_runtimes.values())
 
 
 def test_the_list_shows_small_pictures(window, scene, listed):
@@ -307,14 +307,14 @@ def test_the_list_shows_small_pictures(window, scene, listed):
 
     shown = red()
     assert shown > 100
-    window.act(layering.show, arm)
+    window.act(layering.toggle_layers_hidden, arm)
     assert red() < shown / 4
-    small = scene.puppets[arm].small.value
+    small = scene.layer_runtimes[arm].small.value
     assert max(small.shape[:2]) == 96
     # Made once, whatever else is done with the layer.
-    window.act(layering.fade, arm, 0.5)
+    window.act(layering.set_layer_opacity, arm, 0.5)
     window.settle()
-    assert scene.puppets[arm].small.value is small
+    assert scene.layer_runtimes[arm].small.value is small
 
 
 def enter(robot):
@@ -327,7 +327,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     before = scene.document
     hat = saved(tmp_path / "hat.png", blob(90, 60, (250, 220, 0)))
     cap = saved(tmp_path / "cap.png", blob(80, 50))
-    window.act(layering.drop, [hat])
+    window.act(layering.drop_files, [hat])
     question = window.session.dialog
     assert [text for text, _ in question.answers] == ["New layer", "Replace arm", "New scene"]
     # Enter takes the first one.
@@ -341,7 +341,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     def over(rows):
         rows.robot.mouse_move(f"**/###row {body}")
         window.session.dialog = None
-        window.program.ask(do(layering.drop, [cap]))
+        window.program.ask(do(layering.drop_files, [cap]))
         rows.robot.yield_(3)
 
     listed(over)
@@ -355,7 +355,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
         window.act(editing.undo)
     assert scene.document is before
     # Several at once, and a drawing on layers, are one step.
-    window.act(layering.drop, [hat, cap, drawing])
+    window.act(layering.drop_files, [hat, cap, drawing])
     texts = [text for text, _ in window.session.dialog.answers]
     assert texts == ["New layers", "New scene"]
     window.run(enter)
@@ -370,42 +370,42 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
 def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     window.act(editing.edit_layer, shape_commands.set_anchor, 95 + 118j)
-    window.act(layering.hang, arm, body)
+    window.act(layering.attach_layer, arm, body)
     window.settle()
-    window.act(layering.choose, body)
+    window.act(layering.set_active_layer, body)
     for place in (85 + 40j, 85 + 160j):
         window.act(posing.add_handle, place)
         window.settle()
     window.act(playback.seek, 24)
     top = scene.layer.handles[1].id
-    window.act(posing.wish, {top: Target(position=110 + 155j)})
+    window.act(posing.set_targets, {top: Target(position=110 + 155j)})
     window.settle()
-    hung, carrier = scene.puppets[arm].shown, scene.puppets[body].shown
+    hung, carrier = scene.layer_runtimes[arm].shown, scene.layer_runtimes[body].shown
     joint = scene.document.layer(arm).joints[0]
     at = carrier.hinge(joint.at)
     place = hung.placement.on(np.array([hung.hinge(95 + 118j).place]))[0]
     assert abs(place - at.place) < 1e-6 * WIDTH
     assert abs(hung.placement.factor - at.turn) < 0.02
     assert hung.placement.factor.imag < -0.05
-    window.act(layering.choose, arm)
+    window.act(layering.set_active_layer, arm)
     window.act(posing.add_handle, 190 + 118j)
     window.settle()
     hand = scene.layer.handles[0].id
-    window.act(posing.wish, {hand: Target(position=170 + 170j)})
+    window.act(posing.set_targets, {hand: Target(position=170 + 170j)})
     window.settle()
-    after = scene.puppets[arm].shown
+    after = scene.layer_runtimes[arm].shown
     held = after.placement.on(np.array([after.hinge(95 + 118j).place]))[0]
     assert abs(held - at.place) < 1e-3 * WIDTH
     before = after.placement.on(after.positions)
-    window.act(layering.let_hang, arm)
+    window.act(layering.detach_layer, arm)
     window.settle()
-    loose = scene.puppets[arm].shown
+    loose = scene.layer_runtimes[arm].shown
     assert np.abs(loose.placement.on(loose.positions) - before).max() < 1e-3
 
 
 def test_a_layer_stands_still_and_is_posed_again(window, scene):
     arm = identity(scene, "arm")
-    window.act(layering.stand_still, arm)
+    window.act(layering.make_still, arm)
     window.settle()
     assert scene.document.layer(arm).still
     assert len(scene.document.layer(arm).domain.mesh.triangles) == 2
@@ -421,7 +421,7 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
 
 def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
-    window.act(layering.hang, arm, body)
+    window.act(layering.attach_layer, arm, body)
     window.settle()
     commands = (
         filming_commands.key_opacity(arm, 12, 0.5),
@@ -431,7 +431,7 @@ def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
         cycle_commands.set_cycle(arm, 0, 24),
     )
     for command in commands:
-        window.act(editing.edit, command)
+        window.act(editing.edit_document, command)
     window.settle()
     before = scene.document.layer(arm)
     there = ParentTransforms(scene.document).placement(arm, 12)
@@ -444,10 +444,10 @@ def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
             assert getattr(now, name) == getattr(before, name)
         return now
 
-    window.act(layering.stand_still, arm)
+    window.act(layering.make_still, arm)
     window.settle()
     assert as_layer().still
-    window.act(layering.stand_up, arm)
+    window.act(layering.make_posable, arm)
     window.settle()
     assert not as_layer().still
 
@@ -456,7 +456,7 @@ def test_layers_take_turns(window, scene):
     arm = identity(scene, "arm")
     window.act(playback.seek, 12)
     window.settle()
-    window.act(layering.switch_here, arm)
+    window.act(layering.toggle_visibility_key, arm)
     window.settle()
     with_arm = np.asarray(window.picture()).astype(int)
     window.act(playback.seek, 11)
@@ -556,11 +556,11 @@ def test_a_key_of_another_row_chooses_its_layer(window, keyed, play):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     play(lambda rows: rows.click("body", "key 18"))
     assert keyed.active == body
-    assert keyed.chosen_of == {body: {18}}
+    assert keyed.selected_keys == {body: {18}}
     assert playback.current_frame(window.session, keyed) == 18
     window.run(lambda robot: robot.item_click(f"###Timeline/**/name {arm}"))
     assert keyed.active == arm
-    assert not keyed.chosen_of
+    assert not keyed.selected_keys
     # So does what is between the keys of a row.
     play(lambda rows: (rows.go_to(22, rows.place("body", "key 18").y), rows.robot.mouse_click(0)))
     assert keyed.active == body
@@ -576,15 +576,15 @@ def test_keys_of_several_rows_are_chosen_by_a_box_and_move_together(window, keye
 
     play(box)
     assert keyed.active == arm
-    assert keyed.chosen_of == {arm: {12}, body: {18}}
+    assert keyed.selected_keys == {arm: {12}, body: {18}}
     # Taken by the one of the row that was not active.
     play(lambda rows: rows.drag("body", "key 18", 22))
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 16, 24), (0, 22))
-    assert keyed.chosen_of == {arm: {16}, body: {22}}
+    assert keyed.selected_keys == {arm: {16}, body: {22}}
     assert keyed.active == body
     window.act(editing.undo)
     assert keyed.document is before
-    window.act(layering.choose, arm)
+    window.act(layering.set_active_layer, arm)
     # One of them waits before a key that is in the way, and so does the other one.
     play(box)
     play(lambda rows: rows.drag("arm", "key 12", 24))
@@ -603,7 +603,7 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
             (8, rows.place("body", "key 18").y), (21, rows.place("body", "key 18").y)
         )
     )
-    assert keyed.chosen_of == {body: {18}}
+    assert keyed.selected_keys == {body: {18}}
     before = keyed.document
 
     def give_up(rows):
@@ -615,22 +615,22 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
 
     play(give_up)
     assert keyed.document is before
-    assert keyed.chosen_of == {body: {18}}
-    window.act(editing.choose_keys_of, {arm: frozenset({12, 77}), body: frozenset({5})})
-    assert keyed.chosen_of == {arm: {12}}
+    assert keyed.selected_keys == {body: {18}}
+    window.act(editing.select_keys_in_rows, {arm: frozenset({12, 77}), body: frozenset({5})})
+    assert keyed.selected_keys == {arm: {12}}
 
 
 def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     window.act(playback.seek, 6)
-    window.act(layering.switch_here, body)
+    window.act(layering.toggle_visibility_key, body)
     window.settle()
     assert [switch.frame for switch in keyed.document.layer(body).visibility_keys] == [0, 6]
     window.act(playback.seek, 20)
     play(lambda rows: rows.click("body", "switch 6"))
     assert playback.current_frame(window.session, keyed) == 6
     assert keyed.active == body
-    window.act(layering.choose, arm)
+    window.act(layering.set_active_layer, arm)
 
     def delete(rows):
         rows.click("body", "switch 6", 1)
@@ -644,7 +644,7 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     before = keyed.document
     chosen = {arm: frozenset({12, 24}), body: frozenset({0})}
-    window.act(editing.choose_keys_of, chosen)
+    window.act(editing.select_keys_in_rows, chosen)
 
     def ease(rows):
         rows.click("arm", "key 12", 1)
@@ -652,7 +652,7 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
         rows.robot.menu_click("Easing/In-out")
 
     play(ease)
-    assert keyed.chosen_of == chosen
+    assert keyed.selected_keys == chosen
 
     def told(what):
         return {
@@ -663,9 +663,9 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
 
     eased = told(lambda key: key.easing == PRESETS["in-out"])
     assert eased == {"body": [True, False], "arm": [False, True, True]}
-    window.act(keys.set_turns, keyed.keys_with(body, 0), 2)
+    window.act(keys.set_revolutions, keyed.keys_with(body, 0), 2)
     assert told(lambda key: key.turns) == {"body": [2, 0], "arm": [0, 2, 2]}
-    window.act(keys.pass_otherwise)
+    window.act(keys.use_next_tangent_mode)
     passed = told(lambda key: key.tangent_mode is TangentMode.CORNER)
     assert passed == {"body": [True, False], "arm": [False, True, True]}
     # One that is not chosen is alone.
@@ -677,43 +677,45 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
 
 def test_keys_of_several_rows_run_backwards_and_are_stretched_together(window, keyed):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
-    window.act(editing.choose_keys_of, {arm: frozenset({0, 24}), body: frozenset({18})})
-    window.act(keys.reverse)
+    window.act(editing.select_keys_in_rows, {arm: frozenset({0, 24}), body: frozenset({18})})
+    window.act(keys.reverse_selected_keys)
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24), (0, 6))
-    assert keyed.chosen_of == {arm: {0, 24}, body: {6}}
+    assert keyed.selected_keys == {arm: {0, 24}, body: {6}}
     window.act(editing.undo)
-    window.act(editing.choose_keys_of, {arm: frozenset({12, 24}), body: frozenset({18})})
-    window.act(keys.scale, 0.5)
+    window.act(editing.select_keys_in_rows, {arm: frozenset({12, 24}), body: frozenset({18})})
+    window.act(keys.scale_selected_keys, 0.5)
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 18), (0, 15))
-    assert keyed.chosen_of == {arm: {12, 18}, body: {15}}
+    assert keyed.selected_keys == {arm: {12, 18}, body: {15}}
 
 
 def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keyed):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
-    window.act(keys.set_turns, {arm: frozenset({12})}, 1)
+    window.act(keys.set_revolutions, {arm: frozenset({12})}, 1)
     before = keyed.document
-    window.act(editing.choose_keys_of, {arm: frozenset({12}), body: frozenset({0, 18})})
+    window.act(editing.select_keys_in_rows, {arm: frozenset({12}), body: frozenset({0, 18})})
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.c)))
-    window.act(layering.choose, identity(keyed, "wall"))
+    window.act(layering.set_active_layer, identity(keyed, "wall"))
     window.act(playback.seek, 30)
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.v)))
     window.settle()
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
     assert keyed.document.layer(arm).key(42).turns == 1
-    assert keyed.chosen_of == {arm: {42}, body: {30, 48}}
+    assert keyed.selected_keys == {arm: {42}, body: {30, 48}}
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.
-    window.act(layering.remove, body)
+    window.act(layering.delete_layers, body)
     window.act(playback.seek, 40)
-    window.act(pasting.paste)
+    window.act(pasting.paste_copied)
     assert frames_of(keyed, "arm") == (0, 12, 24, 40)
 
 
 def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
     body = identity(keyed, "body")
     for frame, visible in ((6, False), (20, True)):
-        window.act(editing.edit, layer_commands.key_visibility(body, frame, visible=visible))
+        window.act(
+            editing.edit_document, layer_commands.key_visibility(body, frame, visible=visible)
+        )
     before = keyed.document
 
     def frames():
@@ -750,7 +752,7 @@ def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
 
 
 def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
-    window.act(timeline_pointing.look_at, Strip(start=-1.0, scale=4.0))
+    window.act(timeline_drag.set_time_range, TimeRangeView(start=-1.0, scale=4.0))
     window.frames(3)
     found = []
 
@@ -762,7 +764,7 @@ def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
     strip = np.s_[int(found[0].min.y) + 1 : int(found[0].max.y) - 1]
     before = np.asarray(window.picture()).astype(int)[strip]
     layer = keyed.document.layer(identity(keyed, "body"))
-    window.act(editing.edit, key_commands.insert_key(layer.id, 33, layer.keys[0].pose))
+    window.act(editing.edit_document, key_commands.insert_key(layer.id, 33, layer.keys[0].pose))
     window.frames(2)
     changed = np.abs(np.asarray(window.picture()).astype(int)[strip] - before).max(axis=(0, 2)) > 20
     # A dot of a few pixels.
@@ -771,11 +773,11 @@ def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
 
 def test_rows_scroll_where_there_are_many(window, keyed):
     for _ in range(8):
-        window.act(editing.edit, layer_commands.duplicate_layer(identity(keyed, "wall")))
-    window.act(layering.choose, identity(keyed, "arm"))
+        window.act(editing.edit_document, layer_commands.duplicate_layer(identity(keyed, "wall")))
+    window.act(layering.set_active_layer, identity(keyed, "arm"))
     window.frames(3)
     assert keyed.timing.scrolled == 0
-    window.act(layering.choose, identity(keyed, "wall"))
+    window.act(layering.set_active_layer, identity(keyed, "wall"))
     window.frames(3)
     low = keyed.timing.scrolled
     assert low > 0
@@ -794,9 +796,9 @@ def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_ar
 ):
     window.act(posing.add_handle, 190 + 118j)
     window.settle()
-    window.act(editing.select, frozenset())
+    window.act(editing.select_handles, frozenset())
     # As long as the worker has not made them, no layer has a sampler.
-    for puppet in scene.puppets.values():
+    for puppet in scene.layer_runtimes.values():
         puppet.store.sampler = None
     before = np.asarray(window.picture()).astype(int)
     scene.active = identity(scene, "body")
@@ -822,10 +824,10 @@ def posed(window, scene):
     """The scene with the arm hung on the body, and raised by a handle at frame 24."""
     arm, body = identity(scene, "arm"), identity(scene, "body")
     joint = Attachment(parent=body, parent_point=95 + 118j)
-    window.act(editing.edit, layer_commands.attach_layer(arm, 95 + 118j, joint))
+    window.act(editing.edit_document, layer_commands.attach_layer(arm, 95 + 118j, joint))
     window.act(posing.add_handle, 190 + 118j)
     window.act(playback.seek, 24)
-    window.act(posing.wish, {0: Target(position=170 + 160j)})
+    window.act(posing.set_targets, {0: Target(position=170 + 160j)})
     window.settle()
     assert len(scene.layer.keys) == 2
     return scene
@@ -833,12 +835,12 @@ def posed(window, scene):
 
 def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     arm = identity(posed, "arm")
-    window.act(layering.rename, arm, "limb")
-    window.act(layering.fade, arm, 0.75)
-    window.act(layering.move, arm, 1)
+    window.act(layering.rename_layer, arm, "limb")
+    window.act(layering.set_layer_opacity, arm, 0.75)
+    window.act(layering.move_layer, arm, 1)
     before = posed.document
     green = saved(tmp_path / "green.png", painted((85, 66, 205, 99), (30, 180, 60, 255)))
-    window.act(layering.choose, identity(posed, "body"))
+    window.act(layering.set_active_layer, identity(posed, "body"))
     window.act(layering.replace_picture, arm, green)
     window.settle()
     assert posed.active == arm
@@ -850,7 +852,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     assert (layer.anchor, layer.joints) == (old.anchor, old.joints)
     assert [key.frame for key in layer.keys] == [0, 24]
     for key, earlier in zip(layer.keys, old.keys, strict=True):
-        assert key.pose.certificate.certified
+        assert key.pose.certificate.is_certified
         assert key.pose.targets == earlier.pose.targets
         places = [
             f.map_of(k.pose)(np.array([190 + 118j]))[0] for f, k in ((layer, key), (old, earlier))
@@ -867,7 +869,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.act(editing.redo)
     window.settle()
     path = tmp_path / "man.lissom"
-    window.act(saving.write, path, None)
+    window.act(saving.write_project, path, None)
     window.settle()
     again = load_project(path).layer(arm)
     assert again.picture.sha256 == layer.picture.sha256
@@ -876,7 +878,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
     arm, body = identity(posed, "arm"), identity(posed, "body")
-    window.act(layering.choose, arm)
+    window.act(layering.set_active_layer, arm)
     before = posed.document
     # Smaller than the layer: it comes where the middle of the arm was, from 105 to 180.
     short = saved(tmp_path / "short.png", blob(76, 24))
@@ -928,10 +930,10 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
 
 def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scene, tmp_path):
     gone = max(layer.id for layer in scene.document.layers)
-    window.act(layering.remove, gone)
+    window.act(layering.delete_layers, gone)
     window.settle()
     path = saved(tmp_path / "dot.png", blob(60, 40, (250, 220, 0)))
-    window.act(layering.add, [path])
+    window.act(layering.add_layers, [path])
     window.settle()
     added = scene.document.layers[-1]
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
@@ -969,7 +971,7 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
     window.act(toast.action.apply)
     window.frames(3)
     assert is_in_front("Layers")
-    assert project.shows_summary
+    assert project.is_import_log_open
 
     def fold(robot):
         robot.set_ref("Layers")
@@ -977,10 +979,10 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
 
     window.run(fold)
     window.frames(3)
-    assert not project.shows_summary
+    assert not project.is_import_log_open
     assert BINDINGS["import"].is_possible(window.session)
     BINDINGS["import"].action.apply(window.session)
-    assert project.shows_summary
+    assert project.is_import_log_open
 
 
 def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_path):
@@ -991,17 +993,17 @@ def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_p
     project = window.open(path)
     assert project.document.told == document.told != EMPTY_IMPORT_LOG
     assert not window.session.toasts
-    assert not project.shows_summary
+    assert not project.is_import_log_open
     window.show_tab("Handle")
     BINDINGS["import"].action.apply(window.session)
     window.frames(3)
     assert is_in_front("Layers")
-    assert project.shows_summary
+    assert project.is_import_log_open
 
 
 def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
     before = scene.document.told
-    window.act(layering.add, [stranger])
+    window.act(layering.add_layers, [stranger])
     window.settle()
     losses = scene.document.told.losses
     assert losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
@@ -1013,9 +1015,9 @@ def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
 def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
     arm = identity(project, "arm")
-    window.act(layering.choose, arm)
+    window.act(layering.set_active_layer, arm)
     window.show_tab("Layers")
-    window.act(files.fold_summary)
+    window.act(files.toggle_import_log)
 
     def play(robot):
         robot.set_ref("Layers")
@@ -1042,11 +1044,11 @@ def test_layers_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(wi
     drawing = window.program.canvas.drawing
     arm, glow, shine = (identity(project, name) for name in ("arm", "glow", "shine"))
     assert drawing.picture(arm) is drawing.picture(glow) is drawing.picture(shine)
-    window.act(layering.choose, glow)
+    window.act(layering.set_active_layer, glow)
     # Behind it are others with the same picture.
     project.solo = frozenset({glow})
     before = window.picture()
-    window.act(editing.edit, shape_commands.cut_with_brush(glow, brush_at(project, glow)))
+    window.act(editing.edit_document, shape_commands.cut_with_brush(glow, brush_at(project, glow)))
     window.settle()
     assert drawing.picture(arm) is drawing.picture(shine) is not drawing.picture(glow)
     cut = window.picture()
@@ -1067,9 +1069,9 @@ def brush_at(project, layer):
 def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window, keyed, monkeypatch
 ):
-    window.act(layering.choose, identity(keyed, "arm"))
+    window.act(layering.set_active_layer, identity(keyed, "arm"))
     window.settle()
-    arm, body = (keyed.puppets[identity(keyed, name)] for name in ("arm", "body"))
+    arm, body = (keyed.layer_runtimes[identity(keyed, name)] for name in ("arm", "body"))
     body_id = identity(keyed, "body")
     for puppet in (arm, body):
         assert puppet.store.sampler.extension is not None  # made where nothing needed it yet
@@ -1080,9 +1082,9 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window.frames(3)
     # Of few layers all is kept.
     assert body.store.sampler.extension_bytes
-    monkeypatch.setattr("app.editor.project.MOST_PASSING", 0)
+    monkeypatch.setattr("app.editor.project.MOST_RELEASABLE_BYTES", 0)
     window.act(playback.toggle_play)
-    window.act(playback.halt)
+    window.act(playback.stop_playback)
     window.clock.now += 2 * memory.REST
     window.frames(3)
     assert not body.store.sampler.extension_bytes
@@ -1091,9 +1093,9 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     assert body.store.prepared(clip_of(keyed.document, body_id)) is None
     assert arm.store.prepared(keyed.clip) is not None
     assert body.shown.is_current
-    window.act(layering.choose, body_id)
+    window.act(layering.set_active_layer, body_id)
     window.settle()
     assert body.store.prepared(keyed.clip) is not None
-    window.act(editing.edit, key_commands.move_keys(body_id, [BODY[1]], 1))
+    window.act(editing.edit_document, key_commands.move_keys(body_id, [BODY[1]], 1))
     window.settle()
     assert body.store.has(clip_of(keyed.document, body_id))

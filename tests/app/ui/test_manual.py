@@ -4,7 +4,7 @@ import webbrowser
 
 import pytest
 
-from app.editor.actions import cutting, viewing
+from app.editor.actions import cut_out_editing, viewing
 from app.storage import manual_page
 
 
@@ -40,7 +40,7 @@ def test_it_opens_the_page_of_the_tool_in_hand_or_else_of_the_tab(window, bar, b
     del bar
     window.show_tab("Layers")
     press(window)
-    window.act(cutting.take_up, "keep")
+    window.act(cut_out_editing.toggle_cut_tool, "keep")
     press(window)
     assert [url.rpartition("/")[2] for url in browser.opened] == ["layers.html", "cut-out.html"]
 

@@ -7,8 +7,8 @@ from imgui_bundle import ImVec2
 
 from app.document import Target, handle_commands
 from app.document.rig import Bone
-from app.editor.actions import editing, material, playback, posing, viewing
-from app.editor.tools import moving
+from app.editor.actions import editing, playback, posing, stiffness_editing, viewing
+from app.editor.tools import move_tool
 from app.ui.viewport.interaction.drag import triangulate_stroke
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
 
@@ -39,7 +39,7 @@ def drag(window, places, *, button_up=True):
 
 def place_of(project, handle):
     index = [each.id for each in project.layer.handles].index(handle)
-    return complex(project.puppet.shown.handle_positions[index])
+    return complex(project.layer_runtime.shown.handle_positions[index])
 
 
 def middle(project):
@@ -48,7 +48,7 @@ def middle(project):
 
 def test_a_stroke_makes_what_it_covers_stiff_and_undo_takes_it_back(window, tab):
     before = tab.document
-    material.take_up(window.session, "stiff")
+    stiffness_editing.toggle_stiffness_tool(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab), middle(tab) + 10])
     stiffness = tab.layer.stiffness
     along = np.concatenate(tab.layer.domain.loops)
@@ -68,7 +68,7 @@ def test_on_a_posed_drawing_the_brush_reaches_what_is_shown_there(window, tab):
     end = place_of(tab, ENDS[1])
     rest = tab.layer.handle(ENDS[1]).position
     assert abs(end - rest) > 20
-    material.take_up(window.session, "soft")
+    stiffness_editing.toggle_stiffness_tool(window.session, "soft")
     drag(window, [end, end - 2])
     along = np.concatenate(tab.layer.domain.loops)
     softest = along[tab.layer.stiffness.argmin()]
@@ -79,13 +79,13 @@ def test_on_a_posed_drawing_the_brush_reaches_what_is_shown_there(window, tab):
 def test_a_brush_that_reaches_no_outline_says_so(window, tab):
     window.session.material = "stiff"
     tab.brush = 1.0
-    material.paint(window.session, [middle(tab)])
+    stiffness_editing.paint_stiffness(window.session, [middle(tab)])
     assert tab.layer.stiffness is None
     assert "reaches no outline" in window.session.toasts[-1].text
 
 
 def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
-    material.take_up(window.session, "bone")
+    stiffness_editing.toggle_stiffness_tool(window.session, "bone")
     drag(window, [place_of(tab, ENDS[0]), middle(tab), place_of(tab, ENDS[1])])
     assert [set(bone.ends) for bone in tab.layer.bones] == [set(ENDS)]
     drag(window, [place_of(tab, ENDS[0]), middle(tab) + 40j])
@@ -94,7 +94,7 @@ def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
     assert len(tab.layer.bones) == 1
     assert "already" in window.session.toasts[-1].text
     assert window.session.poses is False
-    moving.pose(window.session)
+    move_tool.return_to_posing(window.session)
     assert window.session.poses
 
 
@@ -112,7 +112,7 @@ def test_what_a_stroke_covers_is_shown_once_however_often_it_goes_there(way):
 
 def test_escape_takes_back_a_stroke_and_then_puts_the_brush_away(window, tab):
     before = tab.document
-    material.take_up(window.session, "stiff")
+    stiffness_editing.toggle_stiffness_tool(window.session, "stiff")
 
     def act(robot):
         robot.mouse_move_to_pos(window.point(middle(tab)))
@@ -129,16 +129,16 @@ def test_escape_takes_back_a_stroke_and_then_puts_the_brush_away(window, tab):
 
 def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):
     assert window.session.tint == "stiffness"
-    material.take_up(window.session, "stiff")
+    stiffness_editing.toggle_stiffness_tool(window.session, "stiff")
     drag(window, [middle(tab) - 10, middle(tab) + 10])
-    values = measure_vertex_stiffness(tab.layer, tab.puppet.shown.mesh)
-    vertices = tab.puppet.shown.mesh.domain.mesh.vertices
+    values = measure_vertex_stiffness(tab.layer, tab.layer_runtime.shown.mesh)
+    vertices = tab.layer_runtime.shown.mesh.domain.mesh.vertices
     assert values[np.abs(vertices - middle(tab)).argmin()] > 0.2
     assert abs(values[np.abs(vertices - vertices.real.min()).argmin()]) < 0.05
     window.show_tab("Deform")
     window.frames(2)
     assert window.session.tint is None
-    viewing.tint(window.session, "depth")
+    viewing.set_tint(window.session, "depth")
     window.frames(2)
     assert window.session.tint == "depth"
 
@@ -147,10 +147,10 @@ def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):
     playback.scrub(window.session, BENT)
     window.settle()
     before = tab.layer.key(BENT).pose
-    material.add_bone(window.session, ENDS)
+    stiffness_editing.add_bone(window.session, ENDS)
     window.settle()
     assert tab.layer.key(BENT).pose is before
-    material.pose_again(window.session)
+    stiffness_editing.solve_shown_pose_again(window.session)
     window.settle()
     after = tab.layer.key(BENT).pose
     assert after.phi is not before.phi
@@ -160,12 +160,12 @@ def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):
 
 
 def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
-    material.suggest(window.session)
+    stiffness_editing.suggest_stiffness(window.session)
     assert "No handle is called" in window.session.toasts[-1].text
     editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[0], "Left Hand")
     editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[1], "tail tip")
     before = tab.document
-    material.suggest(window.session)
+    stiffness_editing.suggest_stiffness(window.session)
     assert tab.layer.stiffness.max() > 5
     assert tab.layer.stiffness.min() < 0.3
     editing.undo(window.session)
@@ -173,8 +173,8 @@ def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
 
 
 def test_hidden_bones_act_and_a_handle_that_goes_takes_its_bones_along(window, tab):
-    material.add_bone(window.session, ENDS)
-    material.show_bones(window.session, shown=False)
+    stiffness_editing.add_bone(window.session, ENDS)
+    stiffness_editing.set_bones_visible(window.session, shown=False)
     assert tab.layer.bones == (Bone(ends=ENDS, is_shown=False),)
     posing.remove_handles(window.session, frozenset({ENDS[1]}))
     window.settle()
@@ -184,15 +184,15 @@ def test_hidden_bones_act_and_a_handle_that_goes_takes_its_bones_along(window, t
 
 
 def test_dragging_goes_on_where_a_part_is_stiff(window, tab):
-    material.add_bone(window.session, ENDS)
+    stiffness_editing.add_bone(window.session, ENDS)
     playback.scrub(window.session, BENT)
     window.settle()
     place = place_of(tab, ENDS[1])
-    posing.wish(window.session, {ENDS[1]: Target(position=place + 12j)})
-    posing.let_go(window.session)
+    posing.set_targets(window.session, {ENDS[1]: Target(position=place + 12j)})
+    posing.release_drag(window.session)
     window.settle()
     assert abs(place_of(tab, ENDS[1]) - place - 12j) < 2
-    assert tab.layer.key(BENT).pose.certificate.certified
+    assert tab.layer.key(BENT).pose.certificate.is_certified
 
 
 @pytest.mark.usefixtures("tab", "painted")
@@ -204,7 +204,7 @@ def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(win
         return measure_vertex_stiffness(*arguments)
 
     monkeypatch.setattr("app.ui.viewport.gpu_resources.tint_of", counted)
-    material.add_bone(window.session, ENDS)
+    stiffness_editing.add_bone(window.session, ENDS)
     window.settle()
     assert len(calls) == 1
     playback.scrub(window.session, BENT // 2)
@@ -212,6 +212,6 @@ def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(win
     playback.scrub(window.session, 3)
     window.settle()
     assert len(calls) == 1
-    material.set_bone(window.session, ENDS, 20.0)
+    stiffness_editing.set_bone_stiffness(window.session, ENDS, 20.0)
     window.settle()
     assert len(calls) == 2

@@ -24,7 +24,7 @@ def open_menu(robot, point):
 
 
 def on_handle(window, loose, *items):
-    place = window.point(loose.puppet.shown.handle_positions[0])
+    place = window.point(loose.layer_runtime.shown.handle_positions[0])
 
     def play(robot):
         open_menu(robot, place)
@@ -36,7 +36,7 @@ def on_handle(window, loose, *items):
 
 def test_a_handle_is_pinned_by_its_menu(window, loose):
     assert loose.selected == {1}
-    place = complex(loose.puppet.shown.handle_positions[0])
+    place = complex(loose.layer_runtime.shown.handle_positions[0])
     on_handle(window, loose, "Pin here")
     assert loose.selected == {0}, "what the menu is of is selected"
     assert loose.layer.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
@@ -44,20 +44,20 @@ def test_a_handle_is_pinned_by_its_menu(window, loose):
 
 def test_menu_of_a_handle_closes_when_the_layer_changes(window, loose):
     """Until a mesh of the new outline is there, the old layer is shown with its handles."""
-    place = window.point(loose.puppet.shown.handle_positions[1])
+    place = window.point(loose.layer_runtime.shown.handle_positions[1])
     window.run(lambda robot: open_menu(robot, place))
     with window.session.jobs.held():
         fewer = handle_commands.remove_handles(loose.active, {1})(loose.document)
         (layer,) = fewer.layers
         other = replace(fewer, layers=(replace(layer, domain=replace(layer.domain)),))
-        editing.edit(window.session, Command("Change the outline", lambda _: other))
+        editing.edit_document(window.session, Command("Change the outline", lambda _: other))
         window.frames(2)
-        assert len(loose.puppet.shown.clip.layer.handles) > len(loose.layer.handles)
+        assert len(loose.layer_runtime.shown.clip.layer.handles) > len(loose.layer.handles)
     assert not [part for part in window.program.shell.parts.values() if part.failure]
 
 
 def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
-    editing.select(window.session, frozenset({0, 1}))
+    editing.select_handles(window.session, frozenset({0, 1}))
     on_handle(window, loose, "Hold", "Firm")
     assert [handle.weight for handle in loose.layer.handles] == [10.0, 10.0]
 
@@ -95,7 +95,7 @@ def test_the_canvas_has_a_menu(window, loose):
 
 
 def test_a_right_click_in_a_drag_still_takes_it_back(window, loose):
-    document, place = loose.document, window.point(loose.puppet.shown.handle_positions[1])
+    document, place = loose.document, window.point(loose.layer_runtime.shown.handle_positions[1])
 
     def play(robot):
         robot.mouse_move_to_pos(place)

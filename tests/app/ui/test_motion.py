@@ -7,8 +7,16 @@ import pytest
 from silhouettes import paint
 
 from app.document import is_motion_unedited
-from app.editor import promises
-from app.editor.actions import drafting, editing, giving, placing, playback, posing, saving
+from app.editor import pending_changes
+from app.editor.actions import (
+    apply_motion,
+    editing,
+    joint_placement,
+    playback,
+    posing,
+    preset_setup,
+    saving,
+)
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
 
@@ -16,7 +24,7 @@ from app.ui.panel import is_in_front
 def draft_child(window):
     """Open a child in a picture, and draft a motion for it."""
     project = window.open(paint(window.folder, "child"))
-    drafting.begin(window.session)
+    preset_setup.begin_motion_setup(window.session)
     window.frames(4)
     return project
 
@@ -24,17 +32,17 @@ def draft_child(window):
 def breathing(window):
     """Let a ghost breathe: the simplest of motions."""
     project = window.open(paint(window.folder, "ghost"))
-    drafting.begin(window.session)
-    drafting.set_parameters(window.session, speed=3.0)
-    giving.give(window.session)
+    preset_setup.begin_motion_setup(window.session)
+    preset_setup.set_motion_parameters(window.session, speed=3.0)
+    apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
     window.frames(2)
     return project
 
 
 def arrive(window, project):
-    window.until(lambda: project.errand is None and promises.is_settled(project))
+    window.until(lambda: project.motion_job is None and pending_changes.is_document_idle(project))
     window.settle()
 
 
@@ -84,7 +92,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     foot = project.draft.joints["foot.L"]
     press(window, foot, to=foot + 3)
     assert project.draft.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
-    drafting.set_parameters(window.session, size=0.2, speed=4.0)
+    preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Motion/**/###give")
     arrive(window, project)
@@ -127,8 +135,8 @@ def test_joints_are_dragged_left_out_and_put_back(window, child):
 
 def test_one_side_is_mirrored_onto_the_other(window, child):
     joints = child.draft.joints
-    placing.put(window.session, "hand.R", joints["hand.R"] + 8)
-    placing.mirror(window.session)
+    joint_placement.move_joint(window.session, "hand.R", joints["hand.R"] + 8)
+    joint_placement.mirror_joints(window.session)
     axis = np.mean([child.draft.joints[name].real for name in ("hips", "chest", "head")])
     right, left = (child.draft.joints[f"hand.{side}"] for side in "RL")
     assert right.real + left.real == pytest.approx(2 * axis, abs=1)
@@ -136,17 +144,17 @@ def test_one_side_is_mirrored_onto_the_other(window, child):
 
 
 def test_what_a_motion_needs_is_told(window, child):
-    placing.leave_out(window.session, "foot.R")
+    joint_placement.exclude_joint(window.session, "foot.R")
     window.frames()
-    assert "needs foot.R" in drafting.hindrance(child)
-    giving.give(window.session)
+    assert "needs foot.R" in preset_setup.apply_motion_disabled_reason(child)
+    apply_motion.apply_motion_preset(window.session)
     assert child.draft is not None
-    assert child.errand is None
-    placing.add(window.session, "foot.R")
-    assert not drafting.hindrance(child)
-    drafting.choose_kind(window.session, "anything")
+    assert child.motion_job is None
+    joint_placement.include_joint(window.session, "foot.R")
+    assert not preset_setup.apply_motion_disabled_reason(child)
+    preset_setup.set_body_kind(window.session, "anything")
     assert child.draft.motion in {"breathe", "sway", "hop"}
-    drafting.choose_kind(window.session, "biped-front")
+    preset_setup.set_body_kind(window.session, "biped-front")
     assert "foot.R" in child.draft.joints, "as they were left"
 
 
@@ -154,7 +162,7 @@ def test_handles_that_are_there_are_joints(window):
     project = window.open(paint(window.folder, "child"))
     posing.suggest_handles(window.session)
     head = next(each for each in project.layer.handles if each.name == "head")
-    drafting.begin(window.session)
+    preset_setup.begin_motion_setup(window.session)
     assert project.draft.joints["head"] == head.position
 
 
@@ -163,10 +171,10 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
 ):
     before = ghost.document
     (given,) = ghost.layer.motions
-    drafting.begin(window.session)
+    preset_setup.begin_motion_setup(window.session)
     assert ghost.draft.given is given
-    drafting.set_parameters(window.session, speed=4.0)
-    giving.give(window.session)
+    preset_setup.set_motion_parameters(window.session, speed=4.0)
+    apply_motion.apply_motion_preset(window.session)
     ghost.path = tmp_path / "ghost.lissom"
     saving.save(window.session)
     arrive(window, ghost)
@@ -182,17 +190,17 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
 
 def test_given_again_its_handles_go_where_joints_were_dragged(window):
     project = window.open(paint(window.folder, "snake"))
-    drafting.begin(window.session)
-    drafting.set_parameters(window.session, size=0.2, speed=4.0)
-    giving.give(window.session)
+    preset_setup.begin_motion_setup(window.session)
+    preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
+    apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
     handles = {handle.name: handle.id for handle in project.layer.handles}
     playback.scrub(window.session, 0)
-    drafting.begin(window.session)
+    preset_setup.begin_motion_setup(window.session)
     place = project.draft.joints["joint.2"] + 6
-    placing.put(window.session, "joint.2", place)
-    giving.give(window.session)
+    joint_placement.move_joint(window.session, "joint.2", place)
+    apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
     assert {handle.name: handle.id for handle in project.layer.handles} == handles
     assert abs(project.layer.handle(handles["joint.2"]).position - place) < 2
@@ -204,22 +212,22 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     window.settle()
     identity, target = next(iter(key.pose.targets.items()))
     wish = replace(target, position=target.position + 4j)
-    posing.wish(window.session, {identity: wish})
+    posing.set_targets(window.session, {identity: wish})
     window.settle()
-    drafting.begin(window.session)
+    preset_setup.begin_motion_setup(window.session)
     window.frames(3)
-    assert "edited by hand" in drafting.hindrance(ghost)
-    giving.give(window.session)
-    assert ghost.errand is None
+    assert "edited by hand" in preset_setup.apply_motion_disabled_reason(ghost)
+    apply_motion.apply_motion_preset(window.session)
+    assert ghost.motion_job is None
     click(window, "//Motion/**/Replace what was edited by hand")
-    assert not drafting.hindrance(ghost)
+    assert not preset_setup.apply_motion_disabled_reason(ghost)
 
 
 def test_another_motion_follows(window, ghost):
     (given,) = ghost.layer.motions
-    drafting.begin_after(window.session, given)
-    drafting.set_parameters(window.session, size=0.3, speed=4.0)
-    giving.give(window.session)
+    preset_setup.append_motion(window.session, given)
+    preset_setup.set_motion_parameters(window.session, size=0.3, speed=4.0)
+    apply_motion.apply_motion_preset(window.session)
     arrive(window, ghost)
     first, second = ghost.layer.motions
     assert first is given
@@ -231,22 +239,22 @@ def test_another_motion_follows(window, ghost):
 @pytest.mark.parametrize("how", ["escape", "undo"])
 def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
     before = child.document
-    giving.give(window.session)
+    apply_motion.apply_motion_preset(window.session)
     window.frames(3)
-    assert child.errand is not None
+    assert child.motion_job is not None
     if how == "escape":
         window.run(lambda robot: robot.key_press(int(window.Key.escape)))
     else:
         editing.undo(window.session)
-    assert child.errand is None
+    assert child.motion_job is None
     assert child.draft is not None
     window.settle()
     assert child.document is before
 
 
 def test_a_change_meanwhile_refuses_it(window, ghost):
-    drafting.begin(window.session)
-    giving.give(window.session)
+    preset_setup.begin_motion_setup(window.session)
+    apply_motion.apply_motion_preset(window.session)
     posing.remove_handles(window.session, frozenset({ghost.layer.handles[0].id}))
     changed = ghost.document
     arrive(window, ghost)

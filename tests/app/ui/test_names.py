@@ -59,11 +59,11 @@ def test_a_picture_is_opened_under_a_name_that_can_be_shown(window, opened):
 @pytest.mark.usefixtures("opened")
 def test_a_project_is_saved_and_found_among_the_recent_files(window, folder):
     path = folder / f"{NAME}.lissom"
-    window.act(saving.write, path, None)
+    window.act(saving.write_project, path, None)
     window.settle()
     assert told(window) == [f"Saved {SHOWN}.lissom."]
     assert load_project(path).layers[0].name == SHOWN
-    window.act(saving.close)
+    window.act(saving.close_project)
     assert told(window) == [f"Saved {SHOWN}.lissom."]
     window.settle()
     recent = (path, folder / f"{NAME}.png")
@@ -84,14 +84,14 @@ def test_failures_and_questions_tell_the_name(window, folder):
     missing = folder / f"{ALIKE}.png"
     window.act(files.open_file, missing)
     window.settle()
-    window.act(files.open_recent, missing)
+    window.act(files.open_recent_file, missing)
     failed, gone = told(window)
     assert failed.startswith(f"{SHOWN}.png cannot be opened: cannot read ")
     assert gone.startswith(f"{SHOWN}.png is not in ")
-    window.act(saving.write, folder / f"{NAME}.lissom", None)
+    window.act(saving.write_project, folder / f"{NAME}.lissom", None)
     window.settle()
     window.act(keys.set_last_frame, 7)
-    window.act(saving.close)
+    window.act(saving.close_project)
     assert window.session.dialog is not None
     window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
     assert window.session.project is None
@@ -102,8 +102,8 @@ def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
     left = Autosave(window.folder)
     left.write(opened.document, SourceInfo(NAME, folder / f"{NAME}.lissom"))
     os.close(left._lock)  # as the system does when its process ends
-    window.act(saving.give_up)
-    window.act(files.offer_recovery)
+    window.act(saving.discard_project)
+    window.act(files.ask_recovery)
     (candidate,) = window.session.dialog.candidates
     assert candidate.origin == SourceInfo(SHOWN, folder / f"{NAME}.lissom")
     assert told(window) == []
@@ -141,9 +141,9 @@ def note(chosen, _, path):
 def test_an_export_goes_there(window, folder, kind, ending):
     name = f"{NAME}{ending}"
     window.act(keys.set_last_frame, 2)
-    window.act(exporting.set_export, ExportSettings(format=kind))
+    window.act(exporting.set_export_settings, ExportSettings(format=kind))
     window.show_tab("Export")
-    window.act(exporting.start_at, folder / name)
+    window.act(exporting.start_export_at, folder / name)
     window.until(lambda: window.session.toasts)
     assert told(window)[0].startswith("Exported ")
     assert (folder / name).exists()

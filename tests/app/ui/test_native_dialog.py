@@ -117,7 +117,7 @@ def later(window):
 
 
 def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
-    window.act(files.ask_open)
+    window.act(files.ask_file_to_open)
     asked = program.option_fields()
     assert "--file-selection" in asked
     assert "--save" not in asked
@@ -253,11 +253,11 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     ask()
     program.option_fields()
-    window.act(saving.quit_lissom)
+    window.act(saving.request_quit)
     window.frames(2)
     assert isinstance(window.session.dialog, Question)
     assert not is_running(program)
-    assert not window.session.quitting
+    assert not window.session.is_quitting
 
 
 def test_the_window_takes_the_dialog_with_it(window, program, ask):

@@ -19,7 +19,7 @@ def test_a_loop_takes_few_clicks_and_drags(window, tmp_path):
     assert len(project.layer.handles) >= 3
     person.drag_playhead(0.5)
     assert project.playhead.frame > 5
-    handle = max(project.puppet.shown.handle_positions, key=lambda place: place.real)
+    handle = max(project.layer_runtime.shown.handle_positions, key=lambda place: place.real)
     person.drag(complex(handle), complex(handle) + 0.3j * project.document.canvas[1])
     assert [key.frame for key in project.layer.keys] == [0, project.playhead.frame]
     assert project.layer.keys[1].pose is not first.layers[0].keys[0].pose

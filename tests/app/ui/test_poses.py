@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 from projects import project_of
 
 from app.document import handle_commands
-from app.editor.actions import editing, playback, posing, rebuilding
+from app.editor.actions import editing, playback, posing, resolving
 from app.editor.poses import flipping
 from app.storage import load_project, save_project
 from app.ui.shortcuts import BINDINGS
@@ -47,10 +47,10 @@ def pose(window, frame, way):
     project = window.session.project
     playback.scrub(window.session, frame)
     window.settle()
-    editing.select(window.session, frozenset({LEFT}))
-    posing.nudge(window.session, way)
+    editing.select_handles(window.session, frozenset({LEFT}))
+    posing.nudge_handles(window.session, way)
     window.settle()
-    editing.select(window.session, frozenset())
+    editing.select_handles(window.session, frozenset())
     return project
 
 
@@ -72,15 +72,15 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     before = project.document
     press(window, CTRL | int(window.Key.c))
     go(window, 24)
-    assert not flipping.shows_axis(window.session, window.session.project)
+    assert not flipping.is_mirror_axis_shown(window.session, window.session.project)
     press(window, CTRL | SHIFT | int(window.Key.v))
     way = targets(project, 12)[LEFT] - HANDLES["arm.L"]
     now = targets(project, 24)
     assert now[RIGHT] == pytest.approx(HANDLES["arm.R"] - way.conjugate(), abs=1e-6)
     assert now[LEFT] == pytest.approx(HANDLES["arm.L"], abs=1e-6)
-    assert project.layer.key(24).pose.certificate.certified
+    assert project.layer.key(24).pose.certificate.is_certified
     # While that is what is chosen, the axis is there to be moved.
-    assert flipping.shows_axis(window.session, window.session.project)
+    assert flipping.is_mirror_axis_shown(window.session, window.session.project)
     pasted = project.document
 
     def drag(robot, key=None):
@@ -102,19 +102,19 @@ def test_a_pose_is_pasted_flipped_and_again_where_its_axis_is_moved(window, proj
     assert moved > 5
     # Where the axis is not in the middle, a turned arm lands elsewhere.
     assert project.layer.key(24).pose is not pasted.layers[0].key(24).pose
-    assert flipping.shows_axis(window.session, window.session.project)
+    assert flipping.is_mirror_axis_shown(window.session, window.session.project)
     editing.undo(window.session)
     assert project.document is pasted
     editing.undo(window.session)
     assert project.document is before
     window.frames(2)
-    assert not flipping.shows_axis(window.session, window.session.project)
+    assert not flipping.is_mirror_axis_shown(window.session, window.session.project)
 
 
 def test_only_the_selected_handles_are_pasted_flipped(window, project):
     press(window, CTRL | int(window.Key.c))
     go(window, 24)
-    editing.select(window.session, frozenset({RIGHT}))
+    editing.select_handles(window.session, frozenset({RIGHT}))
     press(window, CTRL | ALT | SHIFT | int(window.Key.v))
     way = targets(project, 12)[LEFT] - HANDLES["arm.L"]
     now = targets(project, 24)
@@ -221,7 +221,7 @@ def test_a_pose_is_blended_in_by_its_bar_as_one_step(window, project):
     window.settle()
     rest, up = HANDLES["arm.L"], targets(project, 12)[LEFT]
     assert targets(project, 0)[LEFT] == pytest.approx((rest + up) / 2, abs=1.0)
-    assert project.layer.key(0).pose.certificate.certified
+    assert project.layer.key(0).pose.certificate.is_certified
     assert project.blend is None
     editing.undo(window.session)
     assert project.document is before
@@ -243,17 +243,17 @@ def test_the_axis_is_entered_shown_and_put_back(window, project):
 
     window.run(enter)
     assert project.layer.axis == 70
-    assert flipping.shows_axis(window.session, window.session.project)
+    assert flipping.is_mirror_axis_shown(window.session, window.session.project)
     window.run(lambda robot: robot.item_click("//###Poses/Middle"))
     assert project.layer.mirror is None
     press(window, BINDINGS["mirror axis"].chords()[0])
-    assert not flipping.shows_axis(window.session, window.session.project)
+    assert not flipping.is_mirror_axis_shown(window.session, window.session.project)
 
 
 def test_poses_of_the_library_are_solved_for_other_limits_with_the_keys(window, project):
     press(window, SHIFT | int(window.Key.k))
     tighter = replace(project.layer.bounds, k=0.2, sigma_a=1.2)
-    rebuilding.choose_bounds(window.session, tighter)
+    resolving.set_limits(window.session, tighter)
     window.settle()
     assert project.layer.bounds == tighter
     assert all(project.layer.is_proven(pose) for pose in project.layer.poses)

@@ -17,7 +17,7 @@ TRACK = Track(handles=(1,), keys=tuple(TrackKey(frame=f, place=0j + f) for f in 
 
 def prepared(project):
     """Return which of all that can be prepared of a project is there."""
-    puppet, clip = project.puppet, project.clip
+    puppet, clip = project.layer_runtime, project.clip
     vertices = puppet.store.vertices(clip, HALFWAY)
     return {
         "in-betweens": puppet.store.has(clip),
@@ -34,7 +34,7 @@ def test_session_prepares_ahead_by_itself(tmp_path):
 
 @pytest.mark.usefixtures("everything")
 def test_window_prepares_everything_unasked(window, bent):
-    editing.edit(window.session, track_commands.put_track(bent.active, TRACK))
+    editing.edit_document(window.session, track_commands.put_track(bent.active, TRACK))
     window.settle()
     assert bent.playhead.frame == bent.clip.keys[-1].frame
     assert all(prepared(bent).values()), prepared(bent)
@@ -44,12 +44,12 @@ def test_window_of_tests_prepares_only_what_is_shown(window):
     # The tab Export asks for the extent of the motion.
     window.show_tab("Handle")
     bent = window.again(bend_bar)
-    editing.edit(window.session, track_commands.put_track(bent.active, TRACK))
+    editing.edit_document(window.session, track_commands.put_track(bent.active, TRACK))
     window.settle()
     assert not any(prepared(bent).values()), prepared(bent)
     playback.seek(window.session, HALFWAY)
     window.settle()
-    assert bent.puppet.shown.is_current
+    assert bent.layer_runtime.shown.is_current
     found = prepared(bent)
     assert found.pop("in-betweens")
     assert not any(found.values()), found

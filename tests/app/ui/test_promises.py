@@ -18,12 +18,12 @@ from app.editor.actions import (
     keys,
     playback,
     posing,
-    rebuilding,
+    resolving,
     saving,
     viewing,
 )
 from app.editor.actions.posing.inserting import INSERTING
-from app.editor.actions.posing.solving import is_there
+from app.editor.actions.posing.pose_solver import is_display_final
 from app.editor.dialogs import Question
 from app.editor.poses import copying, library, pasting
 from app.storage import load_project
@@ -36,16 +36,14 @@ def loosened(bounds):
 
 # Commands of the menus are asked for in `test_commands_after_drags`.
 FOLLOWS = {
-    "variant": lambda session: keys.set_variant(session, "nu"),
-    "limits": lambda session: rebuilding.choose_bounds(
-        session, loosened(session.project.layer.bounds)
-    ),
-    "solve again": rebuilding.solve_again,
+    "variant": lambda session: keys.set_inbetween_method(session, "nu"),
+    "limits": lambda session: resolving.set_limits(session, loosened(session.project.layer.bounds)),
+    "solve again": resolving.solve_keys_again,
     "another drag elsewhere": lambda session: (
         playback.scrub(session, 0),
-        posing.wish(session, {0: Target(position=200 + 60j)}),
+        posing.set_targets(session, {0: Target(position=200 + 60j)}),
     ),
-    "duplicate the layer": lambda session: layering.duplicate(session, 0),
+    "duplicate the layer": lambda session: layering.duplicate_layer(session, 0),
 }
 
 
@@ -57,11 +55,11 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
     assert not loose.pulls[-1].is_at_rest, "it takes several pictures"
     FOLLOWS[name](window.session)
     window.settle()
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
     window.settle()
     assert not loose.pending
     check_at_rest(loose.document, goal)
-    layering.choose(window.session, 0)
+    layering.set_active_layer(window.session, 0)
     while loose.document is not start:
         assert loose.history.undo_label is not None
         editing.undo(window.session)
@@ -70,12 +68,12 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
 
 def test_drag_goes_on_while_rough_frames_play(window, loose):
     session = window.session
-    loose.puppet.shown = replace(loose.puppet.shown, is_approximate=True)
-    assert not is_there(session, loose)
+    loose.layer_runtime.shown = replace(loose.layer_runtime.shown, is_approximate=True)
+    assert not is_display_final(session, loose)
     loose.playhead = loose.playhead.play(loose.document, session.clock())
-    assert is_there(session, loose)
-    loose.puppet.shown = replace(loose.puppet.shown, placeholder=loose.layer.domain)
-    assert not is_there(session, loose)
+    assert is_display_final(session, loose)
+    loose.layer_runtime.shown = replace(loose.layer_runtime.shown, placeholder=loose.layer.domain)
+    assert not is_display_final(session, loose)
 
 
 def test_drag_that_has_ended_can_be_given_up(window, loose):
@@ -83,7 +81,7 @@ def test_drag_that_has_ended_can_be_given_up(window, loose):
         drag_bar(window, loose)
         (pull,) = loose.pulls
         for _ in range(2):
-            posing.give_up(window.session, loose, pull)
+            posing.cancel_drag(window.session, loose, pull)
     assert not loose.pulls
 
 
@@ -95,8 +93,8 @@ def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
         with window.session.jobs.held(posing.POSING):
             goal = drag_bar(window, loose)
         assert loose.pulls[-1].kept is None
-    editing.edit(window.session, key_commands.copy_keys(0, {24}, 24))
-    editing.edit(window.session, key_commands.move_keys(0, {24}, 6))
+    editing.edit_document(window.session, key_commands.copy_keys(0, {24}, 24))
+    editing.edit_document(window.session, key_commands.move_keys(0, {24}, 6))
     window.settle()
     for frame in (30, 48):
         check_at_rest(loose.document, goal, frame=frame)
@@ -118,7 +116,7 @@ def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key)
 
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
     goal = drag_bar(window, loose)
-    posing.add_handle(window.session, complex(loose.puppet.shown.handle_positions.mean()))
+    posing.add_handle(window.session, complex(loose.layer_runtime.shown.handle_positions.mean()))
     (added,) = loose.selected
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
@@ -129,12 +127,12 @@ def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
 
 
 def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
-    layering.duplicate(window.session, 0)
+    layering.duplicate_layer(window.session, 0)
     window.settle()
-    (other,) = loose.puppets.keys() - {0}
+    (other,) = loose.layer_runtimes.keys() - {0}
     goals = {}
     for identity in (0, other):
-        layering.choose(window.session, identity)
+        layering.set_active_layer(window.session, identity)
         goals[identity] = drag_bar(window, loose)
     assert loose.active == other
     assert len(loose.pulls) == 2
@@ -145,15 +143,15 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
 
 def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
     for _ in range(3):
-        layering.duplicate(window.session, 0)
+        layering.duplicate_layer(window.session, 0)
         window.frames()
     path, goals = tmp_path / "a.lissom", {}
     with window.session.jobs.held(posing.POSING):
         for layer in loose.document.layers:
-            layering.choose(window.session, layer.id)
+            layering.set_active_layer(window.session, layer.id)
             goals[layer.id] = drag_bar(window, loose)
         assert len(loose.pulls) == len(goals) == 4
-        saving.write(window.session, path, None)
+        saving.write_project(window.session, path, None)
         assert not path.exists()
     window.until(lambda: not loose.pending)
     saved = load_project(path)
@@ -165,15 +163,15 @@ def test_a_picture_is_exported_as_it_comes_to_rest(window, loose, tmp_path):
     goal = drag_bar(window, loose)
     out = tmp_path / "last.png"
     export = replace(loose.document.export, format="picture", framing="canvas")
-    editing.edit(window.session, scene_commands.set_export(export))
-    exporting.start(window.session, out)
+    editing.edit_document(window.session, scene_commands.set_export(export))
+    exporting.start_export(window.session, out)
     assert window.session.export is None
     window.until(lambda: out.exists() and window.session.export is None)
     assert not loose.pulls
     check_at_rest(loose.document, goal)
     # Once more, of the pose at rest.
     again = tmp_path / "again.png"
-    exporting.start(window.session, again)
+    exporting.start_export(window.session, again)
     window.until(lambda: again.exists() and window.session.export is None)
     np.testing.assert_array_equal(np.asarray(Image.open(out)), np.asarray(Image.open(again)))
 
@@ -181,19 +179,19 @@ def test_a_picture_is_exported_as_it_comes_to_rest(window, loose, tmp_path):
 def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, loose, tmp_path):
     session = window.session
     export = replace(loose.document.export, format="picture", framing="canvas")
-    editing.edit(session, scene_commands.set_export(export))
+    editing.edit_document(session, scene_commands.set_export(export))
     # The one before, which has its file, is no part of it.
-    exporting.start(session, tmp_path / "before.png")
+    exporting.start_export(session, tmp_path / "before.png")
     window.until(lambda: (tmp_path / "before.png").exists() and session.export is None)
     goal = drag_bar(window, loose)
-    exporting.start(session, tmp_path / "a.png")
+    exporting.start_export(session, tmp_path / "a.png")
     assert loose.afterwards
-    exporting.start(session, tmp_path / "b.png")
+    exporting.start_export(session, tmp_path / "b.png")
     assert "An export is under way" in session.toasts[-1].text
-    saving.quit_lissom(session)
+    saving.request_quit(session)
     assert question(window).title == "An export is running"
     session.dialog = None
-    exporting.cancel(session)
+    exporting.cancel_export(session)
     assert session.toasts[-1].text == "The export was cancelled. Nothing was written."
     window.settle()
     assert [path.name for path in tmp_path.iterdir()] == ["before.png"]
@@ -206,9 +204,9 @@ def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
     monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ())
     few = FrameRange(0, 2)
     export = replace(loose.document.export, format="gif", framing="canvas", frames=few)
-    editing.edit(window.session, scene_commands.set_export(export))
+    editing.edit_document(window.session, scene_commands.set_export(export))
     with window.session.jobs.held(exporting.PREPARING):
-        exporting.start(window.session, tmp_path / "a.gif")
+        exporting.start_export(window.session, tmp_path / "a.gif")
         window.frames()
         exporting.copy_picture(window.session)
         assert window.session.toasts[-1].text == exporting.UNDER_WAY
@@ -233,17 +231,17 @@ ON_ITS_WAY = {
         window.settle(),
         posing.insert_key(window.session),
     ),
-    "a layer": lambda window, folder: layering.add(window.session, [drawn(folder)]),
+    "a layer": lambda window, folder: layering.add_layers(window.session, [drawn(folder)]),
     "a pose of the library": lambda window, _: (
         playback.scrub(window.session, 7),
         window.settle(),
-        library.keep(window.session),
+        library.save_pose_to_library(window.session),
     ),
-    "solved keys": lambda window, _: rebuilding.solve_again(window.session),
+    "solved keys": lambda window, _: resolving.solve_keys_again(window.session),
     "a pull of an in-between": lambda window, _: (
         playback.scrub(window.session, 7),
         window.settle(),
-        posing.wish(window.session, {1: Target(position=700 + 30j)}),
+        posing.set_targets(window.session, {1: Target(position=700 + 30j)}),
     ),
 }
 
@@ -259,11 +257,11 @@ def drawn(folder):
 @pytest.mark.parametrize("what", ON_ITS_WAY)
 def test_closing_asks_about_what_is_on_its_way(window, loose, tmp_path, what):
     path = tmp_path / "a.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     assert loose.history.is_saved
     ON_ITS_WAY[what](window, tmp_path)
-    saving.close(window.session)
+    saving.close_project(window.session)
     window.until(lambda: question(window) is not None or window.session.project is None)
     assert window.session.project is loose, "it was closed without a question"
     answer(window)
@@ -275,15 +273,15 @@ def test_closing_asks_about_what_is_on_its_way(window, loose, tmp_path, what):
 
 
 def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
-    saving.write(window.session, tmp_path / "a.lissom", None)
+    saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.settle()
     playback.scrub(window.session, 7)
     window.settle()
     with window.session.jobs.held(INSERTING):
         posing.insert_key(window.session)
-        saving.close(window.session)
+        saving.close_project(window.session)
         assert question(window) is None
-        saving.close(window.session)
+        saving.close_project(window.session)
         assert "Inserting a key is not finished" in question(window).text
     window.session.dialog = None
     window.settle()
@@ -292,12 +290,12 @@ def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
 
 def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     path = tmp_path / "a.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     window.session.preferences = replace(window.session.preferences, auto_key=False)
     playback.scrub(window.session, 7)
     window.settle()
-    posing.wish(window.session, {1: Target(position=700 + 30j)})
+    posing.set_targets(window.session, {1: Target(position=700 + 30j)})
     window.settle()
     assert loose.preview_pose is not None
     # Also by the autosave.
@@ -305,7 +303,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
     assert load_project(kept).layers[0].key_frames == {0, 7, 24}
-    saving.close(window.session)
+    saving.close_project(window.session)
     window.frames(2)
     assert "The pose at frame 7 is in no key" in question(window).text
     answer(window)
@@ -328,7 +326,7 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
 def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_path):
     for number in range(4):
         path = drawn(tmp_path)
-        window.act(layering.add, [path.rename(tmp_path / f"{number}.png")])
+        window.act(layering.add_layers, [path.rename(tmp_path / f"{number}.png")])
         window.settle()
         window.act(editing.undo)
         window.settle()
@@ -347,7 +345,9 @@ def test_within_a_job_the_clock_goes_on(window):
 
 def beside_the_axis(window, project):
     """Add a handle that has no partner, but room for one; return its id."""
-    posing.add_handle(window.session, complex(project.puppet.shown.handle_positions.mean()) + 60)
+    posing.add_handle(
+        window.session, complex(project.layer_runtime.shown.handle_positions.mean()) + 60
+    )
     window.settle()
     (added,) = project.selected
     return added
@@ -409,9 +409,9 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(wind
     before = loose.document
     with window.session.jobs.held(posing.POSING):
         goal = drag_bar(window, loose)
-        copying.copy(window.session)
+        copying.copy_pose_or_keys(window.session)
         playback.scrub(window.session, 40)
-        pasting.paste(window.session, "flipped")
+        pasting.paste_copied(window.session, "flipped")
         assert [each.what for each in loose.afterwards] == ["Paste flipped"]
         editing.undo(window.session)
         assert not loose.afterwards
@@ -440,15 +440,15 @@ def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
 def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(window, loose):
     playback.scrub(window.session, 12)
     window.settle()
-    places = loose.puppet.shown.handle_positions
+    places = loose.layer_runtime.shown.handle_positions
     with window.session.jobs.held(posing.POSING):
-        posing.wish(window.session, {0: Target(position=places[0] + 5j)})
-        posing.let_go(window.session)
+        posing.set_targets(window.session, {0: Target(position=places[0] + 5j)})
+        posing.release_drag(window.session)
         posing.add_handle(window.session, complex(places.mean()))
         (added,) = loose.selected
         # Of a document that is not shown yet, nobody knows where a drag begins.
-        posing.wish(window.session, {1: Target(position=places[1] + 5j)})
-        posing.let_go(window.session)
+        posing.set_targets(window.session, {1: Target(position=places[1] + 5j)})
+        posing.release_drag(window.session)
         (pull,) = loose.pulls
         assert pull.start is None
     window.settle()
@@ -461,7 +461,7 @@ def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, loose):
     window.until(lambda: pull.kept is not None)
     playback.scrub(window.session, 7)
     window.frames(1)
-    layering.stand_still(window.session, 0)
-    copying.copy(window.session)
+    layering.make_still(window.session, 0)
+    copying.copy_pose_or_keys(window.session)
     window.until(lambda: not loose.pending)
     assert pull.kept is pull.newest

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from imgui_bundle import ImVec2
 
-from app.editor.actions import guiding
+from app.editor.actions import tutorials
 from app.ui.window.title import window_title
 from app.ui.window.window import SIZE
 
@@ -41,10 +41,10 @@ def test_the_places_lead_from_the_welcome_view_to_each_export(window, hand):
     session = window.session
 
     def step():
-        return session.guide.step
+        return session.tutorial.step
 
     hand("begin")
-    window.until(lambda: session.guide is not None and step() == "handle")
+    window.until(lambda: session.tutorial is not None and step() == "handle")
     window.frames(5)
     assert re.fullmatch(r"giraffe.* – Lissom", window_title(session))
     hand("nose")
@@ -55,7 +55,7 @@ def test_the_places_lead_from_the_welcome_view_to_each_export(window, hand):
     hand("nose", "ground")
     window.until(lambda: step() == "play")
     project = session.project
-    assert project.document.export.format == guiding.FORMAT
+    assert project.document.export.format == tutorials.FORMAT
     window.show_tab("Export")
     for name, kind in (("video", "mp4"), ("frames", "png")):
         hand("format")

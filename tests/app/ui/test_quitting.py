@@ -16,7 +16,7 @@ from app.storage.project_file import load_project
 def saved(window, bar, tmp_path):
     """The bar, saved in a file."""
     path = tmp_path / "a.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     assert bar.history.is_saved
     yield path
@@ -34,7 +34,7 @@ def gate(window):
 
 def quit_lissom(window):
     """Ask the window to close, as its button does."""
-    window.act(saving.quit_lissom)
+    window.act(saving.request_quit)
 
 
 def question(window):
@@ -52,14 +52,14 @@ def wish_of(document):
 
 def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
     place = wish_of(bar.document)
-    posing.wish(window.session, {1: Target(position=place + 5j)})
+    posing.set_targets(window.session, {1: Target(position=place + 5j)})
     assert bar.history.is_saved  # nothing of it has come yet
-    saving.quit_lissom(window.session)
-    assert not window.session.quitting
+    saving.request_quit(window.session)
+    assert not window.session.is_quitting
     window.until(lambda: question(window) == "Unsaved changes")
     answer(window, "Save")
     window.settle()
-    assert window.session.quitting
+    assert window.session.is_quitting
     assert wish_of(load_project(saved)) == place + 5j
 
 
@@ -83,13 +83,13 @@ def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
     for title in (None, saving.UNSAVED):
         quit_lissom(window)
         assert question(window) == title
-        assert not window.session.quitting
+        assert not window.session.is_quitting
     answer(window, "Cancel")
     quit_lissom(window)
     assert question(window) is None
     gate.close()
     window.settle()
-    assert window.session.quitting
+    assert window.session.is_quitting
     assert len(load_project(saved).layers[0].handles) == len(bar.layer.handles)
 
 
@@ -103,7 +103,7 @@ def test_a_save_that_fails_ends_nothing(window, saved):
     quit_lissom(window)
     answer(window, "Save")
     window.settle()
-    assert not window.session.quitting
+    assert not window.session.is_quitting
     assert any(
         NO_FOLDER.format(folder=saved.parent) in toast.text for toast in window.session.toasts
     )
@@ -112,13 +112,13 @@ def test_a_save_that_fails_ends_nothing(window, saved):
 
 
 def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, saved):
-    start = complex(bar.puppet.shown.handle_positions[1])
+    start = complex(bar.layer_runtime.shown.handle_positions[1])
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(start))
         robot.mouse_down(0)
         robot.mouse_move_to_pos(window.point(start - 20j))
-        saving.quit_lissom(window.session)
+        saving.request_quit(window.session)
         robot.yield_(2)
         robot.mouse_move_to_pos(window.point(start - 25j))
         robot.mouse_up(0)
@@ -126,10 +126,10 @@ def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, s
 
     window.run(play)
     assert window.session.pointer is None
-    saving.quit_lissom(window.session)  # once more
+    saving.request_quit(window.session)  # once more
     answer(window, "Save")
     window.settle()
-    assert window.session.quitting
+    assert window.session.is_quitting
     kept = load_project(saved)
     assert abs(wish_of(kept) - start) > 10
     assert wish_of(kept) == wish_of(bar.document)

@@ -27,23 +27,23 @@ from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.document.timing import PRESETS, Easing, Spring
 from app.editor import layering
 from app.editor.actions import (
-    cutting,
+    cut_out_editing,
     editing,
     exporting,
     keys,
-    material,
     playback,
     posing,
-    rebuilding,
+    resolving,
     springs,
-    timeline_pointing,
+    stiffness_editing,
+    timeline_drag,
     tracks,
     viewing,
 )
 from app.editor.poses import copying, flipping, library, pasting
-from app.editor.timeline_view import Strip
+from app.editor.timeline_view import TimeRangeView
 from app.editor.work import pull
-from app.editor.work.jobs import Jobs, Kind
+from app.editor.work.jobs import JobKind, Jobs
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
 from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
@@ -138,7 +138,7 @@ class Workers:
         """Let them begin nothing that they may not."""
         self._hold.enter_context(self._jobs.held())
 
-    def do(self, kind: Kind) -> None:
+    def do(self, kind: JobKind) -> None:
         """Let them do what waits of a kind, while the window stands still."""
         others = {other for other in self._jobs.kinds if other != kind}
         before, self._hold = self._hold, ExitStack()
@@ -146,7 +146,7 @@ class Workers:
             if others:
                 rest.enter_context(self._jobs.held(*others))
             before.close()
-            assert self._jobs.settle(), kind
+            assert self._jobs.wait_until_idle(), kind
             self._hold.enter_context(self._jobs.held())
 
     def do_all(self) -> None:
@@ -237,7 +237,7 @@ class Walk:
 
     def edit(self, command) -> None:
         self.note(command.label)
-        self.window.act(editing.edit, command)
+        self.window.act(editing.edit_document, command)
 
     # What the hands do.
 
@@ -286,7 +286,7 @@ class Walk:
     def point(self) -> None:
         """Move the pointer to a handle, to a widget, or anywhere."""
         io = imgui.get_io()
-        shown = self.project.puppet.shown
+        shown = self.project.layer_runtime.shown
         if self.chance(0.35) and shown is not None and len(shown.handle_positions):
             place = self.window.point(complex(self.choice(shown.handle_positions)))
             at = (place.x, place.y)
@@ -357,12 +357,12 @@ class Walk:
         self.window.show_tab(title)
 
     def add_handle(self) -> None:
-        shown = self.project.puppet.shown
+        shown = self.project.layer_runtime.shown
         if len(self.project.layer.handles) < MOST_HANDLES:
             self.act(posing.add_handle, complex(self.choice(shown.positions)))
 
     def pull(self) -> None:
-        shown = self.project.puppet.shown
+        shown = self.project.layer_runtime.shown
         wishes = {}
         for handle, place in zip(shown.clip.layer.handles, shown.handle_positions, strict=True):
             if handle in self.project.layer.handles and self.chance(0.4):
@@ -371,7 +371,7 @@ class Walk:
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
                 wishes[handle.id] = Target(position=complex(place) + offset, rotation=turn)
         if wishes:
-            self.act(posing.wish, wishes)
+            self.act(posing.set_targets, wishes)
 
     def change_handle(self) -> None:
         handles = self.project.layer.handles
@@ -382,9 +382,17 @@ class Walk:
             case 7:
                 self.act(self.choice((posing.suggest_handles, posing.mirror_handles)))
             case 6:
-                self.act(posing.pin_here)
+                self.act(posing.pin_selected_handles)
             case 5:
-                self.act(self.choice((editing.lock, editing.group, editing.ungroup)))
+                self.act(
+                    self.choice(
+                        (
+                            editing.toggle_handles_locked,
+                            editing.group_handles,
+                            editing.ungroup_handles,
+                        )
+                    )
+                )
             case 0:
                 name = self.choice(("paw", "tail", "x", f"{self.rng.integers(99)}"))
                 self.edit(handle_commands.rename_handle(self.project.active, handle.id, name))
@@ -401,9 +409,9 @@ class Walk:
                     )
                 )
             case 3:
-                self.act(posing.free_turn, handle.id)
+                self.act(posing.free_rotation, handle.id)
             case 4:
-                self.act(posing.anchor_at, handle.id)
+                self.act(posing.toggle_anchor_at_handle, handle.id)
 
     def set_anchor(self) -> None:
         inside = complex(self.choice(self.project.layer.domain.mesh.vertices))
@@ -413,17 +421,17 @@ class Walk:
 
     def select(self) -> None:
         chosen = [handle.id for handle in self.project.layer.handles if self.chance(0.5)]
-        self.act(editing.select, frozenset(chosen))
+        self.act(editing.select_handles, frozenset(chosen))
 
     def choose_keys(self) -> None:
-        self.act(editing.choose_keys, self.some_keys())
+        self.act(editing.select_keys, self.some_keys())
 
     def delete(self) -> None:
-        self.act(editing.delete)
+        self.act(editing.delete_selection)
 
     def insert_key(self) -> None:
         if len(self.project.layer.keys) < MOST_KEYS:
-            self.act(keys.insert_at, int(self.rng.integers(LAST)))
+            self.act(keys.insert_key_in_row_at, int(self.rng.integers(LAST)))
 
     def seek(self) -> None:
         self.act(playback.scrub, int(self.rng.integers(LAST)))
@@ -446,12 +454,14 @@ class Walk:
 
     def change_turns(self) -> None:
         self.act(
-            keys.set_turns, {self.project.active: self.some_keys()}, int(self.rng.integers(-2, 3))
+            keys.set_revolutions,
+            {self.project.active: self.some_keys()},
+            int(self.rng.integers(-2, 3)),
         )
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.
-        self.act(keys.set_variant, self.choice((*VARIANTS, *("nu", "linear") * 4)))
+        self.act(keys.set_inbetween_method, self.choice((*VARIANTS, *("nu", "linear") * 4)))
 
     def change_bounds(self) -> None:
         wanted = Bounds(
@@ -461,49 +471,53 @@ class Walk:
         )
         wanted = self.choice((wanted, Bounds()))
         if self.chance(0.5):
-            self.act(rebuilding.draft_bounds, wanted)
-        self.act(rebuilding.choose_bounds, wanted)
+            self.act(resolving.preview_limits, wanted)
+        self.act(resolving.set_limits, wanted)
 
     def solve_again(self) -> None:
-        self.act(rebuilding.solve_again)
+        self.act(resolving.solve_keys_again)
 
     def rebuild(self) -> None:
         detail = "normal" if self.chance(0.1) else "coarse"
         triangles = int(self.rng.integers(1_000, 2_000))
         meshing = Meshing(triangles=triangles, detail=detail)
-        self.act(viewing.draft_meshing, meshing)
-        self.act(rebuilding.rebuild)
+        self.act(viewing.preview_meshing, meshing)
+        self.act(resolving.rebuild_mesh)
 
     def cancel_solving(self) -> None:
-        self.act(rebuilding.cancel)
+        self.act(resolving.cancel_solving_keys)
 
     def copy_and_paste(self) -> None:
         if len(self.project.layer.keys) < MOST_KEYS:
             way = self.choice(("as it is", "swapped", "flipped"))
-            pastes = ((pasting.paste, way), (pasting.paste_on_selected, way))
-            self.act(*self.choice(((copying.copy,), (copying.copy_all,), *pastes)))
+            pastes = ((pasting.paste_copied, way), (pasting.paste_on_selected, way))
+            self.act(
+                *self.choice(((copying.copy_pose_or_keys,), (copying.copy_all_poses,), *pastes))
+            )
 
     def use_library(self) -> None:
         layer = self.project.layer
         if len(layer.library) < 3:
-            self.act(library.keep)
+            self.act(library.save_pose_to_library)
         elif self.chance(0.2):
-            self.act(library.delete, self.choice(layer.library).name)
+            self.act(library.delete_library_pose, self.choice(layer.library).name)
         for kept in self.project.layer.library[:1]:
             match self.rng.integers(4):
                 case 0:
-                    self.act(library.rename, kept.name, f"pose {self.rng.integers(99)}")
+                    self.act(
+                        library.rename_library_pose, kept.name, f"pose {self.rng.integers(99)}"
+                    )
                 case 1 if len(layer.keys) < MOST_KEYS:
-                    self.act(library.apply_at, kept.name, int(self.rng.integers(LAST)))
+                    self.act(library.apply_library_pose_at, kept.name, int(self.rng.integers(LAST)))
                 case 2:
-                    self.act(library.blend, kept.name, float(self.rng.random() * 1.2))
-                    self.act(library.end_blend)
+                    self.act(library.blend_library_pose, kept.name, float(self.rng.random() * 1.2))
+                    self.act(library.end_pose_blend)
                 case 3:
                     middle = float(self.rng.uniform(0, 160))
-                    self.act(flipping.place_axis, self.choice((None, middle)))
+                    self.act(flipping.set_mirror_axis, self.choice((None, middle)))
 
     def change_markers(self) -> None:
-        self.act(keys.mark_here)
+        self.act(keys.add_marker_at_playhead)
         marker = self.choice(self.document.markers)
         match self.rng.integers(3):
             case 0:
@@ -511,73 +525,82 @@ class Walk:
             case 1:
                 self.act(keys.delete_marker, marker.frame)
             case 2:
-                self.act(playback.to_marker, int(self.choice((-1, 1))))
+                self.act(playback.go_to_marker, int(self.choice((-1, 1))))
 
     def change_time(self) -> None:
         match self.rng.integers(9):
             case 0:
                 self.act(keys.set_fps, float(self.choice((1, 12, 23.976, 60, 240))))
             case 1:
-                self.act(playback.set_speed, self.choice(playback.SPEEDS))
+                self.act(playback.set_playback_speed, self.choice(playback.SPEEDS))
             case 2:
                 last = self.rng.integers(self.document.frames.first + 1, LAST)
                 self.act(keys.set_last_frame, int(last))
             case 3 if self.document.frames.last < LAST / 2:
-                self.act(keys.scale, 2.0)
+                self.act(keys.scale_selected_keys, 2.0)
             case 3 | 4:
-                self.act(keys.scale, self.choice((0.5, 0.9)))
+                self.act(keys.scale_selected_keys, self.choice((0.5, 0.9)))
             case 5:
-                self.act(keys.reverse)
+                self.act(keys.reverse_selected_keys)
             case 6:
-                self.act(keys.match_ends)
+                self.act(keys.match_loop_ends)
             case 7:
                 self.act(keys.toggle_loop)
             case 8:
-                self.act(keys.play_all)
+                self.act(keys.clear_preview_range)
 
     def look_at_time(self) -> None:
-        strip = Strip(float(self.rng.uniform(-10, LAST)), float(self.rng.uniform(0.1, 3)))
-        self.act(timeline_pointing.look_at, self.choice((strip, None)))
+        strip = TimeRangeView(float(self.rng.uniform(-10, LAST)), float(self.rng.uniform(0.1, 3)))
+        self.act(timeline_drag.set_time_range, self.choice((strip, None)))
 
     def change_onion_skin(self) -> None:
-        self.act(viewing.set_ghosts, *map(int, self.rng.integers(0, 3, 3)))
+        self.act(viewing.set_onion_skin, *map(int, self.rng.integers(0, 3, 3)))
         if not self.session.overlays.onion:
-            self.act(viewing.toggle, "onion")
+            self.act(viewing.toggle_overlay, "onion")
 
     def change_layers(self) -> None:
         layers = self.document.layers
         layer = self.choice(layers)
         match self.rng.integers(9):
             case 0:
-                self.act(layering.choose, layer.id)
+                self.act(layering.set_active_layer, layer.id)
             case 1 if len(layers) < MOST_LAYERS:
-                self.act(layering.add, [self.picture])
+                self.act(layering.add_layers, [self.picture])
             case 2 if len(layers) < MOST_LAYERS:
-                self.act(layering.duplicate, layer.id)
+                self.act(layering.duplicate_layer, layer.id)
             case 3 | 1 | 2 if len(layers) > 1:
-                self.act(layering.remove, layer.id)
+                self.act(layering.delete_layers, layer.id)
             case 4:
-                self.act(layering.move, layer.id, int(self.rng.integers(len(layers))))
+                self.act(layering.move_layer, layer.id, int(self.rng.integers(len(layers))))
             case 5:
-                verb = self.choice((layering.show, layering.lock, layering.refer))
+                verb = self.choice(
+                    (
+                        layering.toggle_layers_hidden,
+                        layering.toggle_layers_locked,
+                        layering.toggle_reference,
+                    )
+                )
                 self.act(verb, layer.id)
             case 6:
-                self.act(layering.rename, layer.id, self.choice(("arm", "leg", "")))
-                self.act(layering.fade, layer.id, float(self.rng.random()))
+                self.act(layering.rename_layer, layer.id, self.choice(("arm", "leg", "")))
+                self.act(layering.set_layer_opacity, layer.id, float(self.rng.random()))
             case 7:
-                self.act(self.choice((layering.switch_here, layering.unswitch_here)), layer.id)
+                self.act(
+                    self.choice((layering.toggle_visibility_key, layering.delete_visibility_key)),
+                    layer.id,
+                )
             case 8:
-                self.act(self.choice((layering.stand_still, layering.stand_up)), layer.id)
+                self.act(self.choice((layering.make_still, layering.make_posable)), layer.id)
 
     def change_joints(self) -> None:
         child, parent = self.choice(self.document.layers), self.choice(self.document.layers)
         match self.rng.integers(4):
             case 0:
-                self.act(layering.let_hang, child.id)
+                self.act(layering.detach_layer, child.id)
             case 1:
-                self.act(layering.turn_with, child.id, self.chance(0.5))
+                self.act(layering.set_inherits_rotation, child.id, self.chance(0.5))
             case _:
-                self.act(layering.hang, child.id, parent.id, self.chance(0.5))
+                self.act(layering.attach_layer, child.id, parent.id, self.chance(0.5))
 
     def change_tracks(self) -> None:
         """Move a handle by a track of its own, or by a spring."""
@@ -588,22 +611,22 @@ class Walk:
         place = complex(*self.rng.normal(0, 0.05 * self.size, 2))
         match self.rng.integers(8):
             case 0:
-                self.act(tracks.key_here, (handle,))
+                self.act(tracks.key_handles_at_playhead, (handle,))
             case 1 | 2:
-                self.act(tracks.put, handle, place)
+                self.act(tracks.set_handle_value, handle, place)
             case 3:
-                self.act(tracks.plant, handle, self.chance(0.5))
+                self.act(tracks.set_track_space, handle, self.chance(0.5))
             case 4:
                 frequency, damping = self.rng.uniform((0.5, 0), (4, 1))
                 spring = Spring(handle=handle, frequency=float(frequency), damping=float(damping))
                 self.act(editing.edit_layer, track_commands.put_spring, spring)
             case 5:
-                self.act(springs.make_keys, handle)
+                self.act(springs.bake_spring, handle)
             case 6:
                 remove = self.choice((track_commands.remove_tracks, track_commands.remove_springs))
                 self.act(editing.edit_layer, remove, (handle,))
             case 7:
-                self.act(tracks.choose, self.choice((handle, None)))
+                self.act(tracks.select_track, self.choice((handle, None)))
 
     def change_staging(self) -> None:
         """Let layers fade, move, take turns, or be painted in another order; and the camera."""
@@ -611,21 +634,25 @@ class Walk:
         layer, other = self.choice(layers).id, self.choice(layers).id
         match self.rng.integers(7):
             case 0:
-                self.act(layering.fade_here, layer, float(self.rng.random()))
+                self.act(layering.key_opacity, layer, float(self.rng.random()))
             case 1:
                 shift = complex(*self.rng.normal(0, 0.1 * self.size, 2))
-                self.act(layering.move_here, layer, shift, float(self.rng.normal()))
+                self.act(layering.key_transform, layer, shift, float(self.rng.normal()))
             case 2:
-                self.act(layering.place_here, layer, None if other == layer else other)
+                self.act(layering.key_draw_order, layer, None if other == layer else other)
             case 3:
-                verbs = layering.unfade_here, layering.unmove_here, layering.unplace_here
+                verbs = (
+                    layering.delete_opacity_key,
+                    layering.delete_transform_key,
+                    layering.delete_draw_order_key,
+                )
                 self.act(self.choice(verbs), layer)
             case 4:
                 self.act(layering.key_camera)
             case 5:
-                self.act(layering.form, *{layer, other})
+                self.act(layering.create_switch, *{layer, other})
             case 6 if self.document.choices:
-                self.act(layering.dissolve, self.choice(self.document.choices).name)
+                self.act(layering.delete_switch, self.choice(self.document.choices).name)
 
     def change_depth(self) -> None:
         layer = self.project.layer
@@ -640,46 +667,58 @@ class Walk:
             frame = self.choice(layer.keys).frame
             front = self.choice((None, depth))
             self.edit(layer_commands.key_depth(layer.id, frame, handle.id, front))
-        self.act(viewing.tint, "depth" if self.chance(0.3) else None)
+        self.act(viewing.set_tint, "depth" if self.chance(0.3) else None)
 
     def change_material(self) -> None:
         layer = self.project.layer
         match self.choice(("tool", "paint", "bone", "amount", "clear", "mirror", "names", "again")):
             case "tool":
-                self.act(material.take_up, self.choice(("stiff", "soft", "normal", "bone", None)))
+                self.act(
+                    stiffness_editing.toggle_stiffness_tool,
+                    self.choice(("stiff", "soft", "normal", "bone", None)),
+                )
             case "paint" if self.session.material is not None:
                 start = complex(*self.rng.uniform(0, self.size, 2))
-                self.act(material.paint, [start, start + self.rng.uniform(0, 30)])
+                self.act(
+                    stiffness_editing.paint_stiffness, [start, start + self.rng.uniform(0, 30)]
+                )
             case "bone" if len(layer.handles) > 1:
                 first, second = self.rng.choice([h.id for h in layer.handles], 2, replace=False)
-                self.act(material.add_bone, (int(first), int(second)))
+                self.act(stiffness_editing.add_bone, (int(first), int(second)))
             case "amount" if layer.bones:
                 bone = self.choice(layer.bones)
-                self.act(material.set_bone, bone.ends, float(self.rng.uniform(0.1, 100)))
+                self.act(
+                    stiffness_editing.set_bone_stiffness,
+                    bone.ends,
+                    float(self.rng.uniform(0.1, 100)),
+                )
             case "clear":
-                self.act(material.clear)
+                self.act(stiffness_editing.clear_stiffness)
             case "mirror":
-                self.act(material.mirror)
+                self.act(stiffness_editing.mirror_stiffness)
             case "names":
-                self.act(material.suggest)
+                self.act(stiffness_editing.suggest_stiffness)
             case "again":
-                self.act(material.pose_again)
+                self.act(stiffness_editing.solve_shown_pose_again)
 
     def cut_out(self) -> None:
         match self.rng.integers(5):
             case 0:
-                self.act(cutting.take_up, self.choice(("keep", "remove", "pick", "holes", None)))
+                self.act(
+                    cut_out_editing.toggle_cut_tool,
+                    self.choice(("keep", "remove", "pick", "holes", None)),
+                )
             case 1 | 2:
                 width, height = self.project.document.canvas
                 count = self.rng.integers(1, 4)
                 way = self.rng.uniform(0, width, count) + 1j * self.rng.uniform(0, height, count)
                 radius = float(self.rng.uniform(2, 12))
                 stroke = Stroke(points=way, radius=radius, keeps=self.chance(0.7))
-                self.act(cutting.brush, stroke)
+                self.act(cut_out_editing.cut_with_brush, stroke)
             case 3:
-                self.act(cutting.set_tolerance, int(self.rng.integers(10, 30)))
+                self.act(cut_out_editing.set_background_tolerance, int(self.rng.integers(10, 30)))
             case 4:
-                self.act(cutting.forget_strokes)
+                self.act(cut_out_editing.clear_cut_out_strokes)
 
     def change_view(self) -> None:
         match self.rng.integers(4):
@@ -690,7 +729,7 @@ class Walk:
             case 2:
                 self.act(viewing.set_backdrop, self.choice(("checker", "#123456")))
             case 3:
-                self.act(viewing.toggle, "cage")
+                self.act(viewing.toggle_overlay, "cage")
 
     def change_export(self) -> None:
         frames = sorted(map(int, self.rng.integers(self.document.frames.last + 1, size=2)))
@@ -701,7 +740,7 @@ class Walk:
             framing=self.choice(("canvas", "fit")),
             frames=self.choice((None, FrameRange(*frames))),
         )
-        self.act(exporting.set_export, settings)
+        self.act(exporting.set_export_settings, settings)
 
     def undo(self) -> None:
         for _ in range(self.rng.integers(1, 4)):
@@ -851,7 +890,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     project = window.open(drawing(tmp_path / ("bones.ora" if seed % 2 else "bone.png")))
     first = project.document
     if seed % 5 == 0:
-        keys.set_variant(window.session, "metric")
+        keys.set_inbetween_method(window.session, "metric")
     walk = Walk(window, seed, workers, Widgets(monkeypatch), tmp_path)
     workers.hold()
     for number in range(number_of_steps(request.config, seed)):
@@ -861,7 +900,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
             last = "\n".join(walk.told)
             raise AssertionError(f"seed {seed}, step {number}: {error}\nafter\n{last}") from error
     walk.release()
-    walk.act(posing.let_go)
+    walk.act(posing.release_drag)
     # What is still on its way, such as a rebuilt domain, would come where undo leads back to.
     workers.release()
     window.settle()

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from app.editor import failures
+from app.editor import error_reports
 from app.editor.actions import files, viewing
-from app.editor.dialogs import FileDialog, ProblemReport, Recovery
+from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.reports import format_trace
 from app.storage.autosave import Autosave, load_report, write_report
 from app.ui.timeline import timeline
@@ -61,7 +61,7 @@ def broken(window, bar, monkeypatch):
 @pytest.mark.usefixtures("broken")
 def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path, capfd):
     session = window.session
-    window.act(viewing.toggle, "outline")
+    window.act(viewing.toggle_overlay, "outline")
     window.run(lambda robot: robot.item_click("//##toast0/Report…"))
     window.frames(2)
     report = session.dialog
@@ -71,11 +71,11 @@ def test_a_bug_offers_a_report_that_is_shown_changed_and_saved(window, tmp_path,
     assert session.graphics in report.text
     for name in (str(window.folder), str(Path.home()), "cat picture", "ann-marie"):
         assert name not in report.text
-    window.act(failures.word_report, report, f"It fell over.\n{report.text}")
+    window.act(error_reports.edit_report_text, report, f"It fell over.\n{report.text}")
     window.run(lambda robot: robot.item_click("//###dialog/Save as…"))
     window.frames(2)
     assert isinstance(session.dialog, FileDialog)
-    window.act(viewing.choose, session.dialog, tmp_path / "it.txt")
+    window.act(viewing.choose_file, session.dialog, tmp_path / "it.txt")
     assert session.dialog is None
     text = (tmp_path / "it.txt").read_text(encoding="utf-8")
     assert text == f"It fell over.\n{report.text}"
@@ -89,11 +89,11 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     session.project = None
-    files.offer_recovery(session)
-    failures.tell_of_kept(session)
+    files.ask_recovery(session)
+    error_reports.offer_kept_report(session)
     window.frames(3)
     recovery = session.dialog
-    assert isinstance(recovery, Recovery)
+    assert isinstance(recovery, RecoveryDialog)
     assert session.toasts == [], "one thing at a time"
     window.run(lambda robot: robot.item_click("//###dialog/Report a problem…"))
     window.frames(2)
@@ -104,10 +104,10 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     window.run(lambda robot: robot.item_click("//###dialog/Later"))
     window.frames(2)
     assert session.dialog is None
-    failures.tell_of_kept(session)
+    error_reports.offer_kept_report(session)
     assert "report of it was kept" in session.toasts[0].text
     session.toasts = []
-    failures.tell_of_kept(session)
+    error_reports.offer_kept_report(session)
     assert session.toasts == [], "it was told"
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)

@@ -39,17 +39,17 @@ def dragon(window, wanted):
     for share in HANDLES:
         posing.add_handle(session, scaled(share))
         window.frames(2)
-    rest = project.puppet.shown.pose.targets
+    rest = project.layer_runtime.shown.pose.targets
     for frame, (head, tail) in MOVES.items():
         playback.seek(session, frame)
         window.settle()
         wishes = {0: head, 2: tail}
-        posing.wish(
+        posing.set_targets(
             session,
             {i: Target(position=rest[i].position + scaled(move)) for i, move in wishes.items()},
         )
         window.settle()
-    editing.choose_keys(session, frozenset({16}))
+    editing.select_keys(session, frozenset({16}))
     session.prepares_ahead = True
     window.settle()
     return project
@@ -103,9 +103,9 @@ def differs(picture, other):
 def test_screenshots_of_the_main_states(window, dragon, save):
     session, palette = window.session, PALETTES["dark"]
     playback.seek(session, 16)
-    editing.select(session, frozenset({0}))
+    editing.select_handles(session, frozenset({0}))
     posing_ = save("posing")
-    for number, place in enumerate(dragon.puppet.shown.handle_positions):
+    for number, place in enumerate(dragon.layer_runtime.shown.handle_positions):
         mark = around(window, posing_, complex(place))
         assert (mark.min(axis=2) > 225).sum() > 8, number
         is_blue = (mark[..., 2] > 200) & (mark[..., 0] < 90)
@@ -114,14 +114,14 @@ def test_screenshots_of_the_main_states(window, dragon, save):
 
     playback.seek(session, 10)
     plain = in_viewport(save("plain"))
-    viewing.toggle(session, "onion")
+    viewing.toggle_overlay(session, "onion")
     ghosts = in_viewport(save("onion-skin"))
     tint = (ghosts - plain)[..., 0] - (ghosts - plain)[..., 2]
     assert (tint > 20).sum() > 1000  # red before
     assert (tint < -20).sum() > 1000  # blue after
     assert differs(ghosts, plain) < 0.2
 
-    viewing.toggle(session, "onion")
+    viewing.toggle_overlay(session, "onion")
     playback.seek(session, 16)
     viewing.show_heat_map(session, "sigma_b")
     window.show_tab("Distortion")

@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
 from app.editor.actions import editing, playback, posing, saving, viewing
-from app.editor.work.jobs import Job, Kind
+from app.editor.work.jobs import Job, JobKind
 from app.storage.assets import sample_images
 from app.ui.style import PALETTES
 from app.ui.style.widgets import shorten_text
@@ -29,7 +29,7 @@ def test_theme_and_scale_change_at_once(window):
     window.frames(2)
     assert window.picture() != before
     text_size = window.text_height()
-    viewing.scale_up(window.session)
+    viewing.enlarge_interface(window.session)
     window.frames(2)
     assert window.text_height() > text_size
 
@@ -37,9 +37,9 @@ def test_theme_and_scale_change_at_once(window):
 def test_changing_the_theme_changes_no_size(window):
     height = window.status_height()
     for _ in range(4):
-        viewing.scale_up(window.session)
+        viewing.enlarge_interface(window.session)
         window.frames(2)
-        viewing.scale_down(window.session)
+        viewing.shrink_interface(window.session)
         viewing.toggle_theme(window.session)
         window.frames(2)
     assert window.status_height() == height
@@ -56,12 +56,12 @@ def test_shift_and_f1_open_the_sheet_of_keys(window):
 def test_scale_takes_docked_panels_along(window):
     window.again(Harness.open, sample_images() / "ring.png")
     tabs, timeline = _docked("Handle").size.x, _docked("Timeline").size.y
-    viewing.scale_up(window.session)
+    viewing.enlarge_interface(window.session)
     window.frames(3)
     scale = window.session.preferences.scale
     assert _docked("Timeline").size.y == pytest.approx(scale * timeline, abs=1)
     assert _docked("Handle").size.x == pytest.approx(scale * tabs, abs=1)
-    viewing.scale_down(window.session)
+    viewing.shrink_interface(window.session)
     window.frames(3)
     assert _docked("Timeline").size.y == pytest.approx(timeline, abs=1)
 
@@ -72,10 +72,10 @@ def test_docked_panels_keep_the_size_that_a_person_gave_them(window):
     imgui.internal.dock_builder_set_node_size(node.id_, ImVec2(node.size.x, 500))
     window.frames(3)
     assert _docked("Timeline").size.y == pytest.approx(500, abs=1)
-    viewing.scale_up(window.session)
+    viewing.enlarge_interface(window.session)
     window.frames(3)
     assert _docked("Timeline").size.y == pytest.approx(500, abs=1)
-    viewing.scale_down(window.session)
+    viewing.shrink_interface(window.session)
     window.frames(3)
     assert _docked("Timeline").size.y == pytest.approx(500, abs=1)
     window.resize((1280, 800))
@@ -159,7 +159,7 @@ def fine_screen(window):
 def test_a_finer_screen_shows_the_same_with_more_pixels(window, fine_screen, bar, scale):
     """Panels take the same part of the window, and handles the same part of the picture."""
     del bar
-    editing.select(window.session, frozenset())
+    editing.select_handles(window.session, frozenset())
     # Away from the handles, which look otherwise below the pointer.
     window.run(lambda robot: robot.mouse_move_to_pos(ImVec2(2, 2)))
     window.frames(3)
@@ -185,7 +185,7 @@ def _blue(picture):
 
 def test_a_gesture_is_as_far_on_a_finer_screen(window, fine_screen, bar):
     fine_screen(density=2.0)
-    start = complex(bar.puppet.shown.handle_positions[1])
+    start = complex(bar.layer_runtime.shown.handle_positions[1])
 
     def drag(robot):
         robot.mouse_move_to_pos(window.point(start))
@@ -209,7 +209,7 @@ def refreshes(monkeypatch):
 
 def test_nothing_is_drawn_anew_where_nothing_changes(window, refreshes, tmp_path):
     project = window.open(sample_images() / "bar.png")
-    saving.write(window.session, tmp_path / "bar.lissom", None)
+    saving.write_project(window.session, tmp_path / "bar.lissom", None)
     window.settle()
     window.session.toasts = []
     window.frames(60)
@@ -231,7 +231,7 @@ def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):
     window.open(sample_images() / "bar.png")
     window.frames(120)
     done = []
-    job = Job(kind=Kind("A job"), work=lambda: 0, done=done.append, failed=done.append)
+    job = Job(kind=JobKind("A job"), work=lambda: 0, done=done.append, failed=done.append)
     window.session.jobs.put(job)
     window.session.jobs.settle()
     window.frames(1)
@@ -267,9 +267,9 @@ def test_the_title_names_the_file_and_marks_changes(window, tmp_path):
     assert window_title(session) == "Lissom"
     window.open(sample_images() / "bar.png")
     assert window_title(session) == "bar – Lissom"
-    posing.add_handle(session, complex(*session.project.puppet.picture.size) / 2)
+    posing.add_handle(session, complex(*session.project.layer_runtime.picture.size) / 2)
     assert window_title(session) == "bar* – Lissom"
-    saving.write(session, tmp_path / "posed.lissom", None)
+    saving.write_project(session, tmp_path / "posed.lissom", None)
     window.settle()
     assert window_title(session) == "posed.lissom – Lissom"
 
@@ -322,7 +322,7 @@ def test_a_drawing_stands_out_from_the_backdrop(window, tmp_path, theme, level, 
     window.frames(3)
     picture = window.picture()
     assert seen(10 + 100j) == 128
-    assert project.puppet.picture.size == (200, 200)
+    assert project.layer_runtime.picture.size == (200, 200)
 
 
 def _level(theme):

@@ -29,7 +29,7 @@ def slow_window(window, monkeypatch):
 
 @pytest.mark.parametrize("ways", [1, pytest.param(soak.WAYS, marks=pytest.mark.long)])
 def test_what_is_used_for_minutes_on_end_is_given_back(slow_window, bar, tmp_path, ways):
-    keys.set_variant(slow_window.session, "nu")
+    keys.set_inbetween_method(slow_window.session, "nu")
     slow_window.settle()
 
     def use_in_every_way():
@@ -57,7 +57,7 @@ def test_a_project_that_was_closed_is_let_go(slow_window, tmp_path):
     history = weakref.ref(project.history)
     del project
     opengl = held(slow_window.gl).opengl
-    saving.put_project(slow_window.session, None)
+    saving.set_project(slow_window.session, None)
     slow_window.frames(2)
     assert history() is None
     assert held(slow_window.gl).opengl < opengl
@@ -67,14 +67,14 @@ def test_the_mesh_of_a_project_that_was_closed_is_let_go(window):
     """Also where something of it is in front, and the anchor and the status bar were shown."""
     project = window.open(sample_images() / "bar.png")
     window.act(posing.add_handle, project.layer.domain.mesh.vertices.mean())
-    window.act(editing.edit, layer_commands.set_depth(project.active, 0, 1.0, None))
+    window.act(editing.edit_document, layer_commands.set_depth(project.active, 0, 1.0, None))
     window.settle()
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     mesh = shown.mesh.domain.mesh
     assert shown.vertices.triangles is not mesh.triangles
     vertices = weakref.ref(mesh.vertices)
     del project, shown, mesh
-    saving.put_project(window.session, None)
+    saving.set_project(window.session, None)
     window.frames(2)
     gc.collect()
     assert vertices() is None
@@ -105,7 +105,7 @@ def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window
         return len(given)
 
     before = bar.document
-    window.act(posing.nudge, 20j)
+    window.act(posing.nudge_handles, 20j)
     window.settle()
     assert bar.document is not before
     # The last work may have ended some frames ago.
@@ -116,8 +116,8 @@ def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window
     assert rest() == 0
     playback.toggle_play(window.session)
     assert rest() == 0
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
     assert rest() == 1
-    saving.put_project(window.session, None)
+    saving.set_project(window.session, None)
     window.frames()
     assert given

@@ -18,10 +18,10 @@ def between(window):
 def stop_half_way(window):
     bent = window.again(bend_bar, LAST, "loose")
     width, _ = bent.document.canvas
-    wishes = dict(bent.puppet.shown.pose.targets)
+    wishes = dict(bent.layer_runtime.shown.pose.targets)
     last = max(wishes)
     wishes[last] = Target(position=complex(0.35 * width, 0.6 * width))
-    posing.wish(window.session, wishes)
+    posing.set_targets(window.session, wishes)
     window.settle()
     playback.seek(window.session, HALF)
     window.settle()
@@ -52,20 +52,20 @@ def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between
     press_u(window)
     assert session.split is not None
     assert session.split.method is Variant.LINEAR
-    twin = between.puppet.twin
-    own, other = between.puppet.shown.positions, twin.shown.positions
+    twin = between.layer_runtime.comparison
+    own, other = between.layer_runtime.shown.positions, twin.shown.positions
     # Halfway round, straight ways are shorter than arcs.
     assert np.abs(own - other).max() > 0.01 * np.ptp(own.real)
     assert (np.abs(np.asarray(window.picture()).astype(int) - np.asarray(alone)) > 24).any()
     assert between.history.undo_label == depth
     press_u(window)
     assert session.split is None
-    assert between.puppet.twin is None
+    assert between.layer_runtime.comparison is None
 
 
 def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, between):
     session = window.session
-    viewing.toggle_split(session)
+    viewing.toggle_comparison(session)
     window.settle()
     before = session.split.place
     x, top = divider(window)
@@ -89,33 +89,33 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
 def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window, between, baseline):
     session = window.session
     document = between.document
-    viewing.compare_with(session, baseline)
+    viewing.compare_with_method(session, baseline)
     window.settle()
-    twin = between.puppet.twin
+    twin = between.layer_runtime.comparison
     assert twin.shown.is_current
     assert twin.shown.clip.baseline is baseline
-    own = between.puppet.shown.positions
+    own = between.layer_runtime.shown.positions
     distance = np.abs(own - twin.shown.positions).max() / np.ptp(own.real)
     assert 1e-5 < distance < 0.5
-    curves = between.twin_curves.value
+    curves = between.comparison_curves.value
     assert curves.clip.baseline is baseline
     assert np.isfinite(curves.k).all()
     assert between.document is document
     # All frames are there before anybody looks.
-    (inbetweens,) = between.puppet.store.prepared(twin.clip(document))
+    (inbetweens,) = between.layer_runtime.store.prepared(twin.clip(document))
     assert len(inbetweens._frames) >= LAST - 1
 
 
 def test_a_method_that_leads_handles_leads_a_new_one(window, between):
     session = window.session
-    viewing.compare_with(session, Baseline.HANDLES)
+    viewing.compare_with_method(session, Baseline.HANDLES)
     window.settle()
-    shown = between.puppet.twin.shown
+    shown = between.layer_runtime.comparison.shown
     assert shown.is_current
     middle = np.abs(shown.mesh.domain.mesh.vertices - shown.mesh.domain.mesh.vertices.mean())
-    posing.add_handle(session, complex(between.puppet.shown.positions[middle.argmin()]))
+    posing.add_handle(session, complex(between.layer_runtime.shown.positions[middle.argmin()]))
     window.settle()
-    led = between.puppet.twin.shown
+    led = between.layer_runtime.comparison.shown
     assert led.is_current
     size = np.ptp(shown.positions.real)
     assert np.abs(led.positions - shown.positions).max() > 1e-3 * size
@@ -123,7 +123,7 @@ def test_a_method_that_leads_handles_leads_a_new_one(window, between):
 
 @pytest.mark.usefixtures("between")
 def test_a_method_that_is_not_for_these_keys_says_why(window):
-    viewing.compare_with(window.session, Baseline.CONFORMAL)
+    viewing.compare_with_method(window.session, Baseline.CONFORMAL)
     window.settle()
     (toast,) = window.session.toasts
     assert "conformal" in f"{toast.text} {toast.details}".lower()
@@ -134,23 +134,23 @@ def test_a_method_that_is_not_for_these_keys_says_why(window):
 def test_side_by_side_each_method_has_half_of_the_viewport(window):
     session = window.session
     whole = session.screen
-    viewing.toggle_split(session)
-    viewing.lay_beside(session, beside=True)
+    viewing.toggle_comparison(session)
+    viewing.set_side_by_side(session, beside=True)
     window.settle()
     window.frames(2)
     assert session.screen[0] == pytest.approx(whole[0] / 2, abs=1)
     assert session.screen[1] == whole[1]
-    viewing.toggle_split(session)
+    viewing.toggle_comparison(session)
     window.frames(3)
     assert session.screen == whole
 
 
 @pytest.mark.usefixtures("everything")
 def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between):
-    viewing.toggle_split(window.session)
+    viewing.toggle_comparison(window.session)
     window.show_tab("Distortion")
     window.settle()
-    own, other = between.curves.value, between.twin_curves.value
+    own, other = between.curves.value, between.comparison_curves.value
     assert own.k_share.max() <= 1 + 1e-6
     assert own.tau_share.max() <= 1 + 1e-6
     assert other.clip.layer.variant is Variant.LINEAR
@@ -159,28 +159,31 @@ def test_both_are_measured_and_the_linear_one_leaves_the_bounds(window, between)
 
 def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between):
     session = window.session
-    viewing.compare_with(session, Variant.NU)
+    viewing.compare_with_method(session, Variant.NU)
     playback.seek(session, LAST)
     window.settle()
     np.testing.assert_allclose(
-        between.puppet.shown.positions, between.puppet.twin.shown.positions, rtol=0, atol=1e-9
+        between.layer_runtime.shown.positions,
+        between.layer_runtime.comparison.shown.positions,
+        rtol=0,
+        atol=1e-9,
     )
-    middle = between.puppet.shown.mesh.domain.mesh.vertices.mean()
-    nearest = np.abs(between.puppet.shown.mesh.domain.mesh.vertices - middle).argmin()
-    posing.add_handle(session, complex(between.puppet.shown.positions[nearest]))
+    middle = between.layer_runtime.shown.mesh.domain.mesh.vertices.mean()
+    nearest = np.abs(between.layer_runtime.shown.mesh.domain.mesh.vertices - middle).argmin()
+    posing.add_handle(session, complex(between.layer_runtime.shown.positions[nearest]))
     window.settle()
-    assert between.puppet.twin.layer.handles == between.layer.handles
+    assert between.layer_runtime.comparison.layer.handles == between.layer.handles
 
 
 def test_nothing_is_compared_where_the_panel_says_so(window):
     session = window.session
-    viewing.compare_with(session, Variant.ETA)
+    viewing.compare_with_method(session, Variant.ETA)
     assert session.split.method is Variant.ETA
-    viewing.compare_with(session, None)
+    viewing.compare_with_method(session, None)
     assert session.split is None
-    viewing.toggle_split(session)
+    viewing.toggle_comparison(session)
     assert session.split.method is Variant.ETA
-    viewing.move_divider(session, 2.0)
+    viewing.move_comparison_divider(session, 2.0)
     assert session.split.place == 1 - viewing.LEAST_PART
 
 
@@ -190,7 +193,7 @@ def test_the_names_of_both_methods_stand_at_the_divider(window):
     viewing.toggle_theme(session)
     window.frames(3)
     alone = np.asarray(window.picture()).astype(int)
-    viewing.toggle_split(session)
+    viewing.toggle_comparison(session)
     window.settle()
     x, top = divider(window)
     changed = np.abs(np.asarray(window.picture()).astype(int) - alone).max(axis=2) > 24

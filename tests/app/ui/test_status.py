@@ -57,7 +57,7 @@ def test_inbetweens_show_what_was_measured(window, loose):
     window.settle()
     window.frames(2)
     shown, *_ = facts(window)
-    halfway = loose.puppet.store.prepared(loose.clip)[0].frame(0.5)
+    halfway = loose.layer_runtime.store.prepared(loose.clip)[0].frame(0.5)
     fz, fzbar = halfway.fz, halfway.fzbar
     values = {
         "Shear": distortion.k(fz, fzbar).max(),
@@ -70,7 +70,7 @@ def test_inbetweens_show_what_was_measured(window, loose):
 
 @pytest.mark.usefixtures("loose")
 def test_a_bound_that_is_reached_warns(window):
-    posing.wish(window.session, {1: Target(position=complex(9000, 0))})
+    posing.set_targets(window.session, {1: Target(position=complex(9000, 0))})
     window.settle()
     fact = bars.list_status_items(window.session)[0]
     assert fact.is_warning
@@ -80,7 +80,7 @@ def test_a_bound_that_is_reached_warns(window):
 def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
     assert bars.describe_pose_limit(window.session) == ""
     width, height = loose.document.canvas
-    posing.wish(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
+    posing.set_targets(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
     lag = layer.lags(layer.key(24).pose)[1]
@@ -105,7 +105,7 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
 
 @pytest.mark.usefixtures("everything")
 def test_extremes_between_the_times_that_were_measured(loose):
-    curves = measure_curves(loose.clip, loose.puppet.store.prepared(loose.clip))
+    curves = measure_curves(loose.clip, loose.layer_runtime.store.prepared(loose.clip))
     assert curves.extremes.shape == (TIMES, 3)
     np.testing.assert_array_equal(curves.extremes_at(0), curves.extremes[0])
     np.testing.assert_allclose(curves.extremes_at(24), curves.extremes[-1], rtol=1e-12, atol=0)
@@ -122,7 +122,7 @@ def test_extremes_between_the_times_that_were_measured(loose):
         frames=replace(loose.document.frames, last=48),
     )
     looped = clip_of(looped, 0)
-    store = InbetweenCache(mesh=loose.puppet.store.mesh)
+    store = InbetweenCache(mesh=loose.layer_runtime.store.mesh)
     store.add(store.segments_job(looped, store.missing_segments(looped, 0))())
     again = measure_curves(looped, store.prepared(looped))
     assert again.extremes_at(5) == again.extremes_at(53)

@@ -12,7 +12,7 @@ from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
 from app.editor.actions import editing, exporting, playback, posing, upkeep
-from app.editor.actions.body.rebuilding import RENEWING
+from app.editor.actions.layer_setup.resolving import SOLVING_KEYS
 from app.export_formats import MeshOptions, SpriteSheetOptions
 from app.motion.extents.extent import extent_key
 from app.storage import NO_FOLDER
@@ -100,7 +100,7 @@ def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
 
 
 def test_target_typed_in_poses_the_shape(window, project, tab):
-    editing.select(window.session, frozenset({1}))
+    editing.select_handles(window.session, frozenset({1}))
     before = project.layer.key(24).pose
     wish = before.targets[1].position
     tab(
@@ -116,8 +116,8 @@ def test_target_typed_in_poses_the_shape(window, project, tab):
 
 
 def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab):
-    editing.select(window.session, frozenset({1}))
-    turn = project.puppet.shown.handle_rotations[1]
+    editing.select_handles(window.session, frozenset({1}))
+    turn = project.layer_runtime.shown.handle_rotations[1]
     tab("Handle", lambda robot: robot.item_click("**/##turns"))
     assert project.layer.key(24).pose.targets[1].rotation == pytest.approx(turn, abs=1e-6)
     tab("Handle", lambda robot: robot.item_input_value("**/##angle", 10.0))
@@ -128,7 +128,7 @@ def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab
 
 
 def test_anchor_goes_to_the_handle_and_back(window, project, tab):
-    editing.select(window.session, frozenset({0}))
+    editing.select_handles(window.session, frozenset({0}))
     tab("Handle", lambda robot: robot.item_click("**/###anchor here"))
     assert project.layer.anchor == project.layer.handle(0).position
     tab("Handle", lambda robot: robot.item_click("**/###clear anchor"))
@@ -161,7 +161,7 @@ def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     tab("Deform", lambda robot: enter_bound(robot, "k", bound))
     assert project.layer.bounds.k == pytest.approx(bound, abs=1e-6)
     assert largest(project, "k") <= bound
-    assert all(key.pose.certificate.certified for key in project.layer.keys)
+    assert all(key.pose.certificate.is_certified for key in project.layer.keys)
     assert project.layer.key(0).pose is before.layers[0].key(0).pose
     assert project.history.undo_label == "Set bounds"
     editing.undo(window.session)
@@ -179,12 +179,12 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
         robot.mouse_down(0)
         robot.mouse_move_to_pos(ImVec2(middle.x + 90, middle.y))
         assert project.document is before
-        assert project.drafted_bounds.sigma_a > NATURAL.bounds.sigma_a
+        assert project.previewed_limits.sigma_a > NATURAL.bounds.sigma_a
         robot.mouse_up(0)
 
     tab("Deform", drag)
     assert project.layer.bounds.sigma_a > NATURAL.bounds.sigma_a
-    assert project.drafted_bounds is None
+    assert project.previewed_limits is None
     editing.undo(window.session)
     assert project.document is before
     editing.redo(window.session)
@@ -197,7 +197,7 @@ def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project,
     bound = round(0.5 * largest(project, "k"), 2)
     tab("Deform", lambda robot: enter_bound(robot, "k", bound))
     certificate = project.layer.key(24).pose.certificate
-    assert certificate.certified
+    assert certificate.is_certified
     assert certificate.k <= bound + 1e-6
 
 
@@ -211,7 +211,7 @@ def test_cancelled_solving_changes_nothing(project, window):
 
     window.show_tab("Deform")
     # A fast machine would be done before the button is found.
-    with window.session.jobs.held(RENEWING):
+    with window.session.jobs.held(SOLVING_KEYS):
         window.run(act)
     window.settle()
     assert project.document is before
@@ -230,7 +230,7 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
     assert curves.clip == project.clip
     assert curves.k_share.max() <= 1 + 1e-3
     assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
-    editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
+    editing.edit_document(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     window.settle()
     assert project.curves.follows(project.clip)
     assert project.curves.value.frames[-1] == 28
@@ -239,10 +239,10 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
 @pytest.mark.usefixtures("everything")
 def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     tab("Distortion", lambda _: None)
-    editing.edit(window.session, key_commands.move_keys(0, frozenset({24}), 4))
+    editing.edit_document(window.session, key_commands.move_keys(0, frozenset({24}), 4))
     older = project.document
     upkeep.maintain(window.session)
-    editing.edit(window.session, key_commands.move_keys(0, frozenset({28}), 4))
+    editing.edit_document(window.session, key_commands.move_keys(0, frozenset({28}), 4))
     window.settle()
     assert project.curves.follows(project.clip)
     assert project.document is not older
@@ -297,7 +297,7 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
     assert after.layers[0].handles == before.layers[0].handles
     for frame in (0, 24):
         old, new = before.layers[0].key(frame).pose, after.layers[0].key(frame).pose
-        assert new.certificate.certified
+        assert new.certificate.is_certified
         places = np.array([handle.position for handle in after.layers[0].handles])
         np.testing.assert_allclose(
             after.layers[0].map_of(new)(places),
@@ -326,8 +326,8 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
 
 def test_domain_that_cannot_be_built_is_told(window, project, tab):
     before = project.document
-    project.puppet.picture = replace(
-        project.puppet.picture, rgba=np.zeros_like(project.puppet.picture.rgba)
+    project.layer_runtime.picture = replace(
+        project.layer_runtime.picture, rgba=np.zeros_like(project.layer_runtime.picture.rgba)
     )
 
     def act(robot):
@@ -375,11 +375,13 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
         robot.item_click("**/tolerance/###Own")
         robot.item_input_value("**/##tolerance", 0.25)
 
-    exporting.set_export(window.session, replace(project.document.export, format="spritesheet"))
+    exporting.set_export_settings(
+        window.session, replace(project.document.export, format="spritesheet")
+    )
     tab("Export", lay_out)
     wanted = SpriteSheetOptions(trimmed=False, padding=256, power_of_two=True)
     assert project.document.export.sheet == wanted
-    exporting.set_export(window.session, replace(project.document.export, format="glb"))
+    exporting.set_export_settings(window.session, replace(project.document.export, format="glb"))
     tab("Export", detail)
     assert project.document.export.shapes == MeshOptions(triangles=900, tolerance=0.25)
     tab("Export", lambda robot: robot.item_click("**/tolerance/###½ px, 8 shapes"))
@@ -416,7 +418,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     first = project.extent.value
     known, place = note_of_the_frame(window, project)
     assert known
-    posing.wish(window.session, {1: Target(position=CENTRE + 2.5 * RADIUS)})
+    posing.set_targets(window.session, {1: Target(position=CENTRE + 2.5 * RADIUS)})
     window.frames(1)
     known, waiting = note_of_the_frame(window, project)
     window.settle()
@@ -440,7 +442,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
 
 def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
     session = window.session
-    exporting.set_export(session, replace(project.document.export, size=(80, 60)))
+    exporting.set_export_settings(session, replace(project.document.export, size=(80, 60)))
 
     def choose(robot):
         robot.item_click("**/range/###own")
@@ -451,7 +453,7 @@ def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
     tab("Export", choose)
     window.run(lambda robot: robot.item_click("//###dialog/Choose"))
     window.frames(2)
-    assert project.exports_to == {"png": tmp_path / "frames"}
+    assert project.export_destinations == {"png": tmp_path / "frames"}
     assert not (tmp_path / "frames").exists()
     tab("Export", lambda robot: robot.item_click("**/###start"))
     window.until(lambda: session.export is None)
@@ -463,7 +465,7 @@ def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
 
 
 def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
-    project.exports_to["png"] = tmp_path / "missing" / "frames"
+    project.export_destinations["png"] = tmp_path / "missing" / "frames"
     tab("Export", lambda robot: robot.item_click("**/###start"))
     assert window.session.export is None
     assert any(
@@ -474,7 +476,7 @@ def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
 
 def test_the_export_tab_changes_nothing_by_itself(window, project):
     settings = replace(project.document.export, format="mp4", background="transparent")
-    editing.edit(window.session, set_export(settings))
+    editing.edit_document(window.session, set_export(settings))
     before = project.document
     window.show_tab("Export")
     window.frames(5)
@@ -484,7 +486,7 @@ def test_the_export_tab_changes_nothing_by_itself(window, project):
 
 def test_each_widget_makes_a_step_of_its_own(window, project, tab):
     """A name that is typed, and the track of the weight that is pressed while it still is."""
-    editing.select(window.session, frozenset({0}))
+    editing.select_handles(window.session, frozenset({0}))
     steps = []
 
     def change(robot):
@@ -514,8 +516,8 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
     key = layer.key(24)
     wish = Target(position=key.pose.targets[1].position + 12j)
     pose = replace(key.pose, targets={**key.pose.targets, 1: wish})
-    editing.edit(window.session, key_commands.replace_key_pose(project.active, 24, pose))
-    editing.select(window.session, frozenset({1}))
+    editing.edit_document(window.session, key_commands.replace_key_pose(project.active, 24, pose))
+    editing.select_handles(window.session, frozenset({1}))
     written = []
     for name in ("text_unformatted", "text_colored"):
         draw = getattr(imgui, name)
@@ -530,7 +532,7 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
         assert "12 px short of its target" in told, title
         assert reason in told, title
         assert "by the limits" not in told
-    assert project.timing.shortfalls.value[pose] == {1: pytest.approx(12, abs=1e-6)}
+    assert project.timing.target_errors.value[pose] == {1: pytest.approx(12, abs=1e-6)}
 
 
 def test_the_canvas_has_a_size_of_its_own(window, project, tab):

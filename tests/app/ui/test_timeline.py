@@ -18,8 +18,8 @@ from app.document.keyframe import Handle, Keyframe, TangentMode, Target
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS
 from app.editor import layering
-from app.editor.actions import editing, keys, playback, rebuilding, timeline_pointing, viewing
-from app.editor.timeline_view import Strip
+from app.editor.actions import editing, keys, playback, resolving, timeline_drag, viewing
+from app.editor.timeline_view import TimeRangeView
 from app.ui.bars.status import describe_motion_limit
 from app.ui.style import PALETTES
 from app.ui.timeline import segments
@@ -284,7 +284,7 @@ def test_easing_is_chosen_and_drawn_by_hand(window, project, play):
 
 
 def test_easing_of_all_chosen_keys_is_changed_together(window, play):
-    editing.choose_keys(window.session, frozenset({0, 24}))
+    editing.select_keys(window.session, frozenset({0, 24}))
 
     def choose(hand):
         hand.click("interval 24")
@@ -296,7 +296,7 @@ def test_easing_of_all_chosen_keys_is_changed_together(window, play):
 
 
 def test_how_keys_are_passed_is_chosen_in_their_menu_and_by_a_key(window, project, play):
-    editing.choose_keys(window.session, frozenset({12, 24}))
+    editing.select_keys(window.session, frozenset({12, 24}))
 
     def choose(hand):
         hand.click("key 12", 1)
@@ -326,13 +326,13 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     assert paths.places.shape == (61, 2)
     places = CENTRE + RADIUS / 2 * np.exp(1j * np.array([0.0, 0.3, -0.3, 0.1]))
     np.testing.assert_allclose(paths.places[list(FRAMES), 1], places, atol=1e-6)
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     with_path, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     project.selected = frozenset()
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
-    keys.set_passing(window.session, {0: frozenset({12})}, TangentMode.CORNER)
+    keys.set_tangent_mode(window.session, {0: frozenset({12})}, TangentMode.CORNER)
     project.selected = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.places - paths.places)[6:20].max() > 0.1
@@ -353,7 +353,7 @@ def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
     assert describe_motion_limit(window.session) == (
         "The motion stops at frame 12 to keep within the stretch limit"
     )
-    rebuilding.loosen_bounds(window.session)
+    resolving.relax_limits(window.session)
     window.settle()
     assert project.layer.bounds != tight
     assert project.layer.key(12).pose is squeezed
@@ -408,7 +408,7 @@ def test_menu_reverses_and_scales(window, project, play):
     assert [key.pose for key in backwards.layers[0].keys] == poses[::-1]
     assert choose("Copy first pose to last key").layers[0].keys[-1].pose is poses[-1]
     assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
-    editing.choose_keys(window.session, frozenset({18, 24}))
+    editing.select_keys(window.session, frozenset({18, 24}))
     assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)
     assert project.chosen == {18, 30}
     undo_all(window)
@@ -432,7 +432,7 @@ def test_a_drag_goes_to_where_the_button_is_let_go(window, project, play):
 
 
 def test_a_strip_that_is_scrolled_by_a_drag_stays_so(window, project, play):
-    timeline_pointing.look_at(window.session, Strip(0.0, 1.5))
+    timeline_drag.set_time_range(window.session, TimeRangeView(0.0, 1.5))
     window.frames(2)
 
     def drag_beyond_the_edge(hand):
@@ -441,7 +441,7 @@ def test_a_strip_that_is_scrolled_by_a_drag_stays_so(window, project, play):
         hand.robot.mouse_move_to_pos(ImVec2(1275, edge.y))
         for _ in range(10):
             hand.robot.yield_()
-        assert project.timing.gesture_strip.start > 0
+        assert project.timing.gesture_time_range.start > 0
         hand.robot.mouse_up(0)
 
     play(drag_beyond_the_edge)
@@ -463,21 +463,21 @@ def test_wheel_zooms_at_the_pointer_and_scrolls(window, project, play):
     window.run(lambda robot: robot.mouse_wheel_y(-1.0))
     assert project.timing.strip.start > zoomed.start
     assert project.timing.strip.scale == zoomed.scale
-    timeline_pointing.fit(window.session)
+    timeline_drag.fit_timeline(window.session)
     assert project.timing.strip is None
 
 
 def test_timeline_follows_the_playhead_while_playing(window, project):
-    timeline_pointing.look_at(window.session, Strip(0.0, 4.0))
+    timeline_drag.set_time_range(window.session, TimeRangeView(0.0, 4.0))
     window.frames(2)
     assert project.timing.strip.start == 0.0
     playback.toggle_play(window.session)
-    playback.set_speed(window.session, 2.0)
+    playback.set_playback_speed(window.session, 2.0)
     window.frames(45)
     frame = playback.current_frame(window.session, project)
     assert frame > 30
     assert project.timing.strip.start > 10
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
 
 
 def test_speed_is_changed_while_playing(window, project):
@@ -486,7 +486,7 @@ def test_speed_is_changed_while_playing(window, project):
     before = playback.current_frame(window.session, project)
     keys.set_fps(window.session, 60.0)
     assert playback.current_frame(window.session, project) == before
-    playback.halt(window.session)
+    playback.stop_playback(window.session)
 
 
 @given(
@@ -507,7 +507,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
         there = {frame + by for frame in dragged}
         return by == 0 or (min(there) >= 0 and not there & (frames if copies else frames - dragged))
 
-    by = timeline_pointing.shift_of(
+    by = timeline_drag.drag_offset(
         document, {document.layers[0].id: dragged}, wanted, copies=copies
     )
     assert is_possible(by)
@@ -516,7 +516,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
 
 
 def test_keys_that_fall_short_are_known(project):
-    lags = [project.timing.shortfalls.value[key.pose] for key in project.layer.keys]
+    lags = [project.timing.target_errors.value[key.pose] for key in project.layer.keys]
     assert [set(lag) for lag in lags] == [set(), set(), {1}, set()]
 
 
@@ -635,9 +635,9 @@ def test_markers_are_jumped_to(window, project, play):
 
 
 def test_the_preview_range_is_cleared_in_one_click_and_never_exported(window, project, play):
-    keys.start_preview_here(window.session)
+    keys.start_preview_at_playhead(window.session)
     playback.scrub(window.session, 40)
-    keys.end_preview_here(window.session)
+    keys.end_preview_at_playhead(window.session)
     window.frames(2)
     assert project.document.preview == project.document.played_frames == FrameRange(0, 40)
     assert export_frame_range(project.document) == FrameRange(0, 60)
@@ -653,7 +653,7 @@ def test_chosen_keys_are_eased_at_once(window, project, play):
     def easings():
         return [key.easing.name for key in project.layer.keys]
 
-    editing.choose_keys(window.session, frozenset({0, 12, 24}))
+    editing.select_keys(window.session, frozenset({0, 12, 24}))
     play(lambda hand: hand.robot.key_press(int(window.Key.f9)))
     assert easings() == ["in-out", "in-out", "in-out", "linear"]
     assert undo_all(window) == 1
@@ -663,11 +663,11 @@ def test_chosen_keys_are_eased_at_once(window, project, play):
         hand.robot.item_click("//$FOCUSED/hold")
         hand.robot.key_press(int(window.Key.escape))
 
-    editing.choose_keys(window.session, frozenset({0, 12}))
+    editing.select_keys(window.session, frozenset({0, 12}))
     play(by_popup)
     assert easings() == ["hold", "hold", "linear", "linear"]
     # Without a choice it is the way at the playhead.
-    editing.choose_keys(window.session, frozenset())
+    editing.select_keys(window.session, frozenset())
     playback.scrub(window.session, 30)
     play(lambda hand: hand.robot.key_press(int(window.Key.mod_shift | window.Key.f9)))
     assert easings() == ["hold", "hold", "in", "linear"]
@@ -682,11 +682,11 @@ def test_new_keys_get_the_easing_that_was_chosen_for_them(window, project, play)
     keys.set_easing(window.session, {0: frozenset({24})}, PRESETS["out"])
     window.frames(2)
     play(choose)
-    keys.insert_at(window.session, 60)
+    keys.insert_key_in_row_at(window.session, 60)
     window.settle()
     assert [key.easing.name for key in project.layer.keys][2:] == ["out", "out", "out"]
     # A key that divides a way keeps how time runs there.
-    keys.insert_at(window.session, 6)
+    keys.insert_key_in_row_at(window.session, 6)
     window.settle()
     assert project.layer.key(6).easing == LINEAR
 
@@ -736,10 +736,10 @@ def labels(window, monkeypatch):
 @pytest.mark.usefixtures("project")
 def test_only_what_goes_straight_is_called_linear(window, monkeypatch):
     assert labels(window, monkeypatch) == ["smooth"] * 3
-    window.act(keys.set_passing, {0: {24}}, TangentMode.CORNER)
+    window.act(keys.set_tangent_mode, {0: {24}}, TangentMode.CORNER)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "linear"]
-    window.act(keys.set_passing, {0: {12}}, TangentMode.STOP)
+    window.act(keys.set_tangent_mode, {0: {12}}, TangentMode.STOP)
     window.act(keys.set_easing, {0: {24}}, HOLD)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "hold"]
@@ -758,14 +758,14 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     assert shot.zoom == pytest.approx(1, rel=1e-12)
     playback.scrub(window.session, 30)
     view = project.view(window.session.screen)
-    viewing.look_from(window.session, replace(view, centre=60 + 70j, scale=2 * view.scale))
+    viewing.set_view(window.session, replace(view, centre=60 + 70j, scale=2 * view.scale))
     layering.key_camera(window.session)
     window.settle()
     assert camera_of(project) == [(0, 1), (30, 2)]
     assert camera_at(project.document, 30).centre == 60 + 70j
     looked = project.view(window.session.screen)
-    viewing.look_from(window.session, None)
-    layering.look_through(window.session)
+    viewing.set_view(window.session, None)
+    layering.toggle_camera_view(window.session)
     again = project.view(window.session.screen)
     assert (again.centre, again.scale) == (looked.centre, pytest.approx(looked.scale))
     playback.scrub(window.session, 0)
@@ -777,8 +777,8 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     layering.key_camera(window.session)
     assert project.document.camera[0].turn == pytest.approx(7.0)
     editing.undo(window.session)
-    viewing.look_from(window.session, None)
-    assert not project.looks_through
+    viewing.set_view(window.session, None)
+    assert not project.is_camera_view
     window.settle()
 
     play(lambda hand: hand.drag("camera key 30", 50, 44))
@@ -819,7 +819,7 @@ def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
     before = brightness(inside), brightness(outside)
     layering.key_camera(window.session)
     key = replace(project.document.camera[0], zoom=2.0)
-    editing.edit(window.session, filming_commands.key_camera(key))
+    editing.edit_document(window.session, filming_commands.key_camera(key))
     window.settle()
     assert brightness(inside) == before[0]
     assert abs(brightness(outside) - before[1]) > 20

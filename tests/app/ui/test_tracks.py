@@ -14,7 +14,7 @@ from app.document import (
 )
 from app.document.keyframe import Handle
 from app.document.timing import PRESETS, Spring, TangentMode, Track, TrackKey
-from app.editor.actions import editing, keys, playback, springs, timeline_pointing, tracks
+from app.editor.actions import editing, keys, playback, springs, timeline_drag, tracks
 from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
 from app.ui.style import PALETTES
@@ -30,9 +30,9 @@ def with_track(window, project, keys=WAVE, handle=RIGHT, **settings):
     """Give a handle a track, show its row, and choose it."""
     own = tuple(TrackKey(frame=frame, place=complex(place)) for frame, place in keys)
     track = Track(handles=(handle,), keys=own, **settings)
-    editing.edit(window.session, track_commands.put_track(project.active, track))
-    timeline_pointing.unfold(window.session, project.active)
-    tracks.choose(window.session, handle)
+    editing.edit_document(window.session, track_commands.put_track(project.active, track))
+    timeline_drag.toggle_track_rows(window.session, project.active)
+    tracks.select_track(window.session, handle)
     window.settle()
     return project.layer.track_of(handle)
 
@@ -125,11 +125,11 @@ def press(window):
 def test_a_handle_is_keyed_alone_by_one_click(window, bent, press):
     before, there = bent.document, place_of(bent, RIGHT, 12)
     window.act(playback.seek, 12)
-    window.act(editing.select, frozenset({RIGHT}))
+    window.act(editing.select_handles, frozenset({RIGHT}))
     press("###key handle")
     track = bent.layer.track_of(RIGHT)
     assert [(key.frame, key.place) for key in track.keys] == [(12, 0)]
-    assert bent.chosen_track == RIGHT
+    assert bent.selected_track == RIGHT
     assert bent.layer.keys == before.layers[0].keys
     assert abs(place_of(bent, RIGHT, 12) - there) < 1e-6, "nothing moves"
     # Once more at the same frame there is nothing to do, and at another one there is.
@@ -140,9 +140,9 @@ def test_a_handle_is_keyed_alone_by_one_click(window, bent, press):
     window.act(editing.undo)
     window.act(editing.undo)
     assert bent.document is before
-    assert bent.chosen_track is None
+    assert bent.selected_track is None
     window.act(editing.redo)
-    assert bent.chosen_track == RIGHT
+    assert bent.selected_track == RIGHT
 
 
 def test_a_key_between_two_others_keeps_what_the_track_does(window, bent, play):
@@ -162,14 +162,14 @@ def test_a_key_between_two_others_keeps_what_the_track_does(window, bent, play):
 
 def test_handles_of_a_selection_are_keyed_together_and_others_on_their_own(window, bent):
     window.act(playback.seek, 6)
-    window.act(editing.select, frozenset({LEFT, RIGHT}))
-    window.act(tracks.key_selected)
+    window.act(editing.select_handles, frozenset({LEFT, RIGHT}))
+    window.act(tracks.key_selected_handles)
     assert [track.handles for track in bent.layer.tracks] == [(LEFT, RIGHT)]
     window.act(editing.undo)
     with_track(window, bent)
     before = bent.document
-    window.act(editing.select, frozenset({LEFT, RIGHT}))
-    window.act(tracks.key_selected)
+    window.act(editing.select_handles, frozenset({LEFT, RIGHT}))
+    window.act(tracks.key_selected_handles)
     assert frames_of(bent, LEFT) == (6,)
     assert frames_of(bent, RIGHT) == (0, 6, 8, 16)
     window.act(editing.undo)
@@ -178,7 +178,7 @@ def test_handles_of_a_selection_are_keyed_together_and_others_on_their_own(windo
 
 def test_rows_of_tracks_are_folded_away_until_somebody_asks(window, bent, play):
     own = (TrackKey(frame=3, place=2j),)
-    editing.edit(
+    editing.edit_document(
         window.session, track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=own))
     )
     window.settle()
@@ -191,7 +191,7 @@ def test_rows_of_tracks_are_folded_away_until_somebody_asks(window, bent, play):
 
     play(look)
     assert is_there == [False, True]
-    assert bent.timing.unfolded == {bent.active}
+    assert bent.timing.expanded_layers == {bent.active}
 
 
 def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
@@ -199,8 +199,8 @@ def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
     before = bent.document
     play(lambda rows: rows.drag("key 8", 12, 13))
     assert frames_of(bent) == (0, 10, 16)
-    assert bent.chosen_of == {row(bent): {10}}
-    assert bent.chosen_track == RIGHT
+    assert bent.selected_keys == {row(bent): {10}}
+    assert bent.selected_track == RIGHT
     play(lambda rows: rows.drag("key 10", 15, 17, key=window.Key.mod_ctrl))
     assert frames_of(bent) == (0, 10, 14, 16)
     window.run(lambda robot: robot.key_press(int(window.Key.delete)))
@@ -216,23 +216,23 @@ def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
 def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(window, bent):
     with_track(window, bent, keys=((2, 0), (12, 5j), (22, 0)), delay=6)
     before = bent.document
-    editing.choose_keys_of(
+    editing.select_keys_in_rows(
         window.session, {bent.active: frozenset({0, 24}), row(bent): frozenset({2, 12, 22})}
     )
-    window.act(keys.scale, 0.5)
+    window.act(keys.scale_selected_keys, 0.5)
     assert bent.layer.key_frames == {0, 12}
     # Around the first of all, each in its own time: the track is as late as it was.
     assert frames_of(bent) == (1, 6, 11)
     assert bent.layer.track_of(RIGHT).delay == 6
-    window.act(keys.reverse)
+    window.act(keys.reverse_selected_keys)
     assert frames_of(bent) == (1, 6, 11)
     assert [key.place for key in bent.layer.track_of(RIGHT).keys] == [0, 5j, 0]
     window.act(editing.undo)
     window.act(editing.undo)
     assert bent.document is before
     # Those of poses alone leave the track, which has its own time, and the other way round.
-    editing.choose_keys_of(window.session, {bent.active: frozenset({0, 24})})
-    window.act(keys.scale, 0.5)
+    editing.select_keys_in_rows(window.session, {bent.active: frozenset({0, 24})})
+    window.act(keys.scale_selected_keys, 0.5)
     assert frames_of(bent) == (2, 12, 22)
     assert bent.layer.key_frames == {0, 12}
 
@@ -251,7 +251,7 @@ def test_a_drag_of_a_track_key_is_given_up_with_esc(window, bent, play):
 
     play(give_up)
     assert bent.document is before
-    assert bent.chosen_of == {row(bent): {8}}
+    assert bent.selected_keys == {row(bent): {8}}
 
 
 def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
@@ -262,15 +262,15 @@ def test_a_track_that_goes_in_the_middle_of_a_drag_ends_it(window, bent, play):
         rows.robot.mouse_down(0)
         y = rows.y()
         rows.go_to(11, y)
-        editing.edit(window.session, track_commands.remove_tracks(bent.active, (RIGHT,)))
+        editing.edit_document(window.session, track_commands.remove_tracks(bent.active, (RIGHT,)))
         rows.go_to(13, y)
         rows.go_to(14, y)
         rows.robot.mouse_up(0)
 
     play(lose)
     assert not bent.layer.tracks
-    assert bent.chosen_track is None
-    assert not bent.chosen_of
+    assert bent.selected_track is None
+    assert not bent.selected_keys
 
 
 def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, bent, play):
@@ -285,7 +285,7 @@ def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, ben
         rows.robot.mouse_up(0)
 
     play(box)
-    assert bent.chosen_of == {bent.active: {24}, row(bent): {8, 16}}
+    assert bent.selected_keys == {bent.active: {24}, row(bent): {8, 16}}
     play(lambda rows: rows.drag("key 8", 14, 15))
     assert frames_of(bent) == (0, 11, 19)
     assert [key.frame for key in bent.layer.keys] == [0, 27]
@@ -304,12 +304,12 @@ def test_keys_of_a_track_are_eased_and_passed_by_their_menu(window, bent, play):
     play(ease)
     key = bent.layer.track_of(RIGHT).keys[1]
     assert key.easing == PRESETS["in-out"]
-    window.act(keys.pass_otherwise)
+    window.act(keys.use_next_tangent_mode)
     assert bent.layer.track_of(RIGHT).keys[1].tangent_mode is TangentMode.CORNER
     # Without a chosen key, that of the chosen row at the playhead or before it is meant.
     window.act(editing.deselect_keys)
     window.act(playback.seek, 20)
-    window.act(keys.ease, PRESETS["out"])
+    window.act(keys.ease_selected_keys, PRESETS["out"])
     assert bent.layer.track_of(RIGHT).keys[2].easing == PRESETS["out"]
     assert all(key.easing != PRESETS["out"] for key in bent.layer.keys)
 
@@ -338,16 +338,16 @@ def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
     assert bent.layer.keys is poses
     seen = []
     for _ in range(3):
-        window.act(playback.to_key, 1)
+        window.act(playback.go_to_key, 1)
         seen.append(playback.current_frame(window.session, bent))
     assert seen == [9, 17, 17]
-    window.session.in_timeline = True
+    window.session.is_timeline_focused = True
     window.act(editing.select_all)
-    assert bent.chosen_of == {bent.active: {0, 24}, row(bent): {0, 4, 8, 16}}
+    assert bent.selected_keys == {bent.active: {0, 24}, row(bent): {0, 4, 8, 16}}
     # The row of the poses takes it back.
     play(lambda rows: rows.robot.item_click(f"**/name {bent.active}"))
-    assert bent.chosen_track is None
-    window.act(keys.insert_at, 12)
+    assert bent.selected_track is None
+    window.act(keys.insert_key_in_row_at, 12)
     window.settle()
     assert [key.frame for key in bent.layer.keys] == [0, 12, 24]
 
@@ -366,27 +366,27 @@ def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, 
     window.act(editing.undo)
     assert bent.document is before
     # Folded away, it is not what is meant any more.
-    tracks.choose(window.session, RIGHT)
+    tracks.select_track(window.session, RIGHT)
     play(lambda rows: rows.robot.item_click(f"**/fold {bent.active}"))
-    assert bent.chosen_track is None
+    assert bent.selected_track is None
 
 
 def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
     for number in range(12):
         handle = Handle(id=0, name=f"joint {number}", position=150 + 60 * number + 117j)
         command = handle_commands.add_handles(bent.active, [handle])
-        editing.edit(window.session, command)
+        editing.edit_document(window.session, command)
     own = (TrackKey(frame=3, place=0j), TrackKey(frame=9, place=0j))
     for handle in bent.layer.handles:
         track = Track(handles=(handle.id,), keys=own)
-        editing.edit(window.session, track_commands.put_track(bent.active, track))
-    timeline_pointing.unfold(window.session, bent.active)
+        editing.edit_document(window.session, track_commands.put_track(bent.active, track))
+    timeline_drag.toggle_track_rows(window.session, bent.active)
     window.settle()
     assert bent.timing.scrolled == 0, "the row of the poses is to be seen"
-    tracks.choose(window.session, bent.layer.handles[-1].id)
+    tracks.select_track(window.session, bent.layer.handles[-1].id)
     window.frames(3)
     assert bent.timing.scrolled > 0
-    tracks.choose(window.session, None)
+    tracks.select_track(window.session, None)
     window.frames(3)
     assert bent.timing.scrolled == 0
 
@@ -401,20 +401,20 @@ def test_a_row_switches_its_track_off(window, bent, play):
 def test_keys_of_a_track_are_copied_and_pasted(window, bent):
     with_track(window, bent, delay=2)
     before = bent.document
-    window.act(editing.choose_keys_of, {row(bent): frozenset({8, 16})})
+    window.act(editing.select_keys_in_rows, {row(bent): frozenset({8, 16})})
     window.run(lambda robot: robot.mouse_move("//###Timeline"))
     copy, paste = (int(window.Key.mod_ctrl) | int(key) for key in (window.Key.c, window.Key.v))
-    window.session.in_timeline = True
+    window.session.is_timeline_focused = True
     window.run(lambda robot: robot.key_press(copy))
     window.act(playback.seek, 30)
     window.run(lambda robot: robot.key_press(paste))
     window.settle()
     assert frames_of(bent) == (0, 8, 16, 28, 36)
-    assert bent.chosen_of == {row(bent): {28, 36}}
+    assert bent.selected_keys == {row(bent): {28, 36}}
     window.act(editing.undo)
     assert bent.document is before
     # Where the track is gone, it comes again with them.
-    window.act(editing.edit, track_commands.remove_tracks(bent.active, (RIGHT,)))
+    window.act(editing.edit_document, track_commands.remove_tracks(bent.active, (RIGHT,)))
     window.run(lambda robot: robot.key_press(paste))
     window.settle()
     assert frames_of(bent) == (30, 38)
@@ -422,7 +422,7 @@ def test_keys_of_a_track_are_copied_and_pasted(window, bent):
 
 def test_planting_moves_nothing_at_the_keys_and_leads_back(window, bent, press):
     track = with_track(window, bent, delay=1)
-    window.act(editing.select, frozenset({RIGHT}))
+    window.act(editing.select_handles, frozenset({RIGHT}))
     before = places_of(bent, RIGHT, [key.frame + 1 for key in track.keys])
     press("kind/###picture")
     planted = bent.layer.track_of(RIGHT)
@@ -446,9 +446,10 @@ def test_planting_keeps_the_motion_around_keys_that_have_velocities(window, bent
     )
     with_track(window, bent)
     window.act(
-        editing.edit, track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=keys))
+        editing.edit_document,
+        track_commands.put_track(bent.active, Track(handles=(RIGHT,), keys=keys)),
     )
-    window.act(editing.select, frozenset({RIGHT}))
+    window.act(editing.select_handles, frozenset({RIGHT}))
     window.settle()
 
     def passing():
@@ -475,11 +476,14 @@ def test_a_new_key_on_a_way_with_velocities_leaves_the_way_as_it_is(window, bent
     )
     with_track(window, bent)
     track = Track(handles=(RIGHT,), keys=keys)
-    window.act(editing.edit, track_commands.put_track(bent.active, track))
-    for frame, insert in ((7, tracks.key_here), (15, tracks.put)):
+    window.act(editing.edit_document, track_commands.put_track(bent.active, track))
+    for frame, insert in ((7, tracks.key_handles_at_playhead), (15, tracks.set_handle_value)):
         playback.scrub(window.session, frame)
         at = track_at(track, bent.clip, frame).place
-        insert(window.session, *(((RIGHT,),) if insert is tracks.key_here else (RIGHT, at)))
+        insert(
+            window.session,
+            *(((RIGHT,),) if insert is tracks.key_handles_at_playhead else (RIGHT, at)),
+        )
     window.settle()
     more = bent.layer.track_of(RIGHT)
     assert len(more.keys) == 5
@@ -493,7 +497,7 @@ def test_a_new_key_of_a_planted_track_is_where_the_handle_is(window, bent):
     with_track(window, bent, keys=((4, 300 + 100j), (8, 310 + 100j)), planted=True)
     window.act(playback.seek, 16)
     there = place_of(bent, RIGHT, 16)
-    window.act(tracks.key_here, (RIGHT,))
+    window.act(tracks.key_handles_at_playhead, (RIGHT,))
     window.settle()
     key = bent.layer.track_of(RIGHT).keys[-1]
     assert key.frame == 16
@@ -502,7 +506,7 @@ def test_a_new_key_of_a_planted_track_is_where_the_handle_is(window, bent):
 
 def test_the_panel_sets_what_a_track_has(window, bent, press):
     with_track(window, bent)
-    window.act(editing.select, frozenset({RIGHT}))
+    window.act(editing.select_handles, frozenset({RIGHT}))
     press("on##track")
     assert not bent.layer.track_of(RIGHT).enabled
     press("Keys turn it, too")
@@ -535,7 +539,7 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
 
 def test_a_handle_follows_like_a_tail(window, bent, press):
     before = bent.document
-    window.act(editing.select, frozenset({RIGHT}))
+    window.act(editing.select_handles, frozenset({RIGHT}))
     press("preset/###tail")
     assert bent.layer.spring_of(RIGHT) == Spring(handle=RIGHT, frequency=1.6, damping=0.18)
     press("preset/###jelly")
@@ -565,15 +569,15 @@ def test_a_handle_follows_like_a_tail(window, bent, press):
 
 def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
-    editing.edit(window.session, track_commands.put_spring(bent.active, spring))
-    window.act(editing.select, frozenset({RIGHT}))
+    editing.edit_document(window.session, track_commands.put_spring(bent.active, spring))
+    window.act(editing.select_handles, frozenset({RIGHT}))
     window.settle()
     before, frames = bent.document, range(0, 49, 4)
     swung = np.array(places_of(bent, RIGHT, frames))
     press("Make keys of it")
     track = bent.layer.track_of(RIGHT)
     assert bent.layer.spring_of(RIGHT) is None
-    assert bent.chosen_track == RIGHT
+    assert bent.selected_track == RIGHT
     assert len(track.keys) < 20
     keyed = np.array(places_of(bent, RIGHT, frames))
     assert np.abs(keyed - swung).max() < 1, "half a pixel, and what is solved"
@@ -582,13 +586,15 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
 
 
 def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
-    editing.edit(window.session, shape_commands.set_auto_pins(bent.active, stillness=False))
-    editing.edit(window.session, key_commands.delete_keys(bent.active, {24}))
+    editing.edit_document(
+        window.session, shape_commands.set_auto_pins(bent.active, stillness=False)
+    )
+    editing.edit_document(window.session, key_commands.delete_keys(bent.active, {24}))
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
-    editing.edit(window.session, track_commands.put_spring(bent.active, spring))
+    editing.edit_document(window.session, track_commands.put_spring(bent.active, spring))
     window.settle()
     before = bent.document
-    window.act(springs.make_keys, RIGHT)
+    window.act(springs.bake_spring, RIGHT)
     window.settle()
     assert bent.document is before
     assert "does not swing" in window.session.toasts[-1].text
@@ -597,7 +603,7 @@ def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
 @pytest.mark.usefixtures("everything")
 def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
-    editing.edit(window.session, track_commands.put_track(bent.active, hold))
+    editing.edit_document(window.session, track_commands.put_track(bent.active, hold))
     track = with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
     misses = find_residuals(bent, bent.layer, track)
     assert 10 in misses
@@ -609,14 +615,16 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
     # In the viewport a dashed line leads from where it is to where it is wanted.
     window.act(playback.seek, 10)
     window.settle()
-    shown = bent.puppet.shown
+    shown = bent.layer_runtime.shown
     wish = shown.correction.targets[RIGHT]
     assert abs(abs(shown.handle_positions[RIGHT] - wish) - misses[10]) < 1
     palette = PALETTES[window.session.preferences.theme]
     ends = [line.points[0] for line in mark_all(window.session, bent, shown, palette)[0]]
     assert wish in ends
     # Switched off, it misses nothing.
-    window.act(editing.edit, track_commands.enable_track(bent.active, RIGHT, enabled=False))
+    window.act(
+        editing.edit_document, track_commands.enable_track(bent.active, RIGHT, enabled=False)
+    )
     window.settle()
     assert not find_residuals(bent, bent.layer, bent.layer.track_of(RIGHT))
 
@@ -624,7 +632,7 @@ def test_what_the_limits_hold_back_is_told_with_its_pixels(window, bent):
 @pytest.mark.usefixtures("everything")
 def test_a_red_stretch_of_a_row_tells_by_how_much_it_is_missed(window, bent, play):
     hold = Track(handles=(LEFT,), keys=tuple(TrackKey(frame=f, place=0j) for f in (4, 16)))
-    editing.edit(window.session, track_commands.put_track(bent.active, hold))
+    editing.edit_document(window.session, track_commands.put_track(bent.active, hold))
     with_track(window, bent, keys=((4, 0), (10, FAR), (16, 0)))
     at = []
     play(lambda rows: at.extend([ImVec2(rows.x(20), rows.y()), ImVec2(rows.x(9), rows.y())]))
@@ -637,7 +645,7 @@ def test_a_tracked_handle_at_a_key_of_poses_is_not_short_of_that(window, bent):
     with_track(window, bent, keys=((20, 0), (24, 60j), (30, 0)))
     window.act(playback.seek, 24)
     window.settle()
-    shown = bent.puppet.shown
+    shown = bent.layer_runtime.shown
     target = shown.pose.targets[RIGHT].position
     assert abs(shown.handle_positions[RIGHT] - target) > 50
     assert not find_off_target(bent, shown)
@@ -654,23 +662,23 @@ def tooltip_at(window, place):
 def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     window.act(playback.seek, 12)
     window.settle()
-    assert find_auto_pinned(bent.puppet.shown) == {LEFT}
+    assert find_auto_pinned(bent.layer_runtime.shown) == {LEFT}
 
     def lines():
-        shown = bent.puppet.shown
+        shown = bent.layer_runtime.shown
         return mark_all(window.session, bent, shown, PALETTES[window.session.preferences.theme])[0]
 
     marked = lines()
-    window.act(editing.select, frozenset({LEFT}))
+    window.act(editing.select_handles, frozenset({LEFT}))
     press("Free between keys")
     assert bent.layer.handle(LEFT).free
-    assert not find_auto_pinned(bent.puppet.shown)
+    assert not find_auto_pinned(bent.layer_runtime.shown)
     assert len(lines()) < len(marked)
     press("Free between keys")
-    assert find_auto_pinned(bent.puppet.shown) == {LEFT}
+    assert find_auto_pinned(bent.layer_runtime.shown) == {LEFT}
     # With a track of its own it goes where that leads.
     with_track(window, bent, handle=LEFT)
-    assert not find_auto_pinned(bent.puppet.shown)
+    assert not find_auto_pinned(bent.layer_runtime.shown)
 
 
 @pytest.mark.parametrize("is_narrow", [False, True])
@@ -691,14 +699,14 @@ def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_
         window.settle()
         playback.seek(window.session, 12)
         window.settle()
-        return np.array(bent.puppet.shown.handle_positions)
+        return np.array(bent.layer_runtime.shown.handle_positions)
 
     target = bent.layer.key(24).pose.targets[LEFT].position
-    still = np.array(bent.puppet.shown.handle_positions)
+    still = np.array(bent.layer_runtime.shown.handle_positions)
     assert abs(still[LEFT] - target) < 0.3
     free = switch()
     assert not bent.layer.has_auto_pins
-    assert not find_auto_pinned(bent.puppet.shown)
+    assert not find_auto_pinned(bent.layer_runtime.shown)
     assert np.abs(free - still).max() > 0.5
     np.testing.assert_allclose(switch(), still, rtol=0, atol=1e-6)
     assert bent.layer.has_auto_pins
@@ -710,9 +718,9 @@ def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_
 def test_a_track_of_several_handles_is_set_with_all_of_them_selected(window, bent, press):
     with_track(window, bent)
     track = Track(handles=(LEFT, RIGHT), keys=(TrackKey(frame=4, place=0j),))
-    window.act(editing.edit, track_commands.put_track(bent.active, track))
+    window.act(editing.edit_document, track_commands.put_track(bent.active, track))
     for chosen in ({LEFT, RIGHT}, {RIGHT}):
-        window.act(editing.select, frozenset(chosen))
+        window.act(editing.select_handles, frozenset(chosen))
         window.settle()
         was = bent.layer.track_of(LEFT).turns
         press("Keys turn it, too")

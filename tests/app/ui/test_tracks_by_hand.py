@@ -13,7 +13,7 @@ from app.document.commands import filming_commands, key_commands, scene_commands
 from app.document.timing import Track, TrackKey
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.actions.timing import tracks
-from app.editor.actions.tracking.solving import COMPLAINT
+from app.editor.actions.tracking.correction_jobs import COMPLAINT
 from app.motion import Animation
 from app.ui.bars.status import describe_pose_limit
 from app.ui.viewport.marks import find_off_target
@@ -28,12 +28,12 @@ PIXEL = 2.0  # of the picture: where it is pressed and let go, to whole ones of 
 def place_of(project, handle=END):
     """Return where a handle is shown."""
     index = [each.id for each in project.layer.handles].index(handle)
-    return complex(project.puppet.shown.handle_positions[index])
+    return complex(project.layer_runtime.shown.handle_positions[index])
 
 
 def ground(project, frame, handle=END):
     index = [each.id for each in project.layer.handles].index(handle)
-    found = project.puppet.corrected.ground(frame)
+    found = project.layer_runtime.corrected.ground(frame)
     return complex(found.places[index]), complex(found.turns[index])
 
 
@@ -54,7 +54,7 @@ def key_end(window):
     window.again(bend_bar, LAST)
     playback.scrub(window.session, HALF)
     window.settle()
-    tracks.key_here(window.session, (END,))
+    tracks.key_handles_at_playhead(window.session, (END,))
     window.settle()
 
 
@@ -77,7 +77,7 @@ def keyed(window):
 
 
 def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
-    before, poses, known = keyed.document, keyed.layer.keys, keyed.puppet.corrected.ground(0)
+    before, poses, known = keyed.document, keyed.layer.keys, keyed.layer_runtime.corrected.ground(0)
     start, way = place_of(keyed), 20 + 30j
     drag(window, start, start + way)
     (track,) = keyed.layer.tracks
@@ -88,8 +88,8 @@ def test_a_drag_keys_the_handle_of_a_chosen_row_alone(window, keyed):
     assert abs(turn - 1) > 0.05
     assert abs(place_of(keyed) - (start + way)) < PIXEL
     assert keyed.layer.keys == poses, "the pose stays"
-    assert keyed.puppet.corrected.ground(0) is known, "and what is known of it"
-    assert keyed.puppet.shown.is_current
+    assert keyed.layer_runtime.corrected.ground(0) is known, "and what is known of it"
+    assert keyed.layer_runtime.shown.is_current
     keyed.history.undo()
     assert keyed.document is before, "one drag is one step"
 
@@ -110,7 +110,7 @@ def test_the_shape_follows_while_the_hand_moves_and_escape_takes_it_back(window,
     seen = []
 
     def then(robot):
-        while not keyed.puppet.shown.is_current:
+        while not keyed.layer_runtime.shown.is_current:
             window.session.jobs.settle()
             robot.yield_()
         seen.append(place_of(keyed))
@@ -137,7 +137,7 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
     start = place_of(keyed)
     goal = start + 1.5 * keyed.document.canvas[0]
     drag(window, start, goal)
-    shown = keyed.puppet.shown
+    shown = keyed.layer_runtime.shown
     wishes = shown.correction.targets
     assert_allclose(wishes[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
@@ -148,7 +148,7 @@ def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
 
 def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
     """Turn the selected handle by its ring."""
-    editing.select(window.session, frozenset({END}))
+    editing.select_handles(window.session, frozenset({END}))
     window.settle()
     centre, arm = place_of(project), 1j * window.ring(project)
 
@@ -165,7 +165,7 @@ def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
 
 def turned(project):
     index = [each.id for each in project.layer.handles].index(END)
-    return project.puppet.shown.handle_rotations[index]
+    return project.layer_runtime.shown.handle_rotations[index]
 
 
 def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed):
@@ -215,7 +215,7 @@ def test_escape_takes_a_turn_of_a_track_back(window, keyed):
 
 
 def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed):
-    tracks.choose(window.session, None)
+    tracks.select_track(window.session, None)
     window.settle()
     tracked, poses = keyed.layer.tracks, keyed.layer.keys
     playback.scrub(window.session, LAST)
@@ -230,7 +230,7 @@ def offset_by(window, project, offset, frames):
     keys = tuple(TrackKey(frame=frame, place=offset) for frame in frames)
     track = Track(handles=(END,), keys=keys)
     project.history.do(track_commands.put_track(project.active, track))
-    tracks.choose(window.session, None)
+    tracks.select_track(window.session, None)
     window.settle()
 
 
@@ -315,17 +315,17 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     # The motion is near what the hand did.
     for sample in take.samples:
         if sample.time == int(sample.time):
-            wished = tracking.wished(bent, track, int(sample.time))
+            wished = tracking.track_target(bent, track, int(sample.time))
             assert abs(wished - sample.place) < 4
     few = len(frames)
-    tracking.smooth(window.session, 0.0)
+    tracking.smooth_recording(window.session, 0.0)
     many = len(bent.layer.tracks[0].keys)
-    tracking.smooth(window.session, 1.0)
+    tracking.smooth_recording(window.session, 1.0)
     fewest = len(bent.layer.tracks[0].keys)
     assert many > few >= fewest
     window.run(lambda robot: robot.item_click("**/Keep"))
     assert bent.take is None
-    assert bent.chosen_track == END
+    assert bent.selected_track == END
     bent.history.undo()
     assert bent.document is before, "one take is one step"
 
@@ -340,7 +340,7 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     keys = {}
     for factor in (0.1, 1.0, 10.0):
         take.scale = factor * scale
-        tracking.smooth(window.session, 0.5)
+        tracking.smooth_recording(window.session, 0.5)
         keys[factor] = len(bent.layer.track_of(END).keys)
     assert keys[0.1] < keys[1.0] < keys[10.0]
 
@@ -411,13 +411,13 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
 
 @pytest.mark.parametrize("is_over", [False, True])
 def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
-    session, place = window.session, complex(brief.puppet.shown.handle_positions[-1])
+    session, place = window.session, complex(brief.layer_runtime.shown.handle_positions[-1])
     with session.jobs.held():
-        tracking.begin_take(session, END, place, gesture=object())
+        tracking.start_recording(session, END, place, gesture=object())
         window.clock.now += 0.2
         window.frames(3)
         if is_over:
-            tracking.end_take(session)
+            tracking.stop_recording(session)
         window.act(posing.remove_handles, frozenset({END}))
         window.frames(2)
         assert brief.take is None
@@ -460,7 +460,9 @@ def in_scene(window, project, frames):
     for frame in frames:
         playback.scrub(window.session, frame)
         window.settle()
-        seen.append(complex(project.puppet.shown.placement.on(np.array([place_of(project)]))[0]))
+        seen.append(
+            complex(project.layer_runtime.shown.placement.on(np.array([place_of(project)]))[0])
+        )
     return np.array(seen)
 
 
@@ -478,7 +480,7 @@ def test_a_still_pointer_over_a_hopping_body_records_a_still_handle(window, brie
         robot.mouse_up(0)
 
     record(window, brief, [], until=until)
-    tracking.smooth(window.session, 0.0)
+    tracking.smooth_recording(window.session, 0.0)
     assert brief.layer.track_of(END).keys[-1].frame == LATER
     places = in_scene(window, brief, range(1, LATER))
     assert np.abs(places - start).max() < 2
@@ -498,15 +500,15 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
         """Return where in the scene the body has the handle, when the next picture is drawn."""
         frame = min((session.clock() + FRAME - begun) * document.fps, LAST)
         placement = transform_at(document, document.layers[0], frame)
-        return complex(placement.on(body.positions(frame))[0])
+        return complex(placement.apply(body.positions(frame))[0])
 
     begun = session.clock()
-    tracking.begin_take(session, END, place(), gesture=object())
+    tracking.start_recording(session, END, place(), gesture=object())
     while not brief.take.is_over:
-        tracking.perform(session, place())
+        tracking.drag_recorded_handle(session, place())
         window.frames()
     window.settle()
-    tracking.smooth(session, 0.0)
+    tracking.smooth_recording(session, 0.0)
     (track,) = brief.layer.tracks
     assert np.abs([key.place for key in track.keys]).max() < 1.0, "it speeds up between frames"
 
@@ -556,23 +558,23 @@ def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
 
 
 def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(window, keyed):
-    start, track = place_of(keyed), keyed.chosen_track
+    start, track = place_of(keyed), keyed.selected_track
     playback.scrub(window.session, LAST)
-    keyed.chosen_track = None
+    keyed.selected_track = None
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)
-    posing.wish(window.session, {END: Target(position=place - 15j)})
-    posing.let_go(window.session)
+    posing.set_targets(window.session, {END: Target(position=place - 15j)})
+    posing.release_drag(window.session)
     playback.scrub(window.session, HALF)
-    keyed.chosen_track = track
+    keyed.selected_track = track
     assert any(not pull.is_at_rest for pull in keyed.pulls)
 
     def then(robot):
         for _ in range(MOST_FRAMES):
-            if keyed.puppet.shown.is_current:
+            if keyed.layer_runtime.shown.is_current:
                 break
             window.session.jobs.settle()
             robot.yield_()
-        seen.append(keyed.puppet.shown.is_current)
+        seen.append(keyed.layer_runtime.shown.is_current)
         robot.mouse_up(0)
 
     seen = []
@@ -588,11 +590,11 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
         raise EngineError("no way")
 
     monkeypatch.setattr("app.motion.corrected_frames._find", broken)
-    keyed.chosen_track = None
+    keyed.selected_track = None
     playback.scrub(window.session, LAST)
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)
-    posing.wish(window.session, {END: Target(position=place - 15j)})
-    posing.let_go(window.session)
+    posing.set_targets(window.session, {END: Target(position=place - 15j)})
+    posing.release_drag(window.session)
     playback.scrub(window.session, EARLIER)
     window.until(lambda: not keyed.pending)
     assert any(COMPLAINT in toast.text for toast in window.session.toasts)

@@ -31,10 +31,10 @@ def open_walker(window, folder):
     project.hold = project.path = None
     choose(window, "near leg")
     for handle, way in ((1, 18 + 8j), (2, -20 + 30j)):
-        editing.select(window.session, frozenset({handle}))
-        posing.nudge(window.session, way)
+        editing.select_handles(window.session, frozenset({handle}))
+        posing.nudge_handles(window.session, way)
         window.settle()
-    editing.select(window.session, frozenset())
+    editing.select_handles(window.session, frozenset())
     return project
 
 
@@ -54,7 +54,7 @@ def layer(window, name):
 
 
 def choose(window, name):
-    layering.choose(window.session, layer(window, name).id)
+    layering.set_active_layer(window.session, layer(window, name).id)
     window.settle()
 
 
@@ -96,7 +96,7 @@ def test_the_opposite_step_is_two_keys_away(window, project):
 
 def test_keys_that_are_chosen_in_the_timeline_are_swapped(window):
     ids = [layer(window, name).id for name in ("near leg", "far leg")]
-    editing.choose_keys_of(window.session, dict.fromkeys(ids, frozenset({0})))
+    editing.select_keys_in_rows(window.session, dict.fromkeys(ids, frozenset({0})))
 
     def copy(robot):
         robot.mouse_move("###Timeline/**/ruler")
@@ -172,7 +172,9 @@ def test_the_library_offers_poses_of_layers_with_the_same_names(window):
 def test_pairs_are_edited_where_poses_are_flipped(window, project):
     window.show_tab("Poses")
     for name, to in (("near leg", "one"), ("far leg", "two")):
-        editing.edit(window.session, layer_commands.rename_layer(layer(window, name).id, to))
+        editing.edit_document(
+            window.session, layer_commands.rename_layer(layer(window, name).id, to)
+        )
 
     def enter(robot, text):
         robot.set_ref("###Poses")

@@ -11,16 +11,16 @@ from messages import says
 from PIL import Image, ImageDraw
 
 from app.document import (
-    choice_commands,
     cycle_commands,
     group_commands,
     is_visible,
     key_commands,
     layers_in_draw_order,
+    switch_group_commands,
 )
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
-from app.editor.layering.hanging import HANGS_IN_CIRCLE
+from app.editor.layering.parenting import PARENT_IS_DESCENDANT
 
 WIDTH, HEIGHT = 240, 200
 FACES = {
@@ -96,7 +96,9 @@ def seen(project, frame):
 def place(project, name, window):
     """Where the middle of a layer's outline is drawn in the scene."""
     window.settle()
-    shown = project.puppets[next(f.id for f in project.document.layers if f.name == name)].shown
+    shown = project.layer_runtimes[
+        next(f.id for f in project.document.layers if f.name == name)
+    ].shown
     return complex(shown.placement.on(shown.positions).mean())
 
 
@@ -131,9 +133,12 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
 
 
 def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
-    window.act(editing.edit, choice_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]))
-    window.act(layering.toggle, "choice mouth")
-    window.act(layering.choose, ids["head"])
+    window.act(
+        editing.edit_document,
+        switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
+    )
+    window.act(layering.toggle_tree_row, "choice mouth")
+    window.act(layering.set_active_layer, ids["head"])
     window.settle()
     boxes = {}
 
@@ -157,9 +162,12 @@ def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
 
 
 def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
-    window.act(editing.edit, choice_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]))
+    window.act(
+        editing.edit_document,
+        switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
+    )
     other = next(i for i in (ids["ah"], ids["oh"]) if i != scene.document.choices[0].at(0))
-    window.act(editing.edit, choice_commands.choose_at(other, 12))
+    window.act(editing.edit_document, switch_group_commands.choose_at(other, 12))
     window.frames(3)
     places = {}
 
@@ -198,7 +206,7 @@ def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
 
     shown = ("oh", "ah", "hat")
     for name in shown:
-        window.act(layering.choose, ids[name])
+        window.act(layering.set_active_layer, ids[name])
         window.frames(2)
         window.run(look)
     assert all(each == tops[0] for each in tops)
@@ -207,8 +215,11 @@ def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
 def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_drawing(
     window, scene, ids, use
 ):
-    window.act(editing.edit, choice_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]))
-    window.act(layering.choose, ids["ah"])
+    window.act(
+        editing.edit_document,
+        switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
+    )
+    window.act(layering.set_active_layer, ids["ah"])
     window.frames(2)
     tops = []
 
@@ -225,7 +236,7 @@ def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_draw
 
 
 def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids, use):
-    window.act(layering.choose_all, ids["hat"], ids["head"])
+    window.act(layering.select_layers, ids["hat"], ids["head"])
     use(lambda robot: robot.item_click("###group layers"))
     assert [each.name for each in scene.document.groups] == ["group"]
     key = next(row.key for row in scene.tree if row.group)
@@ -262,23 +273,25 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
     assert scene.document is before
     (toast,) = window.session.toasts
-    assert re.search(says(HANGS_IN_CIRCLE, name="hat", parent="head", other="head"), toast.text)
+    assert re.search(
+        says(PARENT_IS_DESCENDANT, name="hat", parent="head", other="head"), toast.text
+    )
     # So it is where it hangs there by others, and where one of several would.
-    window.act(layering.hang, ids["ah"], ids["hat"])
+    window.act(layering.attach_layer, ids["ah"], ids["hat"])
     window.settle()
     before, window.session.toasts = scene.document, []
-    window.act(layering.choose_all, ids["head"], ids["oh"])
+    window.act(layering.select_layers, ids["head"], ids["oh"])
     use(lambda robot: drop(robot, ids["oh"], ids["ah"]))
     assert scene.document is before
     (toast,) = window.session.toasts
-    assert re.search(says(HANGS_IN_CIRCLE, name="ah", parent="head", other="head"), toast.text)
+    assert re.search(says(PARENT_IS_DESCENDANT, name="ah", parent="head", other="head"), toast.text)
     window.session.toasts = []
 
 
 def test_chosen_layers_are_dropped_together(window, scene, ids, use):
     before, both = scene.document, (ids["hat"], ids["stick"])
     places = [place(scene, name, window) for name in ("hat", "stick")]
-    window.act(layering.choose_all, *both)
+    window.act(layering.select_layers, *both)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
     assert [scene.document.layer(each).joints[0].to for each in both] == [ids["head"]] * 2
@@ -295,11 +308,11 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
 
 
 def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use):
-    window.act(layering.form, ids["ah"], ids["oh"])
+    window.act(layering.create_switch, ids["ah"], ids["oh"])
     before = scene.document
     (choice,) = before.choices
     (row,) = (row for row in scene.tree if row.choice is choice)
-    window.act(layering.choose_all, ids["hat"], ids["stick"])
+    window.act(layering.select_layers, ids["hat"], ids["stick"])
     use(lambda robot: drop(robot, ids["stick"], row.key))
     (joined,) = scene.document.choices
     assert set(joined.layers) == {*choice.layers, ids["hat"], ids["stick"]}
@@ -309,14 +322,14 @@ def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use)
 
 def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
     for child, parent in (("ah", "hat"), ("hat", "head")):
-        window.act(layering.hang, ids[child], ids[parent])
+        window.act(layering.attach_layer, ids[child], ids[parent])
         window.settle()
-    window.act(layering.choose, ids["head"])
+    window.act(layering.set_active_layer, ids["head"])
     window.act(posing.add_handle, 120 + 100j)
     window.settle()
     before = scene.document
     there = place(scene, "ah", window)
-    window.act(layering.remove, ids["hat"])
+    window.act(layering.delete_layers, ids["hat"])
     window.settle()
     assert scene.document.layer(ids["ah"]).joints[0].to == ids["head"]
     assert abs(place(scene, "ah", window) - there) < 0.1
@@ -324,14 +337,14 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     window.act(editing.undo)
     assert scene.document is before
     # Also where it is handed over to it at another time, and without a jump.
-    window.act(layering.hang, ids["ah"], ids["stick"])
+    window.act(layering.attach_layer, ids["ah"], ids["stick"])
     window.settle()
     window.act(playback.seek, 10)
-    window.act(layering.hand_over, ids["ah"], ids["hat"])
+    window.act(layering.reparent_layer, ids["ah"], ids["hat"])
     window.settle()
     there = place(scene, "ah", window)
     window.act(playback.seek, 0)
-    window.act(layering.remove, ids["hat"])
+    window.act(layering.delete_layers, ids["hat"])
     window.settle()
     joints = scene.document.layer(ids["ah"]).joints
     assert [(each.frame, each.to) for each in joints] == [(0, ids["stick"]), (10, ids["head"])]
@@ -340,9 +353,9 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
 
 
 def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, use):
-    window.act(layering.hang, ids["stick"], ids["head"])
+    window.act(layering.attach_layer, ids["stick"], ids["head"])
     window.settle()
-    window.act(layering.choose, ids["stick"])
+    window.act(layering.set_active_layer, ids["stick"])
     for frame, button in ((10, f"**/To hat###to {ids['hat']}"), (20, "**/Let it go")):
         window.act(playback.seek, frame)
         window.settle()
@@ -361,19 +374,19 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
         ids["hat"],
         None,
     ]
-    window.act(layering.take_back_joint, ids["stick"], 20)
+    window.act(layering.delete_parent_key, ids["stick"], 20)
     assert len(scene.document.layer(ids["stick"]).joints) == 2
 
 
 def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
-    window.act(layering.hang, ids["stick"], ids["head"])
+    window.act(layering.attach_layer, ids["stick"], ids["head"])
     window.settle()
-    window.act(editing.edit, cycle_commands.set_cycle(ids["stick"], 0, 12))
-    window.act(layering.choose, ids["stick"])
+    window.act(editing.edit_document, cycle_commands.set_cycle(ids["stick"], 0, 12))
+    window.act(layering.set_active_layer, ids["stick"])
     window.act(playback.seek, 18)
     window.settle()
     before, document = place(scene, "stick", window), scene.document
-    window.act(layering.hand_over, ids["stick"], ids["hat"])
+    window.act(layering.reparent_layer, ids["stick"], ids["hat"])
     window.settle()
     assert [joint.frame for joint in scene.document.layer(ids["stick"]).joints] == [0, 6]
     assert abs(place(scene, "stick", window) - before) < 0.5
@@ -389,17 +402,17 @@ def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
 
     window.settle()
     whole = blue()
-    window.act(layering.look_at_alone, ids["stick"])
+    window.act(layering.solo_layers, ids["stick"])
     window.settle()
     assert blue() < whole / 2
     assert layering.layer_at(scene, 120 + 100j) is None
     assert len(scene.document.exported) == 5
-    window.act(layering.look_at_alone, ids["stick"])
+    window.act(layering.solo_layers, ids["stick"])
     window.settle()
     assert blue() == whole
     # What is deleted is looked at no more, and all others again.
-    window.act(layering.look_at_alone, ids["hat"])
-    window.act(layering.remove, ids["hat"])
+    window.act(layering.solo_layers, ids["hat"])
+    window.act(layering.delete_layers, ids["hat"])
     window.settle()
     assert scene.solo == frozenset()
 
@@ -408,9 +421,9 @@ def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
     for name in ("hat", "head"):
         layer = scene.document.layer(ids[name])
         command = key_commands.insert_key(layer.id, 24, layer.keys[0].pose)
-        window.act(editing.edit, command)
+        window.act(editing.edit_document, command)
     before = scene.document
-    window.act(layering.choose_all, ids["hat"], ids["head"])
+    window.act(layering.select_layers, ids["hat"], ids["head"])
     window.act(playback.seek, 12)
     window.act(posing.insert_key)
     window.settle()
@@ -418,16 +431,16 @@ def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
         assert 12 in scene.document.layer(ids[name]).key_frames
     window.act(editing.undo)
     assert scene.document is before
-    window.act(layering.remove, *scene.selected_layers)
+    window.act(layering.delete_layers, *scene.selected_layers)
     window.settle()
     assert {layer.name for layer in scene.document.layers} == {"stick", "ah", "oh"}
-    window.act(layering.remove, *(layer.id for layer in scene.document.layers))
+    window.act(layering.delete_layers, *(layer.id for layer in scene.document.layers))
     assert "at least one layer" in window.session.toasts[-1].text
 
 
 def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use):
-    window.act(layering.show, ids["hat"])
-    window.act(layering.choose, ids["hat"])
+    window.act(layering.toggle_layers_hidden, ids["hat"])
+    window.act(layering.set_active_layer, ids["hat"])
     window.act(playback.seek, 8)
     window.frames(3)
     use(lambda robot: robot.item_click("**/Show from frame 8 on"))
@@ -438,7 +451,7 @@ def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use
 
 def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     command = group_commands.group_layers([ids["ah"], ids["oh"]], "mouth")
-    window.act(editing.edit, command)
+    window.act(editing.edit_document, command)
     window.frames(3)
     use(lambda robot: robot.item_click("**/Let them take turns"))
     (choice,) = scene.document.choices
@@ -446,13 +459,13 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     window.act(editing.undo)
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
-    assert scene.declined == {"mouth"}
+    assert scene.dismissed_suggestions == {"mouth"}
 
 
 def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     for names, path in ((("ah", "oh"), "mouth"), (("head", "stick"), "body")):
         command = group_commands.group_layers([ids[name] for name in names], path)
-        window.act(editing.edit, command)
+        window.act(editing.edit_document, command)
     window.frames(3)
 
     def key(name):
@@ -485,7 +498,7 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
 def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use):
     for names, path in ((("ah", "oh", "hat", "stick"), "mouth"), (("hat", "stick"), "mouth/laugh")):
         command = group_commands.group_layers([ids[name] for name in names], path)
-        window.act(editing.edit, command)
+        window.act(editing.edit_document, command)
     window.frames(3)
     key = next(row.key for row in scene.tree if row.group and row.group.name == "mouth")
     before = scene.document
@@ -504,7 +517,7 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):
-    window.act(layering.choose, ids["stick"])
+    window.act(layering.set_active_layer, ids["stick"])
     window.act(playback.seek, 12)
     window.frames(3)
     before = place(scene, "stick", window)

@@ -11,8 +11,8 @@ from harness import Harness
 
 from app.document.keyframe import Target
 from app.editor.actions import exporting, files, posing, saving, upkeep
-from app.editor.dialogs import FileDialog, Question, Recovery
-from app.editor.work.jobs import Job, Kind
+from app.editor.dialogs import FileDialog, Question, RecoveryDialog
+from app.editor.work.jobs import Job, JobKind
 from app.errors import CANCELLED
 from app.storage import NO_FOLDER
 from app.storage.assets import sample_images
@@ -71,7 +71,7 @@ def test_a_file_that_cannot_be_opened_says_why(window, tmp_path, name, content, 
 
 def test_a_full_disk_loses_nothing(window, project, tmp_path, monkeypatch):
     path = tmp_path / "kept.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     before = path.read_bytes()
 
@@ -79,7 +79,7 @@ def test_a_full_disk_loses_nothing(window, project, tmp_path, monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr("app.storage.files.atomic.os.fsync", full)
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     assert any("No space left" in text for text in texts(window))
     assert path.read_bytes() == before
@@ -91,7 +91,7 @@ def test_a_full_disk_loses_nothing(window, project, tmp_path, monkeypatch):
 def test_an_export_that_cannot_begin_says_why(window, tmp_path):
     out = tmp_path / "file"
     out.write_bytes(b"")
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.settle()
     assert window.session.export is None
     assert any("it is a file" in text for text in texts(window))
@@ -107,7 +107,7 @@ def crash(window, project):
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     window.session.project = None
-    files.offer_recovery(window.session)
+    files.ask_recovery(window.session)
     window.frames(3)
     (leftover,) = find_recoverable_files(window.folder)
     return load_recoverable_file(leftover)[1]
@@ -121,11 +121,11 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     orphan.with_suffix(".lock").unlink()
     assert find_recoverable_files(window.folder) == [orphan]
     window.session.project = None
-    files.offer_recovery(window.session)
+    files.ask_recovery(window.session)
     window.frames(3)
     assert window.session.dialog is not None
     window.session.dialog = None
-    files.recover(window.session, orphan)
+    files.recover_file(window.session, orphan)
     window.settle()
     recovered = window.session.project
     assert recovered is not None
@@ -138,7 +138,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window, project, tmp_path
 ):
     path = tmp_path / "posed.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     saved = path.read_bytes()
     place = complex(*project.document.canvas) / 2
@@ -195,7 +195,7 @@ def test_recovered_work_on_a_picture_has_its_name_and_no_file(window, project):
 def saved(window, project, tmp_path):
     """A project that is saved in a file, and open."""
     path = tmp_path / "a.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     window.settle()
     assert window.session.project is project
     return path
@@ -213,7 +213,7 @@ def answer(window, text):
 
 
 def test_a_file_that_another_window_has_open_is_opened_only_after_a_question(window, saved):
-    saving.put_project(window.session, None)
+    saving.set_project(window.session, None)
     other = FileLock(saved)
     files.open_file(window.session, saved)
     window.settle()
@@ -243,12 +243,12 @@ def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
     window.settle()
     assert window.session.dialog is None
     elsewhere = tmp_path / "b.lissom"
-    saving.write(window.session, elsewhere, None)
+    saving.write_project(window.session, elsewhere, None)
     window.settle()
     FileLock(saved).release()
     with pytest.raises(FileLockedError):
         FileLock(elsewhere)
-    window.act(saving.give_up)
+    window.act(saving.discard_project)
     FileLock(elsewhere).release()
     assert {path.name for path in tmp_path.iterdir()} == {"a.lissom", "b.lissom"}
 
@@ -257,7 +257,7 @@ def test_where_no_lock_can_be_had_the_file_opens_and_that_is_told(window, saved,
     def no_locks(_):
         raise OSError(errno.ENOLCK, "No locks available")
 
-    saving.put_project(window.session, None)
+    saving.set_project(window.session, None)
     monkeypatch.setattr("app.storage.files.file_lock.lock", no_locks)
     files.open_file(window.session, saved)
     window.settle()
@@ -357,7 +357,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window.settle()
     window.session.autosave.forget()
     project.autosaved = None
-    busy = Job(kind=Kind("Busy", lane="keep"), work=end.wait, done=lambda _: None, failed=print)
+    busy = Job(kind=JobKind("Busy", lane="keep"), work=end.wait, done=lambda _: None, failed=print)
     window.session.jobs.put(busy)
     window.clock.now += SECONDS
     window.frames(2)
@@ -379,11 +379,11 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
         os.close(keeper._lock)
         with suppress(OSError, OverflowError):
             os.utime(path, (time, time))
-    saving.put_project(window.session, None)
-    files.offer_recovery(window.session)
+    saving.set_project(window.session, None)
+    files.ask_recovery(window.session)
     window.frames(3)
     dialog = window.session.dialog
-    assert isinstance(dialog, Recovery)
+    assert isinstance(dialog, RecoveryDialog)
     assert {each.origin.name for each in dialog.candidates} == {"work 0", "work 1", "work 2"}
     answer(window, "Discard")
     assert len(window.session.dialog.candidates) == 2
@@ -407,7 +407,7 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     files.open_file(window.session, sample_images() / "bar.png")
     window.frames(3)
     # What is kept does not wait for it.
-    saving.write(window.session, tmp_path / "a.lissom", None)
+    saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
     window.until(lambda: saving.WRITING not in window.session.jobs.kinds)
@@ -426,11 +426,11 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
 ):
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
-    monkeypatch.setattr("app.editor.actions.posing.solving._take_steps", lambda *_: end.wait())
-    posing.wish(window.session, {0: Target(position=complex(*project.document.canvas) / 3)})
+    monkeypatch.setattr("app.editor.actions.posing.pose_solver._take_steps", lambda *_: end.wait())
+    posing.set_targets(window.session, {0: Target(position=complex(*project.document.canvas) / 3)})
     # What may wait longer is no obstacle.
-    window.act(exporting.start, tmp_path / "frames")
-    window.act(saving.write, tmp_path / "a.lissom", None)
+    window.act(exporting.start_export, tmp_path / "frames")
+    window.act(saving.write_project, tmp_path / "a.lissom", None)
     window.frames(3)
     assert not (tmp_path / "a.lissom").exists()
     window.clock.now += saving.PATIENCE

@@ -19,9 +19,9 @@ from app.editor.actions import (
     keys,
     playback,
     posing,
-    rebuilding,
+    resolving,
     saving,
-    timeline_pointing,
+    timeline_drag,
     upkeep,
     viewing,
 )
@@ -41,7 +41,7 @@ TABS = ("Handle", "Deform", "Distortion", "Mesh", "Export")
 
 
 def place_of(project, identity):
-    shown = project.puppet.shown
+    shown = project.layer_runtime.shown
     index = [handle.id for handle in shown.clip.layer.handles].index(identity)
     return complex(shown.handle_positions[index])
 
@@ -97,7 +97,7 @@ def test_undo_during_a_drag(window, loose):
 def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(window, loose):
     before = loose.document
     with window.session.jobs.held(posing.POSING):
-        posing.wish(window.session, {1: Target(position=900 + 50j)})
+        posing.set_targets(window.session, {1: Target(position=900 + 50j)})
         window.act(editing.undo)
     window.settle()
     assert loose.document is before
@@ -108,7 +108,7 @@ def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(windo
 def test_undo_takes_a_loose_pose_back_first(window, loose):
     window.act(viewing.toggle_auto_key)
     before = loose.document
-    posing.wish(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
+    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     assert loose.preview_pose is not None
     window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
@@ -122,7 +122,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
     before = loose.document
     poses = [None]
     for shift in (-30j, -60j, -90j):
-        posing.wish(session, {1: Target(position=place_of(loose, 1) + shift)})
+        posing.set_targets(session, {1: Target(position=place_of(loose, 1) + shift)})
         window.settle()
         poses.append(loose.preview_pose)
     assert len(set(poses)) == 4
@@ -134,7 +134,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
         editing.redo(session)
         assert loose.preview_pose is pose
     window.frames(2)
-    assert loose.puppet.shown.pose is poses[-1]
+    assert loose.layer_runtime.shown.pose is poses[-1]
     posing.insert_key(session)
     assert loose.preview_pose is None
     assert loose.layer.key(24).pose is poses[-1]
@@ -145,7 +145,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
 def test_a_loose_pose_waits_at_its_frame(window, loose):
     session = window.session
     window.act(viewing.toggle_auto_key)
-    posing.wish(session, {1: Target(position=place_of(loose, 1) - 80j)})
+    posing.set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     pose = loose.preview_pose
     playback.scrub(session, 24)
@@ -153,14 +153,14 @@ def test_a_loose_pose_waits_at_its_frame(window, loose):
     playback.scrub(session, 7)
     window.settle()
     assert loose.preview_pose is None
-    assert loose.puppet.shown.pose is None
+    assert loose.layer_runtime.shown.pose is None
     playback.toggle_play(session)
     playback.seek(session, 24)
     assert loose.preview_pose is None
     playback.scrub(session, 24)
     window.settle()
     assert loose.preview_pose is pose
-    assert loose.puppet.shown.pose is pose
+    assert loose.layer_runtime.shown.pose is pose
 
 
 def test_deleting_a_handle_while_it_is_dragged(window, loose):
@@ -203,16 +203,19 @@ def test_deleting_a_key_while_it_is_dragged(window, loose):
 @pytest.mark.parametrize(
     ("change", "frames"),
     [
-        (editing.delete, [0]),
-        (lambda session: editing.edit(session, key_commands.move_keys(0, {24}, 6)), [0, 30]),
-        (lambda session: keys.scale(session, 0.5), [0, 12]),
+        (editing.delete_selection, [0]),
+        (
+            lambda session: editing.edit_document(session, key_commands.move_keys(0, {24}, 6)),
+            [0, 30],
+        ),
+        (lambda session: keys.scale_selected_keys(session, 0.5), [0, 12]),
     ],
 )
 def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
     window, loose, change, frames
 ):
-    editing.choose_keys(window.session, frozenset({24}))
-    posing.wish(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
+    editing.select_keys(window.session, frozenset({24}))
+    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
     assert loose.pull is not None
     change(window.session)
     window.settle()
@@ -220,7 +223,7 @@ def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
 
 
 def test_other_changes_leave_the_solver_at_work(window, loose):
-    posing.wish(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
+    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
     keys.set_fps(window.session, 12.0)
     assert loose.pull is not None
     window.settle()
@@ -234,8 +237,8 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
         handle_commands.move_handle(0, 1, rest - 30),
     ):
         wish = place_of(loose, 1) - 20j
-        posing.wish(window.session, {1: Target(position=wish)})
-        editing.edit(window.session, command)
+        posing.set_targets(window.session, {1: Target(position=wish)})
+        editing.edit_document(window.session, command)
         window.settle()
         pose = loose.layer.key(24).pose
         assert abs(loose.layer.map_of(pose)(np.array([rest]))[0] - wish) < 2
@@ -244,7 +247,7 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
 
 
 def test_playhead_that_goes_elsewhere_ends_the_pull(window, loose):
-    posing.wish(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
+    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
     playback.scrub(window.session, 24)
     assert loose.pull is not None
     playback.scrub(window.session, 7)
@@ -272,45 +275,45 @@ def test_end_of_the_preview_range_before_its_beginning_takes_that_along(window):
 
 
 def test_only_what_is_there_is_selected(window, loose):
-    editing.select(window.session, frozenset({1, 7}))
+    editing.select_handles(window.session, frozenset({1, 7}))
     assert loose.selected == {1}
-    timeline_pointing.begin(
+    timeline_drag.begin_timeline_drag(
         window.session,
         KeyBox(start=0.0, row=loose.active, keeps={loose.active: frozenset({24, 31})}),
         loose.timing.strip,
     )
-    timeline_pointing.move(window.session, 10.0, loose.active)
+    timeline_drag.move_timeline_drag(window.session, 10.0, loose.active)
     assert loose.chosen == {0, 24}
-    timeline_pointing.cancel(window.session)
+    timeline_drag.cancel_timeline_drag(window.session)
     assert loose.chosen == {24}
 
 
 def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
     window.act(viewing.toggle_auto_key)
-    posing.wish(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
+    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
-    before = loose.puppet.shown.positions
-    editing.select(window.session, frozenset({0}))
+    before = loose.layer_runtime.shown.positions
+    editing.select_handles(window.session, frozenset({0}))
     window.run(lambda robot: press(robot, window.Key.delete))
     window.settle()
     assert [handle.id for handle in loose.document.layers[0].handles] == [1]
     assert loose.preview_pose is not None
-    np.testing.assert_allclose(loose.puppet.shown.positions, before, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(loose.layer_runtime.shown.positions, before, rtol=0, atol=1e-9)
 
 
 def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
     session = window.session
     window.act(viewing.toggle_auto_key)
-    posing.wish(session, {1: Target(position=place_of(loose, 1) - 80j)})
+    posing.set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     cage = loose.document.layers[0].domain.cage
-    viewing.draft_meshing(session, Meshing(triangles=1_500, detail="fine"))
-    rebuilding.rebuild(session)
+    viewing.preview_meshing(session, Meshing(triangles=1_500, detail="fine"))
+    resolving.rebuild_mesh(session)
     window.settle()
     assert len(loose.document.layers[0].domain.cage) != len(cage)
     assert loose.preview_pose is None
     assert loose.meshing is None
-    assert loose.puppet.shown.is_current
+    assert loose.layer_runtime.shown.is_current
 
 
 # The solver at its bounds.
@@ -323,10 +326,10 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
     editing.redo(session)
     editing.redo(session)
     playback.seek(session, 0)
-    rebuilding.choose_bounds(session, Bounds(k=0.3, sigma_a=1.3, sigma_b=0.8))
+    resolving.set_limits(session, Bounds(k=0.3, sigma_a=1.3, sigma_b=0.8))
     window.settle()
     start = place_of(loose, 1)
-    far = start + 0.5 * loose.puppet.picture.size[0]
+    far = start + 0.5 * loose.layer_runtime.picture.size[0]
 
     def pull(robot, end, steps=4):
         robot.mouse_move_to_pos(window.point(place_of(loose, 1)))
@@ -337,17 +340,17 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
         robot.mouse_up(0)
         robot.key_up(imgui.Key.mod_alt)
 
-    viewing.look_from(session, replace(loose.view(session.screen), scale=0.3))
+    viewing.set_view(session, replace(loose.view(session.screen), scale=0.3))
     window.frames(2)
     window.run(lambda robot: pull(robot, far))
     window.settle()
     pose = loose.document.layers[0].key(0).pose
-    assert pose.certificate.certified
+    assert pose.certificate.is_certified
     assert loose.document.layers[0].bounds.allow(
         k=pose.certificate.k, sigma_a=pose.certificate.sigma_a, sigma_b=pose.certificate.sigma_b
     )
     np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
-    assert measure_target_errors(loose.layer, loose.puppet.shown.pose).errors[1] > 100
+    assert measure_target_errors(loose.layer, loose.layer_runtime.shown.pose).errors[1] > 100
 
     wishes, written = [], []
     mark, text = marks.mark_handles, imgui.text_colored
@@ -364,17 +367,17 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
         patch.setattr(marks, "mark_handles", marked)
         patch.setattr(imgui, "text_colored", told)
         window.show_tab("Handle")
-        editing.select(session, frozenset())
+        editing.select_handles(session, frozenset())
         window.frames(2)
-        editing.select(session, frozenset({1}))
+        editing.select_handles(session, frozenset({1}))
         window.frames(3)
     assert wishes[-1] == pose.targets[1].position
     assert any(HELD_BY_LIMITS in words for words in written)
 
     window.run(lambda robot: pull(robot, start))
     window.settle()
-    assert not measure_target_errors(loose.layer, loose.puppet.shown.pose).errors
-    assert loose.document.layers[0].key(0).pose.certificate.certified
+    assert not measure_target_errors(loose.layer, loose.layer_runtime.shown.pose).errors
+    assert loose.document.layers[0].key(0).pose.certificate.is_certified
 
 
 def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
@@ -402,33 +405,35 @@ INBETWEENS = (upkeep.GLIMPSING, upkeep.SKETCHING, upkeep.REFINING, upkeep.STREAM
 
 def test_scrubbing_while_the_worker_builds(window, loose):
     with window.session.jobs.held(*INBETWEENS):
-        keys.set_variant(window.session, "nu")
+        keys.set_inbetween_method(window.session, "nu")
         for frame in (3, 17, 9, 24, 0, 12):
             window.act(playback.scrub, frame)
             window.frames(2)
             assert playback.current_frame(window.session, loose) == frame
-            assert loose.puppet.shown is not None
-        assert not loose.puppet.shown.is_current
+            assert loose.layer_runtime.shown is not None
+        assert not loose.layer_runtime.shown.is_current
     window.settle()
-    assert loose.puppet.shown.is_current
-    assert loose.puppet.shown.frame == 12
+    assert loose.layer_runtime.shown.is_current
+    assert loose.layer_runtime.shown.frame == 12
 
 
 @pytest.mark.usefixtures("everything")
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
-    keys.set_variant(window.session, "nu")
-    editing.edit(window.session, key_commands.copy_keys(0, {0, 24}, 48))
+    keys.set_inbetween_method(window.session, "nu")
+    editing.edit_document(window.session, key_commands.copy_keys(0, {0, 24}, 48))
     # Passed through, the keys would be met with other velocities at the ends.
     frames = {0, 24, 48, 72}
-    editing.edit(window.session, key_commands.set_tangent_mode(0, frames, TangentMode.CORNER))
+    editing.edit_document(
+        window.session, key_commands.set_tangent_mode(0, frames, TangentMode.CORNER)
+    )
     window.settle()
     assert frames_of(loose) == [0, 24, 48, 72]
     # None of it is known of this one.
-    keys.set_variant(window.session, "metric")
+    keys.set_inbetween_method(window.session, "metric")
     for _ in range(20):
         window.frames()
         window.session.jobs.settle()
-    prepared = loose.puppet.store.prepared(loose.clip)
+    prepared = loose.layer_runtime.store.prepared(loose.clip)
     assert prepared is not None
     assert prepared[0] is prepared[2]
     assert len(set(prepared)) == 2
@@ -437,39 +442,42 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
 FAILURES = {
     "In-betweens": (
         "app.motion.inbetween_cache.prepare_intervals",
-        lambda session: keys.set_variant(session, "nu"),
+        lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Measuring": (
         "app.editor.actions.upkeep.measure_curves",
-        lambda session: keys.set_variant(session, "nu"),
+        lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Measuring the motion": (
         "app.editor.actions.upkeep.measure_extent",
-        lambda session: keys.set_variant(session, "nu"),
+        lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Smooth playback": (
         "app.motion.inbetween_jobs.build_series",
-        lambda session: keys.set_variant(session, "nu"),
+        lambda session: keys.set_inbetween_method(session, "nu"),
     ),
-    "Solving the keys": ("app.editor.actions.body.rebuilding.go_on", rebuilding.solve_again),
+    "Solving the keys": (
+        "app.editor.actions.layer_setup.resolving.go_on",
+        resolving.solve_keys_again,
+    ),
     "Rebuilding": (
         "app.solving.resolve_keys.build_domain",
         lambda session: (
-            viewing.draft_meshing(session, Meshing(triangles=1_500, detail="normal")),
-            rebuilding.rebuild(session),
+            viewing.preview_meshing(session, Meshing(triangles=1_500, detail="normal")),
+            resolving.rebuild_mesh(session),
         ),
     ),
     "Posing": (
-        "app.editor.actions.posing.solving._take_steps",
-        lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
+        "app.editor.actions.posing.pose_solver._take_steps",
+        lambda session: posing.set_targets(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
         "app.editor.actions.posing.inserting.pose_at",
-        lambda session: keys.insert_at(session, 12),
+        lambda session: keys.insert_key_in_row_at(session, 12),
     ),
     "Saving": (
         "app.editor.actions.saving.save_project",
-        lambda session: saving.write(session, session.folder / "bar.lissom", None),
+        lambda session: saving.write_project(session, session.folder / "bar.lissom", None),
     ),
     "Opening": (
         "app.editor.actions.files.open_picture",
@@ -508,9 +516,9 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     assert frames_of(loose) == [0]
     assert loose.document.layers[0].handles == ()
     playback.seek(window.session, 5)
-    posing.add_handle(window.session, complex(*loose.puppet.picture.size) / 2)
+    posing.add_handle(window.session, complex(*loose.layer_runtime.picture.size) / 2)
     window.settle()
-    assert loose.puppet.shown.is_current
+    assert loose.layer_runtime.shown.is_current
     assert loose.renewal is None
 
 
@@ -528,7 +536,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
 
     monkeypatch.setattr(jobs, "_clock", window.clock)
     monkeypatch.setattr("app.motion.inbetween_cache.prepare_intervals", endless)
-    window.act(keys.set_variant, "nu")
+    window.act(keys.set_inbetween_method, "nu")
     window.until(lambda: any(jobs.share_of(kind) == 0.4 for kind in jobs.kinds))
     window.clock.now += SLOW
     window.frames(3)
@@ -539,15 +547,15 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
 
 
 WAITING = {
-    upkeep.SKETCHING: lambda session: keys.set_variant(session, "nu"),
+    upkeep.SKETCHING: lambda session: keys.set_inbetween_method(session, "nu"),
     upkeep.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
-        exporting.show_frame(session, BoundingBox(0j, 1 + 1j)),
+        exporting.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
         upkeep.maintain(session),
     ),
-    rebuilding.RENEWING: rebuilding.solve_again,
-    posing.POSING: lambda session: posing.wish(session, {1: Target(position=900 + 50j)}),
-    INSERTING: lambda session: keys.insert_at(session, 12),
+    resolving.SOLVING_KEYS: resolving.solve_keys_again,
+    posing.POSING: lambda session: posing.set_targets(session, {1: Target(position=900 + 50j)}),
+    INSERTING: lambda session: keys.insert_key_in_row_at(session, 12),
 }
 
 
@@ -555,23 +563,27 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, loose
     """Never the pose of the key that was changed, however long in-betweens take."""
     with window.session.jobs.held(*INBETWEENS):
         width, height = loose.document.canvas
-        posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
+        posing.set_targets(
+            window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))}
+        )
         window.until(lambda: posing.POSING not in window.session.jobs.kinds)
-        mesh, (first, last) = loose.puppet.shown.mesh, loose.layer.keys
+        mesh, (first, last) = loose.layer_runtime.shown.mesh, loose.layer.keys
         for frame, key in ((18, last), (6, first)):
             playback.seek(window.session, frame)
             window.frames(1)
-            shown = loose.puppet.shown
+            shown = loose.layer_runtime.shown
             assert not shown.is_current
             assert shown.mesh is mesh
             np.testing.assert_array_equal(shown.positions, mesh.posed(key.pose))
             window.frames(2)
-            assert loose.puppet.shown is shown, "nothing is worked out again while it waits"
+            assert loose.layer_runtime.shown is shown, "nothing is worked out again while it waits"
         # Where the handles will be is not known yet: what is wished comes once it is.
-        posing.wish(window.session, {1: Target(position=complex(0.85 * width, 0.4 * height))})
+        posing.set_targets(
+            window.session, {1: Target(position=complex(0.85 * width, 0.4 * height))}
+        )
         window.frames(2)
     window.settle()
-    assert loose.puppet.shown.is_current
+    assert loose.layer_runtime.shown.is_current
     assert frames_of(loose) == [0, 6, 24]
 
 
@@ -584,7 +596,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
         window.frames(2)
         assert kind in window.session.jobs.kinds
         closed = loose.document
-        saving.give_up(window.session)
+        saving.discard_project(window.session)
         files.open_file(window.session, sample_images() / "s.png")
         window.frames(3)
     window.settle()
@@ -594,7 +606,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     assert other.history.undo_label is None
     assert other.extent.source in (None, extent_key(other.document))
     assert (other.pull, other.renewal, other.preview_pose) == (None, None, None)
-    assert other.puppet.shown.is_current
+    assert other.layer_runtime.shown.is_current
     assert loose.document is closed
     assert closed.layers[0].handles == before.layers[0].handles
     assert [toast for toast in window.session.toasts if toast.tone == "error"] == []
@@ -606,7 +618,7 @@ def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window):
         window.clock.now += 2 * SECONDS
         window.frames(2)
         assert saving.AUTOSAVING in window.session.jobs.kinds
-        saving.give_up(window.session)
+        saving.discard_project(window.session)
         window.frames(2)
     window.settle()
     assert list(window.folder.glob("unsaved-*")) == []
@@ -616,7 +628,7 @@ def test_saved_work_is_not_kept_as_unsaved(window, loose, tmp_path):
     window.clock.now += 2 * SECONDS
     window.settle()
     assert len(list(window.folder.glob("unsaved-*.lissom"))) == 1
-    saving.write(window.session, tmp_path / "bar.lissom", None)
+    saving.write_project(window.session, tmp_path / "bar.lissom", None)
     window.settle()
     assert loose.history.is_saved
     assert list(window.folder.glob("unsaved-*")) == []
@@ -665,7 +677,7 @@ def test_panels_draw_in_every_window(window, sized, request, kind, size):
         window.open(BAR)
         if kind == "one key":
             posing.add_handle(window.session, 500 + 100j)
-            posing.wish(window.session, {0: Target(position=500 + 120j)})
+            posing.set_targets(window.session, {0: Target(position=500 + 120j)})
             window.settle()
     sized(*size)
     for tab in TABS:
@@ -674,7 +686,7 @@ def test_panels_draw_in_every_window(window, sized, request, kind, size):
         assert window.picture().size == size[0]
     if window.session.project is not None:
         window.act(viewing.show_heat_map, "sigma_b")
-        window.act(viewing.toggle, "onion")
+        window.act(viewing.toggle_overlay, "onion")
         window.act(playback.toggle_play)
         window.frames(5)
     window.act(viewing.show_shortcuts)

@@ -18,7 +18,16 @@ from PIL import Image
 
 from app.document import PreviewPose
 from app.document.settings import ExportSettings, FrameRange
-from app.editor.actions import cutting, editing, exporting, files, keys, playback, posing, saving
+from app.editor.actions import (
+    cut_out_editing,
+    editing,
+    exporting,
+    files,
+    keys,
+    playback,
+    posing,
+    saving,
+)
 from app.editor.dialogs import Question
 from app.editor.layering import pictures
 from app.export.writers.gif import GifWriter
@@ -44,7 +53,7 @@ def project(window):
     project = window.again(Harness.open, BAR)
     posing.add_handle(window.session, complex(*project.document.canvas) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
-    exporting.set_export(window.session, ExportSettings(size=SIZE))
+    exporting.set_export_settings(window.session, ExportSettings(size=SIZE))
     window.settle()
     window.clock.cost = 0.6 * exporter.BUDGET
     yield project
@@ -54,7 +63,7 @@ def project(window):
 def begin(window, out, count=3):
     """Start an export, and wait until some of its frames are drawn."""
     session = window.session
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(lambda: session.export is not None and session.export.done >= count)
 
 
@@ -79,9 +88,11 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
 ):
     session, awake = window.session, []
     monkeypatch.setattr(hello_imgui, "request_refresh", lambda: awake.append(True))
-    saving.write(session, tmp_path / "saved.lissom", None)  # no autosave is to keep it awake
+    saving.write_project(
+        session, tmp_path / "saved.lissom", None
+    )  # no autosave is to keep it awake
     window.settle()
-    window.act(exporting.start, tmp_path / "frames")
+    window.act(exporting.start_export, tmp_path / "frames")
     session.jobs.settle()
     session.toasts = []
     steps = []
@@ -121,7 +132,7 @@ def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_pa
     out.mkdir()
     (out / "frame_0003.png").write_bytes(b"precious")
     (out / "frame_0005.png").write_bytes(b"precious")
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.settle()
     assert window.session.export is None
     assert question(window).title == "Replace the 2 files?"
@@ -129,47 +140,47 @@ def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_pa
     answer(window, "Cancel")
     assert (out / "frame_0003.png").read_bytes() == b"precious"
     assert len(list(out.iterdir())) == 2
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     answer(window, "Replace")
     window.settle()
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
     assert all(map(is_whole, out.iterdir()))
     # They are this export's own now.
-    window.act(exporting.repeat)
+    window.act(exporting.repeat_export)
     assert window.session.dialog is None
     window.settle()
     finish(window)
 
 
 def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path):
-    exporting.set_export(window.session, ExportSettings(format="gif", size=SIZE))
-    window.act(exporting.start_at, tmp_path / "bar.gif")
+    exporting.set_export_settings(window.session, ExportSettings(format="gif", size=SIZE))
+    window.act(exporting.start_export_at, tmp_path / "bar.gif")
     window.settle()
     finish(window)
     (tmp_path / "bar.webp").write_bytes(b"precious")
-    exporting.set_export(window.session, ExportSettings(format="webp", size=SIZE))
-    window.act(exporting.repeat)
+    exporting.set_export_settings(window.session, ExportSettings(format="webp", size=SIZE))
+    window.act(exporting.repeat_export)
     assert question(window).title == REPLACE
     answer(window, "Cancel")
     assert (tmp_path / "bar.webp").read_bytes() == b"precious"
-    assert project.exports_to == {"gif": tmp_path / "bar.gif"}
+    assert project.export_destinations == {"gif": tmp_path / "bar.gif"}
 
 
 def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
-    exporting.export_to(window.session, tmp_path / "shot.010")
-    window.act(exporting.repeat)
+    exporting.set_export_destination(window.session, tmp_path / "shot.010")
+    window.act(exporting.repeat_export)
     window.settle()
     finish(window)
     assert [path.name for path in tmp_path.iterdir()] == ["shot.010"]
-    assert project.exports_to == {"png": tmp_path / "shot.010"}
+    assert project.export_destinations == {"png": tmp_path / "shot.010"}
 
 
 def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, tmp_path):
     out = tmp_path / "frames"
     begin(window, out)
     window.until(lambda: any(out.glob("frame_*.png")))
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     window.settle()
     assert window.session.export is None
     written = sorted(out.iterdir())
@@ -180,7 +191,7 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
     before = project.document
     posing.remove_handles(window.session, frozenset({0}))
     assert project.document is not before
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.settle()
     finish(window)
     written = sorted(out.iterdir())
@@ -192,14 +203,14 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
 @pytest.mark.parametrize("name", ["film.apng", "film.webp", "sheet.png", "film.webm"])
 def test_cancelled_file_is_not_there(window, tmp_path, name):
     format_ = "spritesheet" if name == "sheet.png" else name.split(".")[1]
-    exporting.set_export(window.session, ExportSettings(format=format_, size=SIZE))
+    exporting.set_export_settings(window.session, ExportSettings(format=format_, size=SIZE))
     begin(window, tmp_path / name)
     assert list(tmp_path.iterdir()) != []
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     window.settle()
     assert list(tmp_path.iterdir()) == []
     assert exporting.CANCELLED_UNWRITTEN in texts(window)
-    window.act(exporting.start, tmp_path / name)
+    window.act(exporting.start_export, tmp_path / name)
     window.settle()
     finish(window)
     beside = ["sheet.json"] if name == "sheet.png" else []
@@ -207,11 +218,11 @@ def test_cancelled_file_is_not_there(window, tmp_path, name):
 
 
 def test_export_is_cancelled_while_it_is_prepared(window, project, tmp_path):
-    exporting.start(window.session, tmp_path / "frames")
-    exporting.cancel(window.session)
+    exporting.start_export(window.session, tmp_path / "frames")
+    exporting.cancel_export(window.session)
     window.settle()
     assert window.session.export is None
-    assert not project.exports_to
+    assert not project.export_destinations
     assert list(tmp_path.iterdir()) == []
 
 
@@ -271,15 +282,15 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     format_ = {"frames": "png", "sheet.png": "spritesheet"}.get(name, name[4:])
     few = FrameRange(0, FRAMES - 1)
     settings = ExportSettings(format=format_, size=SIZE, framing="canvas", frames=few)
-    exporting.set_export(session, settings)
+    exporting.set_export_settings(session, settings)
     window.settle()
     where = {"sites": (exporting, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
     worker = held(*where[stage])
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
     assert (session.export is None) == (stage == "sites")
     left = weakref.ref(session.export.poses[0]) if session.export else None
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     window.frames()
     assert not worker.has_waited_in_vain
     assert session.export is None
@@ -290,14 +301,14 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     stays = "Frames that were written stay" if written else "Nothing was written"
     assert f"The export was cancelled. {stays}." in texts(window)
     # The next one begins at once, and what was left takes no part in it.
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(lambda: any("Exported" in text for text in texts(window)))
     assert not worker.has_waited_in_vain
     made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")}
     worker.end.set()
     assert not any(exporting.PREPARING.complaint in text for text in texts(window))
     window.until(lambda: left is None or is_gone(left))
-    window.until(lambda: not session.jobs.given_up)
+    window.until(lambda: not session.jobs.abandoned_count)
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*")} == made
 
 
@@ -326,17 +337,17 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
     session, out = window.session, tmp_path / name
     format_ = "png" if name == "frames" else name[4:]
     settings = ExportSettings(format=format_, size=SIZE, background="#ffffff")
-    exporting.set_export(session, settings)
+    exporting.set_export_settings(session, settings)
     window.settle()
     calls = itertools.count()
     worker = held(WRITERS[format_], verb, lambda: next(calls) == at)
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
     window.frames(20)  # what can be drawn until then, is
     run = session.export
     assert run is not None
     assert at <= run.done <= FRAMES
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     window.frames()
     assert not worker.has_waited_in_vain
     assert session.export is None
@@ -352,7 +363,7 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
         assert written == []
     told = exporting.CANCELLED_MIDWAY if written else exporting.CANCELLED_UNWRITTEN
     assert told in texts(window)
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(lambda: any("Exported 9 frames" in text for text in texts(window)))
 
 
@@ -362,11 +373,11 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     """Until the disk has all of a file it can be cancelled; then it is there, and told so."""
     session, out = window.session, tmp_path / name
     format_ = "picture" if name == "pose.png" else name[4:]
-    exporting.set_export(session, ExportSettings(format=format_, size=SIZE))
+    exporting.set_export_settings(session, ExportSettings(format=format_, size=SIZE))
     worker = held(os, "fsync", is_of_an_export)
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     assert not worker.has_waited_in_vain
     assert exporting.CANCELLED_UNWRITTEN in texts(window)
     assert list(tmp_path.iterdir()) == []
@@ -374,9 +385,9 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     window.until(lambda: not export_threads())
     assert list(tmp_path.iterdir()) == []
     worker, session.toasts = held(Path, "replace", is_of_an_export), []
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     assert session.export is not None
     worker.end.set()
     finish(window)
@@ -388,11 +399,11 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
 @pytest.mark.usefixtures("project")
 def test_a_sheet_and_its_data_are_both_there_or_neither(window, tmp_path, held):
     session, out = window.session, tmp_path / "sheet.png"
-    exporting.set_export(session, ExportSettings(format="spritesheet", size=SIZE))
+    exporting.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
     worker = held(Path, "replace", is_of_an_export)
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     worker.end.set()
     finish(window)
     assert any("Exported" in text for text in texts(window))
@@ -410,24 +421,24 @@ def export_threads():
 @pytest.mark.usefixtures("project")
 def test_quitting_asks_about_an_export_that_runs(window, tmp_path, held):
     session = window.session
-    saving.write(session, tmp_path / "saved.lissom", None)
+    saving.write_project(session, tmp_path / "saved.lissom", None)
     window.settle()
     calls = itertools.count()
     # It lasts longer than the answers.
     worker = held(PngSequence, "add", lambda: next(calls) == 3)
     begin(window, tmp_path / "frames")
     window.until(worker.begun.is_set)
-    window.act(saving.quit_lissom)
-    assert not session.quitting
+    window.act(saving.request_quit)
+    assert not session.is_quitting
     assert question(window).title == exporting.RUNNING
     answer(window, "Cancel")
     assert session.export is not None
-    window.act(saving.quit_lissom)
+    window.act(saving.request_quit)
     answer(window, "Quit")
-    assert session.quitting
-    session.quitting = False
+    assert session.is_quitting
+    session.is_quitting = False
     hello_imgui.get_runner_params().app_shall_exit = False
-    exporting.cancel(session)
+    exporting.cancel_export(session)
     worker.end.set()
     window.until(lambda: not export_threads())
 
@@ -453,7 +464,7 @@ def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, m
     assert all(path.suffix == ".png" for path in left)
     assert all(map(is_whole, left))
     assert window.session.project is project
-    window.act(exporting.repeat)
+    window.act(exporting.repeat_export)
     window.settle()
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
@@ -466,7 +477,7 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
 
     with monkeypatch.context() as patch:
         patch.setattr("app.export.writers.png.encode_png", broken)
-        window.act(exporting.start, tmp_path / "frames")
+        window.act(exporting.start_export, tmp_path / "frames")
         window.settle()
         finish(window)
     (toast,) = (toast for toast in window.session.toasts if toast.details)
@@ -474,7 +485,7 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
     window.session.toasts = []
     assert window.session.export is None
     assert list((tmp_path / "frames").iterdir()) == []
-    window.act(exporting.repeat)
+    window.act(exporting.repeat_export)
     window.settle()
     finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == FRAMES
@@ -484,7 +495,7 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
 def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
     out = tmp_path / "frames"
     begin(window, out)
-    saving.give_up(window.session)
+    saving.discard_project(window.session)
     window.frames(2)
     files.open_file(window.session, sample_images() / "s.png")
     window.settle()
@@ -493,7 +504,7 @@ def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
     assert all(map(is_whole, out.iterdir()))
-    assert not other.exports_to
+    assert not other.export_destinations
     assert other.document.export == ExportSettings()
     assert any("Exported 9 frames" in text for text in texts(window))
 
@@ -501,7 +512,7 @@ def test_export_goes_on_when_another_project_is_opened(window, tmp_path):
 @pytest.mark.usefixtures("project")
 def test_second_export_waits_for_the_first(window, tmp_path):
     begin(window, tmp_path / "first")
-    window.act(exporting.start, tmp_path / "second")
+    window.act(exporting.start_export, tmp_path / "second")
     window.settle()
     finish(window)
     assert [path.name for path in tmp_path.iterdir()] == ["first"]
@@ -509,19 +520,19 @@ def test_second_export_waits_for_the_first(window, tmp_path):
 
 @pytest.mark.usefixtures("everything")
 def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window, project, tmp_path):
-    keys.set_variant(window.session, "nu")
-    keys.insert_at(window.session, FRAMES - 1)
+    keys.set_inbetween_method(window.session, "nu")
+    keys.insert_key_in_row_at(window.session, FRAMES - 1)
     window.settle()
-    sampler = project.puppet.store.sampler
+    sampler = project.layer_runtime.store.sampler
     known = dict(sampler._samples)
     assert known
     with sampler._lock:  # as a worker has it while it prepares an interval
-        window.act(exporting.start, tmp_path / "frames")
+        window.act(exporting.start_export, tmp_path / "frames")
         window.settle()
         finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == FRAMES
     posing.remove_handles(window.session, frozenset({0}))
-    window.act(exporting.start, tmp_path / "more frames")
+    window.act(exporting.start_export, tmp_path / "more frames")
     window.session.jobs.settle()
     # In-betweens of the same maps, whatever handles they have.
     assert {id(pose.phi) for pose in sampler._samples} == {id(pose.phi) for pose in known}
@@ -533,9 +544,9 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
     window.open(picture)
     picture.unlink()
     path = tmp_path / "kept.lissom"
-    saving.write(window.session, path, None)
+    saving.write_project(window.session, path, None)
     keys.set_last_frame(window.session, 2)
-    window.act(exporting.start, tmp_path / "frames")
+    window.act(exporting.start_export, tmp_path / "frames")
     window.settle()
     finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == 3
@@ -547,15 +558,15 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
 @pytest.mark.parametrize("name", ["bar.glb", "bar.html"])
 def test_models_are_exported_and_cancelled_as_all_else(window, tmp_path, name):
     session = window.session
-    exporting.set_export(session, ExportSettings(format=name[4:], size=SIZE))
-    window.act(exporting.start, tmp_path / name)
+    exporting.set_export_settings(session, ExportSettings(format=name[4:], size=SIZE))
+    window.act(exporting.start_export, tmp_path / name)
     session.jobs.settle()
     window.frames()
-    window.act(exporting.cancel)
+    window.act(exporting.cancel_export)
     window.settle()
     assert list(tmp_path.iterdir()) == []
     assert exporting.CANCELLED_UNWRITTEN in texts(window)
-    window.act(exporting.start, tmp_path / name)
+    window.act(exporting.start_export, tmp_path / name)
     window.settle()
     finish(window)
     assert (tmp_path / name).stat().st_size > 1000
@@ -579,7 +590,9 @@ def clipboard(tmp_path, monkeypatch):
 
 def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path, clipboard):
     session = window.session
-    exporting.set_export(session, ExportSettings(format="picture", size=SIZE, framing="canvas"))
+    exporting.set_export_settings(
+        session, ExportSettings(format="picture", size=SIZE, framing="canvas")
+    )
     playback.seek(session, 4)
     window.settle()
     rest = project.layer.keys[0].pose
@@ -595,10 +608,10 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
         with Image.open(out) as image:
             return np.asarray(image).astype(int)
 
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     shifted = exported()
     editing.undo(session)
-    window.act(exporting.start, out)
+    window.act(exporting.start_export, out)
     assert question(window).title == REPLACE
     answer(window, "Replace")
     pixels = exported()
@@ -610,7 +623,7 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     with Image.open(clipboard) as image:
         assert np.array_equal(np.asarray(image), pixels)
     assert [path for path in session.folder.iterdir() if path.suffix == ".png"] == []
-    assert project.exports_to["picture"] == out
+    assert project.export_destinations["picture"] == out
 
 
 @pytest.mark.usefixtures("project")
@@ -627,9 +640,9 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
     drawing.write_bytes(BAR.read_bytes())
     layer.write_bytes(BAR.read_bytes())
     session, project = window.session, window.open(drawing)
-    pictures.add(session, [layer])
+    pictures.add_layers(session, [layer])
     window.settle()
-    saving.write(session, saved, None)
+    saving.write_project(session, saved, None)
     window.settle()
     (link := tmp_path / "link.png").symlink_to(layer)
     before = {path: path.read_bytes() for path in (drawing, layer, saved)}
@@ -642,12 +655,12 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
         assert any(SAME_FILE in toast.text + toast.details for toast in session.toasts)
         assert {path: path.read_bytes() for path in before} == before
 
-    exporting.set_export(session, ExportSettings(format="picture", size=SIZE))
+    exporting.set_export_settings(session, ExportSettings(format="picture", size=SIZE))
     for out in (drawing, link):
-        refused(exporting.start_at, out)
-        refused(cutting.save_mask, out)
-        refused(saving.write, out, None)
-    refused(cutting.save_mask, saved)
-    exporting.set_export(session, ExportSettings(format="spritesheet", size=SIZE))
-    refused(exporting.start_at, tmp_path / "walk.png")
+        refused(exporting.start_export_at, out)
+        refused(cut_out_editing.save_mask, out)
+        refused(saving.write_project, out, None)
+    refused(cut_out_editing.save_mask, saved)
+    exporting.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    refused(exporting.start_export_at, tmp_path / "walk.png")
     assert project.path == saved

@@ -32,9 +32,9 @@ def put(window, project, rng):
     session = window.session
     for kind in session.jobs.kinds:
         session.jobs.drop(kind)
-    session.dialog = session.export = session.guide = session.pointer = None
-    session.quitting, session.toasts = False, []
-    saving.put_project(session, own(project))
+    session.dialog = session.export = session.tutorial = session.pointer = None
+    session.is_quitting, session.toasts = False, []
+    saving.set_project(session, own(project))
     random_state(rng, session, session.project)
 
 
@@ -68,6 +68,6 @@ def test_verbs_work_on_random_documents_or_say_why_not(window, seed):
                 assert not surprises, (told, surprises[0])
                 if name not in CLOSES:
                     check_invariants(session)
-            session.quitting = False
-    saving.put_project(session, None)
-    session.quitting, session.dialog = False, None
+            session.is_quitting = False
+    saving.set_project(session, None)
+    session.is_quitting, session.dialog = False, None

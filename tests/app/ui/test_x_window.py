@@ -229,7 +229,7 @@ def grabbed_keyboard(display):
 
 
 def place_of(window, bar, share):
-    width, height = bar.puppet.picture.size
+    width, height = bar.layer_runtime.picture.size
     point = window.point(complex(share.real * width, (0.5 + share.imag) * height))
     return int(point.x), int(point.y)
 
@@ -275,7 +275,7 @@ def test_a_person_animates_a_drawing_and_finds_it_again(window, bar, person, tmp
     document = load_project(path)
     assert len(document.layers[0].handles) == 2
     assert [key.frame for key in document.layers[0].keys] == [0, document.frames.last]
-    assert all(key.pose.certificate.certified for key in document.layers[0].keys)
+    assert all(key.pose.certificate.is_certified for key in document.layers[0].keys)
     first, last = (key.pose.targets[1].position for key in document.layers[0].keys)
     height = document.layers[0].picture.size[1]
     assert first.imag < 0.2 * height

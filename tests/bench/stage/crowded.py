@@ -15,7 +15,7 @@ from app.document import (
     clip_of,
 )
 from app.document.settings import Marker
-from app.editor import Puppet
+from app.editor import LayerRuntime
 from app.editor.actions import files, saving
 from app.storage import decode_picture, load_project, sample_images
 from engine.deform import MOST_HANDLES
@@ -33,11 +33,11 @@ def table(stage: Driver, folder: Path, count: int, frames: int) -> Table:
     rows = []
     for name, document in _documents(load_project(path), count).items():
         with stage.session.jobs.held():
-            files.show(stage.session, folder / path.name, _opened(document))
+            files.install_opened_file(stage.session, folder / path.name, _opened(document))
             for _ in range(SETTLING):
                 stage.refresh()
             rows.append(row_of(name, [stage.frame().own for _ in range(frames)]))
-            saving.put_project(stage.session, None)
+            saving.set_project(stage.session, None)
             for kind in stage.session.jobs.kinds:
                 stage.session.jobs.drop(kind)
     return Table(
@@ -90,12 +90,12 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
     }
 
 
-def _opened(document: Document) -> files.Opened:
+def _opened(document: Document) -> files.OpenedFile:
     """Return a document as files are opened; layers with the same domain share what is known."""
-    made: dict[MeshedDomain, Puppet] = {}
+    made: dict[MeshedDomain, LayerRuntime] = {}
     for layer in document.layers:
         if layer.domain not in made:
             picture = decode_picture(layer.picture.data, layer.name)
-            made[layer.domain] = Puppet.of(clip_of(document, layer.id), picture)
+            made[layer.domain] = LayerRuntime.of(clip_of(document, layer.id), picture)
     puppets = {layer.id: copy(made[layer.domain]) for layer in document.layers}
-    return files.Opened(document, puppets, ())
+    return files.OpenedFile(document, puppets, ())

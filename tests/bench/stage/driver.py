@@ -112,7 +112,7 @@ class Driver:
         """Wait for the workers to finish everything; frames are drawn only where one is due."""
         self.refresh()
         while self.session.jobs.kinds:
-            if not self.session.jobs.settle(PATIENCE):
+            if not self.session.jobs.wait_until_idle(PATIENCE):
                 raise TimeoutError(f"the window did not get on: {self.session.jobs.kinds}")
             self.refresh()
 
@@ -149,7 +149,7 @@ def playing(stage: Driver, count: int) -> list[DrawnFrame]:
     stage.ask(playback.toggle_play)
     stage.settle()
     frames = [stage.frame(1 / stage.project.document.fps) for _ in range(count)]
-    stage.ask(playback.halt)
+    stage.ask(playback.stop_playback)
     stage.settle()
     return frames
 
@@ -212,7 +212,7 @@ class HandleDrag:
     @property
     def followed(self) -> Target | None:
         """The wish that the pose in the picture was solved for."""
-        shown = self._project.puppet.shown
+        shown = self._project.layer_runtime.shown
         return shown.pose.targets[self.handle] if shown and shown.pose else None
 
     def let_go(self) -> None:
@@ -227,4 +227,8 @@ class HandleDrag:
 
 def handle_place(project: Project) -> complex:
     """Return where the first handle is on the screen's plane."""
-    return complex(project.puppet.shown.handle_positions[0]) if project.puppet.shown else 0j
+    return (
+        complex(project.layer_runtime.shown.handle_positions[0])
+        if project.layer_runtime.shown
+        else 0j
+    )

@@ -54,7 +54,7 @@ def _watch(session: Session, seconds: float) -> None:
     time.sleep(seconds)
     print(time.process_time() - before, flush=True)
     # The window looks at it when it wakes the next time.
-    session.quitting = True
+    session.is_quitting = True
 
 
 def main() -> None:

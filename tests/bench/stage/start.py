@@ -52,9 +52,9 @@ class Start:
             print(MARKS[0], flush=True)
         thumbnails = self._window.thumbnails
         read = 0 if thumbnails is None else len(thumbnails.files)
-        if self._frames > 2 and read == len(files.samples()):
+        if self._frames > 2 and read == len(files.sample_files()):
             print(MARKS[1], flush=True)
-            saving.quit_lissom(session)
+            saving.request_quit(session)
         else:
             self._window.queue_action(do(self.look))
 
@@ -69,7 +69,7 @@ def main() -> None:
             folder=folder,
             preferences=load_preferences(folder),
         )
-        files.offer_recovery(session)
+        files.ask_recovery(session)
         if has_display():
             window = Window(session, lambda: Renderer(window_context()))
             Start(window)
@@ -79,7 +79,7 @@ def main() -> None:
         window = Window(session, lambda: Renderer(gl))
         Start(window)
         screen = Offscreen(window, gl)
-        while not session.quitting:
+        while not session.is_quitting:
             screen.frame(painted=True)
 
 

@@ -86,7 +86,7 @@ def test_it_lies_near_the_metric_variant():
     )
     for time in (0.25, 0.5, 0.75):
         apart = np.abs(between.frame(time).positions - metric.frame(time).positions).max()
-        assert apart < 0.03 * metric.sites.diameter
+        assert apart < 0.03 * metric.sampled_domain.diameter
 
 
 def test_the_lengths_differ_from_the_blend_by_a_factor_of_each_end():

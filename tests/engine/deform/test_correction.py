@@ -14,15 +14,15 @@ from engine.deform.correction import (
     WIDTH,
     BaseFrame,
     CorrectedFrame,
-    LimitWalls,
+    LimitBarrier,
     PointPaths,
     PointSolution,
-    Targets,
-    corrector_of,
+    PointTargets,
+    build_corrector,
     extremes,
-    largest_share,
-    limits_of,
-    solve,
+    frame_limits,
+    max_feasible_share,
+    solve_correction,
     solve_within,
 )
 from engine.deform.correction.solver import UNFINISHED
@@ -36,14 +36,14 @@ RNG = np.random.default_rng(5)
 @cache
 def corrector(name):
     make, points = SHAPES[name]
-    return corrector_of(make(), 0.05 + 0.02j, points)
+    return build_corrector(make(), 0.05 + 0.02j, points)
 
 
 @cache
 def holed():
     shape = ring()
     boundary = Boundary.sample(shape.domain)
-    return corrector_of(boundary, shape.anchor, np.array([0.75j, -0.75]))
+    return build_corrector(boundary, shape.anchor, np.array([0.75j, -0.75]))
 
 
 def bent(places, *, amount=0.15, sign=-1, is_squared=True):
@@ -93,9 +93,11 @@ def test_points_come_to_their_targets(name, sign):
     known = corrector(name)
     base = bent(known.paths.nodes, sign=sign)
     moves = moves_of(known.points, 0.1 + 0.08j)
-    found = solve(known, base, Targets(moves, np.ones(len(moves)), is_anchored=False))
+    found = solve_correction(
+        known, base, PointTargets(moves, np.ones(len(moves)), is_anchored=False)
+    )
     assert np.abs(lack_of(known, base, found, moves)).max() < 1e-10 * known.boundary.size
-    assert found.misses.max() < 1e-10 * known.boundary.size
+    assert found.target_errors.max() < 1e-10 * known.boundary.size
     assert found.steps <= 5
 
 
@@ -114,14 +116,14 @@ def test_rows_and_bending_are_derivatives():
     assert_allclose(rows, [*change.real, *change.imag], atol=1e-8)
     weights = np.concatenate([pulls.real, pulls.imag])
     bend = weights @ (at(e).rows() - at(-e).rows()) / (2 * e)
-    assert_allclose(at(0).bending(pulls)(step), bend, atol=1e-7)
+    assert_allclose(at(0).singularity_strengths(pulls)(step), bend, atol=1e-7)
 
 
 def test_corrections_are_the_least():
     known = corrector("bar")
     base = bent(known.paths.nodes)
     moves = moves_of(known.points, 0.05 - 0.1j)
-    found = solve(known, base, Targets(moves, np.ones(3), is_anchored=True))
+    found = solve_correction(known, base, PointTargets(moves, np.ones(3), is_anchored=True))
     rest = CorrectedFrame.of(known, base, 0 * found.x).places()
 
     def lack(x):
@@ -136,7 +138,7 @@ def test_corrections_are_the_least():
         constraints={
             "type": "eq",
             "fun": lack,
-            "jac": lambda x: CorrectedFrame.of(known, base, x).rows(),
+            "jac": lambda x: CorrectedFrame.of(known, base, x).constraint_rows(),
         },
         options={"ftol": 1e-12, "maxiter": 200},
     )
@@ -164,11 +166,15 @@ def test_a_handle_of_weight_0_is_free():
     base = bent(known.paths.nodes)
     moves = np.array([0, 0.1j, 5.0])
     weights = np.array([1.0, 1.0, 0.0])
-    found = solve(known, base, Targets(moves, weights, is_anchored=True))
-    few = corrector_of(known.boundary, 0.05 + 0.02j, known.points[:2])
-    alone = solve(few, bent(few.paths.nodes), Targets(moves[:2], np.ones(2), is_anchored=True))
+    found = solve_correction(known, base, PointTargets(moves, weights, is_anchored=True))
+    few = build_corrector(known.boundary, 0.05 + 0.02j, known.points[:2])
+    alone = solve_correction(
+        few, bent(few.paths.nodes), PointTargets(moves[:2], np.ones(2), is_anchored=True)
+    )
     assert_allclose(found.x @ found.x, alone.x @ alone.x, rtol=1e-4)
-    light = solve(known, base, Targets(moves, np.array([1.0, 1.0, 1e-9]), is_anchored=True))
+    light = solve_correction(
+        known, base, PointTargets(moves, np.array([1.0, 1.0, 1e-9]), is_anchored=True)
+    )
     assert_allclose(light.x, found.x, atol=1e-6)
 
 
@@ -176,12 +182,12 @@ def test_an_anchor_stays_or_all_is_moved():
     known = corrector("star")
     base = bent(known.paths.nodes)
     moves = np.full(len(known.points), 0.3 - 0.2j)
-    free = solve(known, base, Targets(moves, np.ones(6), is_anchored=False))
+    free = solve_correction(known, base, PointTargets(moves, np.ones(6), is_anchored=False))
     assert_allclose(free.shift, 0.3 - 0.2j, atol=1e-12)
     assert np.abs(free.x).max() < 1e-12
-    held = solve(known, base, Targets(moves, np.ones(6), is_anchored=True))
+    held = solve_correction(known, base, PointTargets(moves, np.ones(6), is_anchored=True))
     assert held.shift == 0
-    assert held.misses.max() < 1e-8
+    assert held.target_errors.max() < 1e-8
     assert np.abs(held.x).max() > 0.01
 
 
@@ -193,22 +199,22 @@ def test_periods_around_holes_are_closed():
     base = base._replace(g=base.g + 0.01 / known.paths.nodes)
     opened = known.paths.integrals(base.fz) + known.paths.integrals(base.g).conj()
     assert np.abs(opened[2:]).max() > 0.05
-    found = solve(known, base, Targets(moves, np.ones(2), is_anchored=False))
+    found = solve_correction(known, base, PointTargets(moves, np.ones(2), is_anchored=False))
     frame = CorrectedFrame.of(known, base, found.x)
     assert np.abs(frame.places()[2:]).max() < 1e-9
-    assert found.misses.max() < 1e-9
+    assert found.target_errors.max() < 1e-9
 
 
 def test_a_stiff_part_changes_less():
     known = corrector("bar")
     right = known.boundary.points.real > 0
     stiff = known.boundary.stiffened_at_samples(np.where(right, 30.0, 1.0))
-    other = corrector_of(stiff, 0.05 + 0.02j, known.points)
+    other = build_corrector(stiff, 0.05 + 0.02j, known.points)
     moves, changes = moves_of(known.points, 0.1j), []
     for each in (known, other):
-        targets = Targets(moves, np.ones(3), is_anchored=False)
-        found = solve(each, bent(each.paths.nodes), targets)
-        assert found.misses.max() < 1e-9
+        targets = PointTargets(moves, np.ones(3), is_anchored=False)
+        found = solve_correction(each, bent(each.paths.nodes), targets)
+        assert found.target_errors.max() < 1e-9
         stretch = each.variables.at_samples.h_of(found.x).real
         changes.append(np.abs(stretch[right]).mean() / np.abs(stretch[~right]).mean())
     assert changes[1] < 0.6 * changes[0]
@@ -217,7 +223,9 @@ def test_a_stiff_part_changes_less():
 def test_nothing_asked_changes_nothing():
     known = corrector("bar")
     moves = np.zeros(3, dtype=np.complex128)
-    found = solve(known, bent(known.paths.nodes), Targets(moves, np.ones(3), is_anchored=False))
+    found = solve_correction(
+        known, bent(known.paths.nodes), PointTargets(moves, np.ones(3), is_anchored=False)
+    )
     assert not found.x.any()
     assert found.steps == 0
 
@@ -227,11 +235,13 @@ def test_the_same_is_found_elsewhere_and_turned():
     known = corrector("star")
     base, factor = bent(known.paths.nodes), 2 * np.exp(0.7j)
     moves = moves_of(known.points, 0.1j)
-    found = solve(known, base, Targets(moves, np.ones(6), is_anchored=False))
+    found = solve_correction(known, base, PointTargets(moves, np.ones(6), is_anchored=False))
     turned = base._replace(
         fz=factor * base.fz, g=factor.conjugate() * base.g, by=factor.conjugate() * base.by
     )
-    other = solve(known, turned, Targets(factor * moves, np.ones(6), is_anchored=False))
+    other = solve_correction(
+        known, turned, PointTargets(factor * moves, np.ones(6), is_anchored=False)
+    )
     assert_allclose(np.abs(other.x @ other.x), np.abs(found.x @ found.x), rtol=1e-6)
     assert other.shift == pytest.approx(factor * found.shift, abs=1e-7)
 
@@ -240,9 +250,9 @@ def test_a_share_of_a_correction_keeps_the_limits():
     known, bounds = corrector("bar"), Bounds(k=0.3, sigma_a=1.3, sigma_b=0.75)
     base, samples = (bent(z, amount=0.02) for z in (known.paths.nodes, known.boundary.points))
     moves = moves_of(known.points, 0.9j)
-    found = solve(known, base, Targets(moves, np.ones(3), is_anchored=False))
-    limits = limits_of(bounds)
-    share = largest_share(known, samples, found.x, limits)
+    found = solve_correction(known, base, PointTargets(moves, np.ones(3), is_anchored=False))
+    limits = frame_limits(bounds)
+    share = max_feasible_share(known, samples, found.x, limits)
     assert 0.05 < share < 0.95
 
     def moduli(s):
@@ -257,19 +267,19 @@ def test_a_share_of_a_correction_keeps_the_limits():
     assert are_kept(*moduli(share))
     assert not are_kept(*moduli(share + 0.03))
     # Within the limits all of it is taken; where the base is beyond, little that goes farther.
-    assert largest_share(known, samples, 0.1 * share * found.x, limits) == 1.0
-    tight = limits_of(Bounds(k=0.001, sigma_a=1.3, sigma_b=0.75))
-    assert largest_share(known, samples, found.x, tight) < 0.2 * share
+    assert max_feasible_share(known, samples, 0.1 * share * found.x, limits) == 1.0
+    tight = frame_limits(Bounds(k=0.001, sigma_a=1.3, sigma_b=0.75))
+    assert max_feasible_share(known, samples, found.x, tight) < 0.2 * share
     own = extremes(known, samples, found.x)
-    assert largest_share(known, samples, found.x, limits_of(bounds, own)) == 1.0
+    assert max_feasible_share(known, samples, found.x, frame_limits(bounds, own)) == 1.0
 
 
 def test_a_start_changes_nothing_but_the_steps():
     known = corrector("star")
     base = bent(known.paths.nodes)
-    targets = Targets(moves_of(known.points, 0.2), np.ones(6), is_anchored=False)
-    far = solve(known, base, targets)
-    near = solve(known, base, targets, start=far)
+    targets = PointTargets(moves_of(known.points, 0.2), np.ones(6), is_anchored=False)
+    far = solve_correction(known, base, targets)
+    near = solve_correction(known, base, targets, start=far)
     assert near.steps <= far.steps
     assert_allclose(near.x, far.x, atol=1e-7)
 
@@ -278,11 +288,11 @@ def test_a_correction_that_is_not_finished_raises(monkeypatch):
     monkeypatch.setattr("engine.deform.correction.solver.MOST_STEPS", 1)
     known = corrector("star")
     moves = moves_of(known.points, 0.2)
-    targets = Targets(moves, np.ones(6), is_anchored=True)
+    targets = PointTargets(moves, np.ones(6), is_anchored=True)
     task = known, bent(known.paths.nodes), targets
     with pytest.raises(EngineError, match=says(UNFINISHED, steps=1)):
-        solve(*task)
-    assert not solve(*task, throw=False).is_finished
+        solve_correction(*task)
+    assert not solve_correction(*task, throw=False).is_finished
 
 
 @pytest.mark.parametrize("sign", [-1, 1])
@@ -290,10 +300,10 @@ def test_the_barrier_has_the_slope_of_its_energy(sign):
     known, e = corrector("star"), 1e-6
     samples = bent(known.boundary.points, sign=sign)
     limits = extremes(known, samples, np.zeros(2 * known.variables.count)) + 0.05
-    walls = LimitWalls(known, samples, limits)
+    walls = LimitBarrier(known, samples, limits)
     x, step = RNG.normal(size=(2, 2 * known.variables.count)) * 1e-3
     rise = (walls.energy(walls.state(x + e * step)) - walls.energy(walls.state(x - e * step))) / e
-    assert walls.model(walls.state(x)).slope @ step == pytest.approx(rise / 2, rel=1e-4)
+    assert walls.model(walls.state(x)).gradient @ step == pytest.approx(rise / 2, rel=1e-4)
     assert walls.energy(walls.state(300 * x)) == np.inf
 
 
@@ -302,21 +312,21 @@ def test_a_barrier_that_is_passed_at_first_closes_in(scale):
     known = corrector("star")
     nodes, samples = (bent(z, sign=-1) for z in (known.paths.nodes, known.boundary.points))
     nothing = known.variables.nothing
-    targets = Targets(moves_of(known.points, 0.0), np.ones(6), is_anchored=False)
-    start = PointSolution(x=nothing, shift=0j, misses=np.zeros(6), steps=0)
+    targets = PointTargets(moves_of(known.points, 0.0), np.ones(6), is_anchored=False)
+    start = PointSolution(x=nothing, shift=0j, target_errors=np.zeros(6), steps=0)
     own = extremes(known, samples, nothing)
     limits = own - 0.03 * scale
-    walls = LimitWalls.around(known, samples, limits, scale, nothing)
-    found = solve(known, nodes, targets, start, walls)
+    walls = LimitBarrier.around(known, samples, limits, scale, nothing)
+    found = solve_correction(known, nodes, targets, start, walls)
     assert (extremes(known, samples, found.x) < limits).all()
     # Limits that cannot be kept are approached.
-    far = LimitWalls.around(known, samples, own - 1.0, scale, nothing)
-    least = extremes(known, samples, solve(known, nodes, targets, start, far).x)
+    far = LimitBarrier.around(known, samples, own - 1.0, scale, nothing)
+    least = extremes(known, samples, solve_correction(known, nodes, targets, start, far).x)
     assert (least > own - 1.0).any()
     assert (least < own).all()
     # What has room is left alone.
-    walls = LimitWalls.around(known, samples, own + WIDTH * scale, scale, nothing)
-    assert not solve(known, nodes, targets, start, walls).x.any()
+    walls = LimitBarrier.around(known, samples, own + WIDTH * scale, scale, nothing)
+    assert not solve_correction(known, nodes, targets, start, walls).x.any()
 
 
 @pytest.mark.parametrize(("name", "sign"), [("bar", -1), ("star", 1)])
@@ -328,23 +338,23 @@ def test_others_stay_and_limits_hold_out_of_reach(name, sign):
     count, size = len(known.points), known.boundary.size
     forces = np.where(np.arange(count) == 1, 8 / size, np.inf)
     moves = moves_of(known.points, size * np.exp(2j))
-    targets = Targets(moves, np.ones(count), is_anchored=False, forces=forces)
+    targets = PointTargets(moves, np.ones(count), is_anchored=False, max_forces=forces)
     found = solve_within(known, nodes, samples, targets, bounds)
-    assert found.is_held_back
-    assert (extremes(known, samples, found.x) <= limits_of(bounds)).all()
-    assert np.delete(found.misses, 1).max() < 1e-4 * size
+    assert found.is_limited
+    assert (extremes(known, samples, found.x) <= frame_limits(bounds)).all()
+    assert np.delete(found.target_errors, 1).max() < 1e-4 * size
     # A part of the smallest correction, which leaves the others alone as little, goes less far.
-    free = solve(known, nodes, targets)
-    share = largest_share(known, samples, free.x, limits_of(bounds))
-    assert size - found.misses[1] > share * (size - free.misses[1])
+    free = solve_correction(known, nodes, targets)
+    share = max_feasible_share(known, samples, free.x, frame_limits(bounds))
+    assert size - found.target_errors[1] > share * (size - free.target_errors[1])
 
 
 @pytest.mark.parametrize("outside", [5 + 5j, np.nan])
 def test_points_outside_the_domain_are_refused(outside):
     with pytest.raises(EngineError):
-        corrector_of(star_boundary(), 0.05 + 0.02j, np.array([0.1, outside]))
+        build_corrector(star_boundary(), 0.05 + 0.02j, np.array([0.1, outside]))
     with pytest.raises(EngineError):
-        corrector_of(star_boundary(), outside, np.array([0.1 + 0j]))
+        build_corrector(star_boundary(), outside, np.array([0.1 + 0j]))
 
 
 @pytest.mark.parametrize(
@@ -365,4 +375,4 @@ def test_targets_are_refused_that_no_point_can_have(changes):
     known = corrector("star")
     given = {"moves": np.zeros(6, complex), "weights": np.ones(6), "is_anchored": True} | changes
     with pytest.raises(EngineError):
-        solve(known, bent(known.paths.nodes), Targets(**given))
+        solve_correction(known, bent(known.paths.nodes), PointTargets(**given))

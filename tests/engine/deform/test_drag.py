@@ -23,7 +23,7 @@ from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 from pictures import stick_figure
 
-from engine.deform import Deformer, Handles, Status, following, require_held
+from engine.deform import Deformer, Handles, Status, require_held, tracking
 from engine.deform.certified_step import FARTHEST, add_samples
 from engine.deform.deformer import UNCERTIFIED_START, UNSETTLED
 from engine.deform.handles import MOST_CAGE, TARGET_COUNT, TARGET_FAR, WEIGHT_NOT_POSITIVE
@@ -52,7 +52,7 @@ def dragged(deformer, targets, steps, state=None):
 def test_similarities_are_met_exactly(turn):
     deformer = star()
     targets = np.exp(1j * turn) * STAR_POINTS + 3 - 1j
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets))
     assert state.status is Status.CONVERGED
     assert_allclose(deformer.positions(state), targets, rtol=0, atol=1e-5)
     assert_allclose(state.certificate.sigma_a, 1, atol=1e-3)
@@ -65,7 +65,7 @@ def test_affine_targets_are_met_when_allowed(affine):
     deformer = star()
     a, b = affine
     targets = a * STAR_POINTS + b * STAR_POINTS.conj()
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets))
     assert state.status is Status.CONVERGED
     # λ is large but finite: the handles give way a little to the energy.
     assert_allclose(deformer.positions(state), targets, rtol=0, atol=2e-3 * deformer.boundary.size)
@@ -76,14 +76,14 @@ def test_affine_targets_are_met_when_allowed(affine):
             psi=np.conj(b) * deformer.boundary.cage,
         )
     )
-    back, _ = deformer.settle(from_affine, deformer.handles.wish(targets))
+    back, _ = deformer.settle(from_affine, deformer.handles.targets(targets))
     assert_allclose(deformer.positions(back), deformer.positions(state), atol=1e-4)
 
 
 def test_affine_targets_that_the_bounds_forbid_end_at_the_bounds():
     bounds = Bounds(k=0.2, sigma_a=1.5, sigma_b=0.6)
     deformer = bar(bounds)
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(2 * BAR_POINTS))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(2 * BAR_POINTS))
     assert state.status is Status.AT_LIMITS
     assert_sound(state, bounds)
     assert state.certificate.sigma_a > 1.45
@@ -110,7 +110,7 @@ def test_drags_are_equivariant(factor, shift):
 def test_poses_turn_with_a_drawing_that_is_turned():
     targets = STAR_POINTS + np.array([0, 0.3j, 0.1, -0.2j, 0.2 - 0.1j, 0])
     deformer, turn = star(), np.exp(0.8j)
-    here, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    here, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets))
     other = moved_star(turn, 0)
     there, _ = other.settle(other.start(), other.handles.wish(turn * targets))
     assert there.statistics.objective == pytest.approx(here.statistics.objective, rel=1e-9)
@@ -135,7 +135,7 @@ def test_a_recorded_drag_is_repeated_bit_for_bit():
         deformer = star()
         state = deformer.start()
         for row in path:
-            state, _ = deformer.follow(state, deformer.handles.wish(row))
+            state, _ = deformer.track_path_row(state, deformer.handles.targets(row))
         return state
 
     first, second = run(), run()
@@ -164,19 +164,19 @@ WILD = {
 def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
     deformer = star()
     state = deformer.start()
-    wish = deformer.handles.wish(WILD[name](np.random.default_rng(1)))
+    wish = deformer.handles.targets(WILD[name](np.random.default_rng(1)))
     lengths = []
     for step in range(40):
         state = deformer.step(state, wish)
         lengths.append(state.statistics.length)
-        assert state.certificate.certified
+        assert state.certificate.is_certified
         assert np.isfinite(state.map.phi).all()
         if step % 13 == 0:
             assert_sound(state, BOUNDS)
     assert state.status in (Status.MOVING, Status.AT_LIMITS)
-    assert state.statistics.handle_error > 0.01
+    assert state.statistics.target_error > 0.01
     assert np.mean(lengths) > 0.1
-    state, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
+    state, _ = deformer.settle(state, deformer.handles.targets(STAR_POINTS))
     assert state.status is Status.CONVERGED
     assert_allclose(deformer.positions(state), STAR_POINTS, rtol=0, atol=1e-5)
     assert_allclose(state.map(0.9 * STAR_POINTS), 0.9 * STAR_POINTS, atol=1e-4)
@@ -196,7 +196,7 @@ def test_an_old_factor_follows_the_hand_like_a_new_one(monkeypatch):
         monkeypatch.setattr("engine.deform.model.newton.SERVES_STEPS", served)
         state, energies = deformer.start(), []
         for moved in np.cumsum(0.025 * jitter, axis=0):
-            state = deformer.step(state, deformer.handles.wish(points + moved))
+            state = deformer.step(state, deformer.handles.targets(points + moved))
             energies.append(state.statistics.objective)
         means.append(np.mean(energies))
     assert means[0] < 1.05 * means[1]
@@ -204,13 +204,13 @@ def test_an_old_factor_follows_the_hand_like_a_new_one(monkeypatch):
 
 def test_dual_variables_follow_the_steps_of_a_drag():
     deformer = star()
-    wish = deformer.handles.wish(1.5 * STAR_POINTS)
+    wish = deformer.handles.targets(1.5 * STAR_POINTS)
     state = deformer.start()
     for _ in range(6):
         state = deformer.step(state, wish)
     # Nothing is in the way: dual · c = weight of the barrier is all but reached.
-    step = following._prepare(deformer, state, wish)
-    products = step.barrier.duals * step.barrier.margins(step.jet.a, step.jet.b)
+    step = tracking._prepare(deformer, state, wish)
+    products = step.barrier.duals * step.barrier.margins(step.evaluation.a, step.evaluation.b)
     assert_allclose(products, step.barrier.weight, rtol=0.05)
 
 
@@ -221,10 +221,10 @@ def test_a_drag_in_random_jerks_stays_certified():
     for jerk in range(30):
         targets = STAR_POINTS + 0.8 * (rng.normal(size=6) + 1j * rng.normal(size=6))
         state = dragged(deformer, targets, 2, state)
-        assert state.certificate.certified
+        assert state.certificate.is_certified
         if jerk % 10 == 9:
             assert_sound(state, BOUNDS)
-    state, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
+    state, _ = deformer.settle(state, deformer.handles.targets(STAR_POINTS))
     assert state.status is Status.CONVERGED
     assert_allclose(deformer.positions(state), STAR_POINTS, rtol=0, atol=1e-5)
 
@@ -244,26 +244,26 @@ def test_any_drag_keeps_the_certificate(seed, size, bounds):
     for _ in range(6):
         targets = STAR_POINTS + size * (rng.normal(size=6) + 1j * rng.normal(size=6))
         state = dragged(deformer, targets, 3, state)
-        assert state.certificate.certified
+        assert state.certificate.is_certified
     assert_sound(state, bounds)
 
 
 def test_bounds_that_are_active_are_used_up():
     bounds = Bounds(k=0.15, sigma_a=1.6, sigma_b=0.7)
     deformer = bar(bounds)
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(ARCHED))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(ARCHED))
     assert_sound(state, bounds)
     near = bounds.towards_identity(0.01)
     certificate = state.certificate
     assert not near.allow(k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b)
     free = arched_bar()
     # The bounds cost energy or accuracy, never less than nothing.
-    assert free.statistics.handle_error <= state.statistics.handle_error
+    assert free.statistics.target_error <= state.statistics.target_error
 
 
 def test_a_new_handle_moves_nothing():
     deformer = bar()
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(BENT))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(BENT))
     more = Deformer(
         boundary=deformer.boundary,
         handles=Handles.place(deformer.boundary, [*BAR_POINTS, 1 + 0.2j]),
@@ -272,7 +272,7 @@ def test_a_new_handle_moves_nothing():
     held = np.append(BENT, more.positions(state)[-1])
     before = state.map(deformer.boundary.outline)
     for _ in range(5):
-        state = more.step(state, more.handles.wish(held))
+        state = more.step(state, more.handles.targets(held))
         assert_allclose(state.map(deformer.boundary.outline), before, atol=2e-3)
     # Fewer handles go on from the same map too, without a jump.
     fewer = Deformer(
@@ -281,10 +281,10 @@ def test_a_new_handle_moves_nothing():
         bounds=deformer.bounds,
     )
     before = state.map(deformer.boundary.outline)
-    state = fewer.step(state, fewer.handles.wish(held[:2]))
+    state = fewer.step(state, fewer.handles.targets(held[:2]))
     moved = np.abs(state.map(deformer.boundary.outline) - before).max()
     assert moved <= (1 + 1e-9) * FARTHEST * deformer.boundary.size
-    assert state.certificate.certified
+    assert state.certificate.is_certified
 
 
 def test_without_handles_the_pose_stays():
@@ -295,7 +295,7 @@ def test_without_handles_the_pose_stays():
         handles=Handles.place(deformer.boundary, []),
         bounds=deformer.bounds,
     )
-    after = none.step(state, none.handles.wish([]))
+    after = none.step(state, none.handles.targets([]))
     assert after.map is state.map
     assert after.status is Status.FREE
     assert after.status.is_final
@@ -307,9 +307,9 @@ def test_without_handles_tighter_bounds_are_kept():
     none = Deformer(
         boundary=deformer.boundary, handles=Handles.place(deformer.boundary, []), bounds=tight
     )
-    state = none.step(state, none.handles.wish([]))
+    state = none.step(state, none.handles.targets([]))
     assert state.status is Status.TIGHTENING
-    state, _ = none.settle(state, none.handles.wish([]))
+    state, _ = none.settle(state, none.handles.targets([]))
     assert state.status is Status.FREE
     assert state.limits is tight
     assert_sound(state, tight)
@@ -323,14 +323,14 @@ def test_bounds_near_the_identity_hold_a_map_that_is_far_from_it(factor, tight):
     deformer = bar(tight)
     cage = deformer.boundary.cage
     state = deformer.start(HarmonicMap(cage=cage, phi=factor * cage, psi=0 * cage))
-    state, _ = deformer.follow(state, deformer.handles.wish(factor * BAR_POINTS + 0.1j))
+    state, _ = deformer.track_path_row(state, deformer.handles.targets(factor * BAR_POINTS + 0.1j))
     assert_sound(state, tight)
 
 
 def test_one_handle_carries_the_shape_without_turning_it():
     boundary = bar_boundary()
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, [0.5]), bounds=BOUNDS)
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish([3 + 2j]))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets([3 + 2j]))
     assert_allclose(state.map(boundary.outline), boundary.outline + 2.5 + 2j, atol=1e-3)
 
 
@@ -339,14 +339,14 @@ def test_tightened_bounds_are_walked_into_through_certified_maps():
     loose = state.certificate
     tight = Bounds(k=0.5 * loose.k, sigma_a=1 + 0.6 * (loose.sigma_a - 1), sigma_b=0.6)
     deformer = bar(tight)
-    wish = deformer.handles.wish(ARCHED)
+    wish = deformer.handles.targets(ARCHED)
     with pytest.raises(EngineError, match=says(UNCERTIFIED_START)):
         deformer.start(state.map)
     for steps in range(200):  # noqa: B007 - the count is asserted
         at = deformer.positions(state)
         state = deformer.step(state, wish)
         assert np.abs(deformer.positions(state) - at).max() < 0.2
-        assert state.certificate.certified
+        assert state.certificate.is_certified
         assert state.certificate.k <= state.limits.k
         if state.status is not Status.TIGHTENING:
             break
@@ -355,7 +355,7 @@ def test_tightened_bounds_are_walked_into_through_certified_maps():
     assert_sound(state, tight)
     resumed = deformer.resume(dragged(bar(), ARCHED, 60).map)
     assert resumed.status is Status.TIGHTENING
-    assert resumed.certificate.certified
+    assert resumed.certificate.is_certified
     resumed, _ = deformer.settle(resumed, wish)
     assert_sound(resumed, tight)
     # Wider bounds let the handles go on.
@@ -366,7 +366,7 @@ def test_tightened_bounds_are_walked_into_through_certified_maps():
 
 
 def test_a_map_that_finds_no_way_into_its_bounds_says_so(monkeypatch):
-    state, wish = arched_bar(), bar().handles.wish(ARCHED)
+    state, wish = arched_bar(), bar().handles.targets(ARCHED)
     # Steps that go nowhere.
     monkeypatch.setattr("engine.deform.certified_step.line_search", lambda _, jet, *__: (0.0, jet))
     with pytest.raises(EngineError, match=says(UNSETTLED, status=Status.OUTSIDE.value)):
@@ -374,7 +374,7 @@ def test_a_map_that_finds_no_way_into_its_bounds_says_so(monkeypatch):
     stuck, steps = bar(Bounds(k=0.05)).settle(state, wish, throw=False)
     assert stuck.status is Status.OUTSIDE
     assert steps < 80
-    assert stuck.certificate.certified
+    assert stuck.certificate.is_certified
     assert stuck.map is state.map
 
 
@@ -382,14 +382,14 @@ def test_rotations_are_met():
     deformer = star()
     angle = np.full(6, np.nan)
     angle[1] = 0.8
-    wish = deformer.handles.wish(STAR_POINTS, angle)
+    wish = deformer.handles.targets(STAR_POINTS, angle)
     state, _ = deformer.settle(deformer.start(), wish)
     assert state.status is Status.CONVERGED
     assert_sound(state, BOUNDS)
     turned = np.angle(state.map.derivatives(deformer.handles.points)[0])
     assert 0.6 < turned[1] < 0.81
     assert abs(turned[3]) < 0.1
-    free, _ = deformer.settle(state, deformer.handles.wish(STAR_POINTS))
+    free, _ = deformer.settle(state, deformer.handles.targets(STAR_POINTS))
     assert_allclose(np.angle(free.map.derivatives(deformer.handles.points)[0]), 0, atol=1e-3)
 
 
@@ -403,7 +403,7 @@ def test_heavier_handles_win():
             handles=Handles.place(boundary, BAR_POINTS, weights),
             bounds=Bounds(k=0.5, sigma_a=1.8, sigma_b=0.4),
         )
-        state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets), at_most=150)
+        state, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets), at_most=150)
         errors.append(abs(deformer.positions(state)[1] - targets[1]))
     assert errors[1] < errors[0]
 
@@ -438,16 +438,16 @@ def test_bad_handles_are_refused(points, weights, message):
 def test_bad_wishes_are_refused(targets, rotations, message):
     handles = Handles.place(star_boundary(), [0.1, 0.1])
     with pytest.raises(EngineError, match=message):
-        handles.wish(targets, rotations)
+        handles.targets(targets, rotations)
 
 
 def test_handles_that_nobody_can_tell_apart_are_at_one_point():
     handles = Handles.place(star_boundary(), [0.1, 0.1 + 1e-7])
     with pytest.raises(EngineError, match="same point"):
-        handles.wish([0.1, 0.2])
+        handles.targets([0.1, 0.2])
     # As far from each other as bounds allow, and turned by a whole turn, they ask for the same.
-    handles.wish([0.1, 0.1 + 1e-6], [0.5, 0.5 + 2 * np.pi])
-    handles.wish([0.1, 0.1], [0.5, np.nan])
+    handles.targets([0.1, 0.1 + 1e-6], [0.5, 0.5 + 2 * np.pi])
+    handles.targets([0.1, 0.1], [0.5, np.nan])
 
 
 def test_a_cage_of_too_many_vertices_is_refused_in_words():
@@ -466,7 +466,7 @@ def test_handles_at_one_point_with_one_target_work():
         boundary=boundary, handles=Handles.place(boundary, [0, 0, 1.5, -1.5]), bounds=BOUNDS
     )
     targets = np.array([0.1j, 0.1j, 1.5, -1.5])
-    state, _ = deformer.settle(deformer.start(), deformer.handles.wish(targets))
+    state, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets))
     assert_allclose(deformer.positions(state)[:2], 0.1j, atol=1e-3)
 
 
@@ -485,21 +485,21 @@ def test_a_drawing_is_dragged():
     far = np.array(places) + boundary.size * np.array([0.3, -2j, 0.1])
     state = deformer.start()
     for _ in range(25):
-        state = deformer.step(state, deformer.handles.wish(far))
-        assert state.certificate.certified
+        state = deformer.step(state, deformer.handles.targets(far))
+        assert state.certificate.is_certified
     k, sigma_a, sigma_b = extremes(state.map, dense_outline(boundary, 10_000))
     certificate = state.certificate
     assert k <= certificate.k <= BOUNDS.k
     assert sigma_a <= certificate.sigma_a <= BOUNDS.sigma_a
     assert sigma_b >= certificate.sigma_b >= BOUNDS.sigma_b
-    state, _ = deformer.settle(state, deformer.handles.wish(places))
+    state, _ = deformer.settle(state, deformer.handles.targets(places))
     assert state.status is Status.CONVERGED
     assert_allclose(deformer.positions(state), places, rtol=0, atol=1e-4 * boundary.size)
 
 
 def test_handles_do_not_pull_while_the_shape_walks_into_its_bounds():
     deformer = bar()
-    far = deformer.handles.wish(BAR_POINTS + np.array([-40, 0, 40]))
+    far = deformer.handles.targets(BAR_POINTS + np.array([-40, 0, 40]))
     state = deformer.start()
     for _ in range(30):
         state = deformer.step(state, far)
@@ -534,7 +534,7 @@ def test_samples_are_added_where_a_bound_was_broken():
 def test_a_wild_drag_adds_samples():
     deformer = star(Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5))
     state = deformer.start()
-    wish = deformer.handles.wish(STAR_POINTS[::-1])
+    wish = deformer.handles.targets(STAR_POINTS[::-1])
     most = 0
     for _ in range(40):
         state = deformer.step(state, wish)
@@ -555,8 +555,10 @@ def test_a_shape_that_stays_entangled_is_settled_anew():
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
     state = deformer.start()
     for share in np.linspace(0, 1, 12):
-        state, _ = deformer.follow(state, handles.wish(points + share * (points[::-1] - points)))
-    home = handles.wish(points)
+        state, _ = deformer.track_path_row(
+            state, handles.targets(points + share * (points[::-1] - points))
+        )
+    home = handles.targets(points)
     back, _ = deformer.settle(state, home)
     assert back.status is Status.CONVERGED
     assert_allclose(deformer.positions(back), points, rtol=0, atol=1e-6)

@@ -6,7 +6,7 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose
 
 from engine.deform import Handles
-from engine.deform.model.barrier import DUAL_RANGE, Barrier, Walls
+from engine.deform.model.barrier import DUAL_RANGE, Barrier, BarrierBounds
 from engine.deform.model.energy import symmetric_dirichlet, symmetric_dirichlet_derivatives
 from engine.deform.model.hessian import (
     hessian_product,
@@ -28,7 +28,7 @@ B = np.minimum(B, A - 0.2)
 
 def densities():
     dirichlet = (symmetric_dirichlet, symmetric_dirichlet_derivatives)
-    all_walls = Barrier(walls=Walls.around(WALLS, COUNT), weight=0.3)
+    all_walls = Barrier(bounds=BarrierBounds.for_samples(WALLS, COUNT), weight=0.3)
     pairs = {"symmetric Dirichlet": dirichlet, "barrier": (all_walls.value, all_walls.derivatives)}
     # One wall at a time: the others are far away.
     for name, walls in {
@@ -36,7 +36,7 @@ def densities():
         "sigma_a": Bounds(k=1 - 1e-9, sigma_a=3.0, sigma_b=1e-9),
         "sigma_b": Bounds(k=1 - 1e-9, sigma_a=1e6, sigma_b=0.15),
     }.items():
-        one = Barrier(walls=Walls.around(walls, COUNT), weight=2.0)
+        one = Barrier(bounds=BarrierBounds.for_samples(walls, COUNT), weight=2.0)
         pairs[name] = (one.value, one.derivatives)
     return pairs
 
@@ -101,7 +101,7 @@ def test_the_densities_are_smooth_where_the_map_is_conformal():
 
 def test_energy_and_barrier_are_infinite_outside():
     one = np.array([1.0])
-    barrier = Barrier(walls=Walls.around(WALLS, 1), weight=1.0)
+    barrier = Barrier(bounds=BarrierBounds.for_samples(WALLS, 1), weight=1.0)
     assert symmetric_dirichlet(one, np.array([0.0])) == 2
     assert np.isinf(symmetric_dirichlet(one, one))
     for a, b in [(1.0, 0.71), (2.5, 0.51), (0.3, 0.16)]:
@@ -109,8 +109,8 @@ def test_energy_and_barrier_are_infinite_outside():
 
 
 def test_dual_variables_follow_the_slack():
-    walls = Walls.around(WALLS, COUNT)
-    barrier = Barrier(walls=walls, weight=0.3)
+    walls = BarrierBounds.for_samples(WALLS, COUNT)
+    barrier = Barrier(bounds=walls, weight=0.3)
     central = barrier.weight / barrier.margins(A, B)
     assert_allclose(barrier.current_duals(A, B), central, rtol=1e-14)
     # A step that goes nowhere from central duals leaves them; one into the wall raises them.
@@ -123,7 +123,7 @@ def test_dual_variables_follow_the_slack():
 
 
 def test_margins_change_as_their_derivatives_say():
-    barrier = Barrier(walls=Walls.around(WALLS, COUNT), weight=0.3)
+    barrier = Barrier(bounds=BarrierBounds.for_samples(WALLS, COUNT), weight=0.3)
     da, db, h = np.cos(np.arange(COUNT)), np.sin(np.arange(COUNT)), 1e-6
     ahead, behind = barrier.margins(A + h * da, B + h * db), barrier.margins(A - h * da, B - h * db)
     changes = barrier.margin_changes(A, B, da, db)
@@ -136,10 +136,10 @@ def test_margins_change_as_their_derivatives_say():
 def problem(*, rotations=None, barrier=True, seed=3):
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS, [1, 2, 1, 1, 0.5, 1])
-    wish = handles.wish(1.02 * STAR_POINTS + 0.01j, rotations)
-    all_walls = Walls.around(WALLS, len(boundary.points))
-    walls = Barrier(walls=all_walls, weight=0.2) if barrier else None
-    objective = Objective(boundary=boundary, handles=handles, wish=wish, barrier=walls)
+    wish = handles.targets(1.02 * STAR_POINTS + 0.01j, rotations)
+    all_walls = BarrierBounds.for_samples(WALLS, len(boundary.points))
+    walls = Barrier(bounds=all_walls, weight=0.2) if barrier else None
+    objective = Objective(boundary=boundary, handles=handles, targets=wish, barrier=walls)
     rng = np.random.default_rng(seed)
     n = len(boundary.cage)
     noise = rng.normal(size=(2, n)) + 1j * rng.normal(size=(2, n))
@@ -153,12 +153,12 @@ def problem(*, rotations=None, barrier=True, seed=3):
 @pytest.mark.parametrize("barrier", [True, False])
 def test_gradient_agrees_with_finite_differences(rotations, barrier):
     objective, phi, psi, rng = problem(rotations=rotations, barrier=barrier)
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     gradient = objective.gradient(jet, objective.radial(jet))
     n = len(phi)
     for _ in range(5):
         x = rng.normal(size=4 * n - 2)
-        moved = objective.jet(*objective.coefficients(x))
+        moved = objective.evaluation(*objective.coefficients(x))
         h = 1e-6
         ahead = objective.value(jet.advanced(h, moved))
         behind = objective.value(jet.advanced(-h, moved))
@@ -168,24 +168,24 @@ def test_gradient_agrees_with_finite_differences(rotations, barrier):
 @pytest.mark.parametrize("barrier", [True, False])
 def test_hessian_is_exact_where_nothing_is_projected(barrier):
     objective, phi, psi, rng = problem(barrier=barrier)
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     assert np.all(objective.radial(jet).around_a > 0)
     assert_products(objective, jet, len(phi), rng)
 
 
 def test_hessian_of_rotations_is_exact_at_their_wish():
     objective, phi, psi, rng = problem()
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     wish = objective.handles.wish(jet.positions, np.angle(jet.fz))
     objective = Objective(
-        boundary=objective.boundary, handles=objective.handles, wish=wish, barrier=None
+        boundary=objective.boundary, handles=objective.handles, targets=wish, barrier=None
     )
     assert_products(objective, jet, len(phi), rng)
 
 
 def test_hessian_of_rotations_is_the_projection():
     objective, phi, psi, _ = problem(barrier=False)
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     handles = objective.handles
     turned = np.full(6, np.nan)
     turned[2] = np.angle(jet.fz[2]) - 0.4
@@ -221,7 +221,7 @@ def assert_products(objective, jet, n, rng, *, removed=0.0, tolerance=1e-6):
     h = 1e-6
     for _ in range(3):
         x = rng.normal(size=4 * n - 2)
-        moved = objective.jet(*objective.coefficients(x))
+        moved = objective.evaluation(*objective.coefficients(x))
         ahead, behind = jet.advanced(h, moved), jet.advanced(-h, moved)
         by_gradient = (
             objective.gradient(ahead, objective.radial(ahead))
@@ -235,7 +235,7 @@ def assert_products(objective, jet, n, rng, *, removed=0.0, tolerance=1e-6):
 def test_the_hessian_without_its_projection_is_exact(barrier):
     # A shrunk map, where the projection removes something at most samples, and turned handles.
     objective, phi, psi, rng = problem(barrier=barrier)
-    jet = objective.jet(0.6 * phi, 0.3 * psi)
+    jet = objective.evaluation(0.6 * phi, 0.3 * psi)
     n = len(phi)
     turned = np.where(np.arange(6) % 2, np.nan, np.angle(jet.fz) - 0.4)
     objective = replace(objective, wish=objective.handles.wish(jet.positions, turned))
@@ -248,12 +248,12 @@ def test_the_hessian_without_its_projection_is_exact(barrier):
 
 def test_samples_that_were_added_change_the_hessian_hardly():
     objective, phi, psi, _ = problem(barrier=False)
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     hessian = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
     boundary = objective.boundary.refined(np.arange(0, len(objective.boundary.points), 3))
-    walls = Barrier(walls=Walls.around(WALLS, len(boundary.points)), weight=1e-9)
+    walls = Barrier(bounds=BarrierBounds.for_samples(WALLS, len(boundary.points)), weight=1e-9)
     finer = replace(objective, boundary=boundary, barrier=walls)
-    jet = finer.jet(phi, psi)
+    jet = finer.evaluation(phi, psi)
     assert_allclose(
         np.triu(projected_hessian(finer, jet, finer.radial(jet))), hessian, rtol=1e-5, atol=1e-3
     )
@@ -261,7 +261,7 @@ def test_samples_that_were_added_change_the_hessian_hardly():
 
 def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near():
     objective, phi, psi, _ = problem()
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     radial = objective.radial(jet)
     single, double = (
         single_hessian(objective, jet, radial),
@@ -270,7 +270,7 @@ def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near(
     assert single.dtype == np.float32
     assert_allclose(np.triu(single), np.triu(double), rtol=1e-5, atol=1e-3)
     alone = Handles.place(objective.boundary, STAR_POINTS[:1])
-    free = replace(objective, handles=alone, wish=alone.wish(STAR_POINTS[:1]))
+    free = replace(objective, handles=alone, wish=alone.targets(STAR_POINTS[:1]))
     assert single_hessian(free, jet, free.radial(jet)) is None
     radial.aa[7] *= 1e6
     assert single_hessian(objective, jet, radial) is None
@@ -280,15 +280,15 @@ def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near(
 def test_a_newton_step_is_that_of_the_whole_hessian(barrier):
     rotations = np.array([0.3, np.nan, -0.2, np.nan, np.nan, 3.0])
     objective, phi, psi, rng = problem(rotations=rotations, barrier=barrier)
-    jet = objective.jet(phi, psi)
+    jet = objective.evaluation(phi, psi)
     radial = objective.radial(jet)
     hessian = np.triu(projected_hessian(objective, jet, radial))
     hessian = hessian + np.triu(hessian, 1).T
     x = rng.normal(size=len(hessian))
     product = hessian_product(objective, jet, radial, objective.change(x))
     assert_allclose(product, hessian @ x, rtol=0, atol=1e-5 * np.abs(product).max())
-    exact = list(newton_models(objective, jet))[-1].direction().jet.f
-    direction = newton_direction(objective, jet).jet.f
+    exact = list(newton_models(objective, jet))[-1].direction().evaluation.f
+    direction = newton_direction(objective, jet).evaluation.f
     assert_allclose(direction, exact, rtol=0, atol=2e-4 * np.abs(exact).max())
 
 
@@ -296,10 +296,10 @@ def test_newton_finds_the_free_minimum_in_30_steps():
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS)
     targets = STAR_POINTS * np.exp(1j * np.array([0, 0.9, 0, -0.6, 0, 0.5]))
-    objective = Objective(boundary=boundary, handles=handles, wish=handles.wish(targets))
+    objective = Objective(boundary=boundary, handles=handles, targets=handles.targets(targets))
     phi, psi = boundary.cage.copy(), np.zeros_like(boundary.cage)
     for steps in range(31):  # noqa: B007 - the count is the point
-        jet = objective.jet(phi, psi)
+        jet = objective.evaluate(phi, psi)
         direction = newton_direction(objective, jet)
         if -direction.derivative < 1e-8 * objective.value(jet):
             break
@@ -313,6 +313,6 @@ def test_newton_finds_the_free_minimum_in_30_steps():
 @pytest.mark.parametrize("size", [1e160, 1e300])
 def test_a_trial_step_may_lead_farther_than_numbers_reach(size):
     objective, phi, psi, _ = problem()
-    far = objective.jet(size * phi, size * psi)
+    far = objective.evaluation(size * phi, size * psi)
     assert objective.energy(far) == np.inf
     assert objective.value(far) == np.inf

@@ -8,7 +8,7 @@ from deform_shapes import BAR_POINTS, bar_boundary, dense_outline
 from numpy.testing import assert_array_equal
 
 from engine.deform import Deformer, Handles, Status
-from engine.maps import Bounds, Limits, certify
+from engine.maps import Bounds, LocalBounds, certify
 
 BOUNDARY = bar_boundary()
 COUNT = len(BOUNDARY.points)
@@ -24,7 +24,7 @@ def bar(bounds, boundary=BOUNDARY):
 
 def two_halves(left, right, is_left=LEFT):
     """Return the bounds of the left half and of the right one."""
-    return Limits(
+    return LocalBounds(
         k=np.where(is_left, left.k, right.k),
         sigma_a=np.where(is_left, left.sigma_a, right.sigma_a),
         sigma_b=np.where(is_left, left.sigma_b, right.sigma_b),
@@ -64,16 +64,16 @@ def test_each_half_keeps_its_own_bounds_and_uses_them():
     limits = two_halves(tight, loose)
     state = come_to_rest(bar(limits))
     assert state.status is Status.AT_LIMITS
-    assert certify(state.map, BOUNDARY, limits).certified
+    assert certify(state.map, BOUNDARY, limits).is_certified
     assert tight.allow(**extremes_of(state.map, -1))
     right = extremes_of(state.map, 1)
     assert loose.allow(**right)
     assert right["sigma_a"] > 1.05 * tight.sigma_a
-    assert not certify(state.map, BOUNDARY, tight).certified
+    assert not certify(state.map, BOUNDARY, tight).is_certified
     # A drag from there into the mirrored bounds walks out of the ones and into the others.
     mirrored = two_halves(loose, tight, BOUNDARY.points.real <= 0)
     back = come_to_rest(bar(mirrored), bar(mirrored).resume(state.map))
-    assert certify(back.map, BOUNDARY, mirrored).certified
+    assert certify(back.map, BOUNDARY, mirrored).is_certified
     assert loose.allow(**extremes_of(back.map, -1))
     assert tight.allow(**extremes_of(back.map, 1))
     assert back.statistics.objective == pytest.approx(state.statistics.objective, rel=1e-3)

@@ -6,7 +6,7 @@ from deform_shapes import STAR_POINTS, star_boundary
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Handles, Objective, newton_direction
-from engine.deform.model.barrier import Barrier, Walls
+from engine.deform.model.barrier import Barrier, BarrierBounds
 from engine.deform.model.newton import newton_models, preconditioned_direction
 from engine.maps import Bounds
 
@@ -16,17 +16,17 @@ def maps():
     """Two maps near each other, as an objective with a barrier sees them, and the factor of one."""
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS)
-    walls = Walls.around(Bounds(), len(boundary.points))
+    walls = BarrierBounds.for_samples(Bounds(), len(boundary.points))
     objective = Objective(
         boundary=boundary,
         handles=handles,
-        wish=handles.wish(1.02 * STAR_POINTS + 0.01j),
-        barrier=Barrier(walls=walls, weight=0.2),
+        targets=handles.targets(1.02 * STAR_POINTS + 0.01j),
+        barrier=Barrier(bounds=walls, weight=0.2),
     )
     noise = np.random.default_rng(3).normal(size=(4, len(boundary.cage)))
     phi, psi = boundary.cage + 0.002 * noise[0], 0.1 * boundary.cage + 0.002j * noise[1]
-    first = objective.jet(phi, psi)
-    second = objective.jet(1.05 * phi + 0.002 * noise[2], psi + 0.002 * noise[3])
+    first = objective.evaluate(phi, psi)
+    second = objective.evaluate(1.05 * phi + 0.002 * noise[2], psi + 0.002 * noise[3])
     _, factored = preconditioned_direction(objective, first, None)
     return objective, second, factored
 

@@ -16,7 +16,7 @@ from holed_shapes import boundary_of, inner_points, plate
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.deform import Deformer, Hand, Handles, Objective, limits_inside
+from engine.deform import BoundedPull, Deformer, Handles, Objective, limits_inside
 from engine.deform.model.inner_limits import _continued
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
@@ -36,20 +36,20 @@ MIDDLE = np.exp(np.log(100) * np.clip(1.6 - np.abs(BAR.outline.real), 0.0, 1.0))
 def settled(boundary, points, targets, bounds=WIDE, hands=()):
     handles = Handles.place(boundary, points)
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-    wish = handles.wish(targets, None, hands)
+    wish = handles.targets(targets, None, hands)
     state, _ = deformer.settle(deformer.start(), wish)
-    assert state.certificate.certified
+    assert state.certificate.is_certified
     return deformer, state
 
 
 def test_a_stiffness_of_one_changes_no_bit():
-    ends, hands = BAR_POINTS[[0, 2]], (Hand([1]),)
+    ends, hands = BAR_POINTS[[0, 2]], (BoundedPull([1]),)
     _, plain = settled(BAR, ends, BENT[[0, 2]], SOME, hands)
     same = BAR.stiffened(np.ones(len(BAR.outline)))
-    _, other = settled(same, ends, BENT[[0, 2]], SOME.where_stiff(same), hands)
+    _, other = settled(same, ends, BENT[[0, 2]], SOME.scaled_by_stiffness(same), hands)
     assert_array_equal(plain.map.coefficients, other.map.coefficients)
     assert plain.statistics == other.statistics
-    assert SOME.where_stiff(same) is SOME
+    assert SOME.scaled_by_stiffness(same) is SOME
 
 
 def test_stiffness_is_logarithmically_linear_along_edges_and_refined_so():
@@ -86,20 +86,20 @@ def test_the_gradient_is_that_of_the_weighted_energy():
     rng = np.random.default_rng(3)
     boundary = STAR.stiffened(np.exp(rng.uniform(-3, 4, len(STAR.outline))))
     handles = Handles.place(boundary, STAR_POINTS)
-    objective = Objective(boundary=boundary, handles=handles, wish=handles.wish(TWISTED))
+    objective = Objective(boundary=boundary, handles=handles, targets=handles.targets(TWISTED))
     count = 4 * boundary.basis.shape[1] - 2
     shift = 0.002 * rng.normal(size=count)
     phi, psi = objective.coefficients(shift)
-    jet = objective.jet(boundary.cage + phi, psi)
+    jet = objective.evaluate(boundary.cage + phi, psi)
     a, b = jet.a, jet.b
     density = (a**2 + b**2) * (1 + (a**2 - b**2) ** -2)
     held = handles.stiffness @ np.abs(jet.positions - TWISTED) ** 2
     energy = (STAR.weights * boundary.stiffness) @ density + held
     assert objective.energy(jet) == pytest.approx(energy, rel=1e-12)
-    gradient = objective.gradient(jet, objective.radial(jet))
+    gradient = objective.gradient(jet, objective.radial_derivatives(jet))
     for _ in range(4):
         direction = rng.normal(size=count)
-        change, step = objective.change(direction), 1e-6
+        change, step = objective.evaluate_change(direction), 1e-6
         ahead, behind = (objective.energy(jet.advanced(by, change)) for by in (step, -step))
         assert (ahead - behind) / (2 * step) == pytest.approx(gradient @ direction, rel=1e-5)
 
@@ -133,8 +133,8 @@ def test_hands_pull_as_much_more_strongly_as_what_they_hold_is_stiff():
     boundary = BAR.stiffened(np.full(len(BAR.outline), 10.0))
     for of in (BAR, boundary):
         handles = Handles.place(of, BAR_POINTS)
-        far = handles.wish(np.array([-1.8, 0.0, 4.0]), None, [Hand([2])])
-        assert_allclose(far.hands.gives, Hand([2]).pull * of.size / 2e4)
+        far = handles.targets(np.array([-1.8, 0.0, 4.0]), None, [BoundedPull([2])])
+        assert_allclose(far.pulls.huber_thresholds, BoundedPull([2]).max_force * of.size / 2e4)
     assert_allclose(boundary.stiffness_around(BAR_POINTS)[1], 10.0)
 
 
@@ -155,7 +155,7 @@ def test_stiff_shapes_that_are_turned_and_enlarged_deform_alike():
     placed = []
     for base, by, moved in ((STAR, 1.0, 0.0), (larger, factor, shift)):
         boundary = base.stiffened(stiffness)
-        limits = bounds.where_stiff(boundary)
+        limits = bounds.scaled_by_stiffness(boundary)
         _, state = settled(boundary, by * STAR_POINTS + moved, by * BOWED + moved, limits)
         placed.append((state.map(by * STAR.outline + moved) - moved) / by)
     assert_allclose(placed[0], placed[1], atol=2e-4)
@@ -188,10 +188,10 @@ def test_limits_where_it_is_stiff_hold_between_the_samples_too():
     boundary = STAR.stiffened(
         np.exp(np.log(60) * (STAR.outline.real > 0) * np.minimum(2 * STAR.outline.real, 1))
     )
-    local = SOME.where_stiff(boundary)
+    local = SOME.scaled_by_stiffness(boundary)
     _, state = settled(boundary, STAR_POINTS, BOWED, local)
     along = np.linspace(0, 1, 12, endpoint=False)
-    following = boundary.following
+    following = boundary.next_samples
     points = boundary.points[:, None] * (1 - along) + boundary.points[following, None] * along
     logs = np.log(boundary.stiffness)
     stiffness = np.exp(logs[:, None] * (1 - along) + logs[following, None] * along)
@@ -219,12 +219,12 @@ def test_segments_keep_what_their_stiffer_end_allows():
     stiffness = np.ones(len(BAR.outline))
     stiffness[4] = 50.0
     boundary = BAR.stiffened(stiffness)
-    local, following = SOME.where_stiff(boundary), boundary.following
+    local, following = SOME.scaled_by_stiffness(boundary), boundary.next_samples
     root = np.sqrt(np.maximum(boundary.stiffness, boundary.stiffness[following]))
     of_segments = np.maximum(local.k, local.k[following])
     assert (of_segments <= SOME.k / root * (1 + 1e-12)).all()
     soft = BAR.stiffened(1 / np.maximum(stiffness / 2, 1.0))
-    assert SOME.where_stiff(soft) is SOME
+    assert SOME.scaled_by_stiffness(soft) is SOME
 
 
 def test_logarithms_of_limits_go_on_into_shapes_with_holes():
@@ -246,18 +246,18 @@ def test_logarithms_of_limits_go_on_into_shapes_with_holes():
 def test_a_pose_beyond_new_limits_begins_a_drag_that_is_free_elsewhere():
     _, bent = settled(BAR, BAR_POINTS, BENT)
     boundary = BAR.stiffened(MIDDLE)
-    limits = WIDE.where_stiff(boundary)
+    limits = WIDE.scaled_by_stiffness(boundary)
     deformer = Deformer(
         boundary=boundary, handles=Handles.place(boundary, BAR_POINTS), bounds=limits
     )
-    assert not certify(bent.map, boundary, limits).certified
-    allowed = deformer.allowing(bent.map, 0.02)
+    assert not certify(bent.map, boundary, limits).is_certified
+    allowed = deformer.widened_for(bent.map, 0.02)
     state = allowed.start(bent.map)
-    assert state.certificate.certified
+    assert state.certificate.is_certified
     assert allowed.bounds.include(limits)
     # Only about where it is beyond.
     assert (allowed.bounds.k < 0.5 * WIDE.k).any()
-    assert allowed.allowing(bent.map, 0.02) is allowed
-    state, _ = deformer.settle(deformer.resume(bent.map), deformer.handles.wish(BAR_POINTS))
-    assert certify(state.map, boundary, limits).certified
+    assert allowed.widened_for(bent.map, 0.02) is allowed
+    state, _ = deformer.settle(deformer.resume(bent.map), deformer.handles.targets(BAR_POINTS))
+    assert certify(state.map, boundary, limits).is_certified
     assert_allclose(state.map(BAR_POINTS), BAR_POINTS, atol=1e-3)

@@ -8,7 +8,7 @@ from interpolation_shapes import around, bar, inner_points, letter_l, narrow_u, 
 from numpy.testing import assert_allclose
 from shapes import star_polygons
 
-from engine.arrays import held_bytes
+from engine.arrays import nbytes_of
 from engine.dirichlet.cauchy_integral import CauchyIntegral
 from engine.dirichlet.expansions import TERMS
 from engine.dirichlet.hilbert import HilbertTransform
@@ -16,8 +16,8 @@ from engine.dirichlet.panels import NODES, Panels
 from engine.dirichlet.product_integration import is_near, panel_weights
 from engine.dirichlet.refinement import Refinement
 from engine.geometry import Domain, contains
-from engine.geometry.polygon import diameter, edges
-from engine.interpolation import Course
+from engine.geometry.polygon import diameter, edge_vectors
+from engine.interpolation import TimeWeights
 from engine.interpolation.blends.outline import OutlineMetric
 from engine.maps import Bounds
 
@@ -57,8 +57,8 @@ def test_holomorphic_functions_are_found_from_their_real_parts(polygon, seed):
 def test_values_are_accurate_on_the_outline_itself(shape):
     outline, cage = shape
     transform = HilbertTransform.on(Domain(outline, cage))
-    middles = outline + 0.5 * edges(outline)
-    anywhere = outline + 0.123 * edges(outline)
+    middles = outline + 0.5 * edge_vectors(outline)
+    anywhere = outline + 0.123 * edge_vectors(outline)
     outside = middles * (1 + 1e-15)
     points = np.concatenate([outline, middles, anywhere, outside])
     values, slopes, _ = transform.at(points).extend(entire(transform.nodes)[0].real)
@@ -86,13 +86,13 @@ def metric_data(maps, points):
     """Return what the metric variant asks for: singular near the cage, and no one's real part."""
     columns = zip(*(f.derivatives(points) for f in maps), strict=True)
     fz, fzbar = (np.array(column) for column in columns)
-    return OutlineMetric.of(fz, fzbar, Course.straight(), Bounds()).residuals(np.array([0.5]))
+    return OutlineMetric.of(fz, fzbar, TimeWeights.straight(), Bounds()).residuals(np.array([0.5]))
 
 
 def solutions(shape, coarsenesses):
     outline, cage = shape
     maps = [random_map(shape, seed) for seed in (3, 4)]
-    points = np.concatenate([inner_points(outline, 150, 0), outline + 0.3 * edges(outline)])
+    points = np.concatenate([inner_points(outline, 150, 0), outline + 0.3 * edge_vectors(outline)])
     for coarseness in coarsenesses:
         panels = Panels.on(Domain(outline, cage), coarseness=coarseness)
         transform = HilbertTransform.of((outline,), panels)
@@ -154,7 +154,7 @@ def test_panels_tile_the_outline():
     outline, cage = spiral()
     panels = Panels.on(Domain(outline, cage))
     lengths = panels.differentials().sum(axis=1)
-    assert_allclose(np.abs(lengths).sum(), np.abs(edges(outline)).sum(), rtol=1e-12, atol=0)
+    assert_allclose(np.abs(lengths).sum(), np.abs(edge_vectors(outline)).sum(), rtol=1e-12, atol=0)
     starts = np.where(panels.forward, panels.origin, panels.origin + panels.span)
     assert_allclose(np.roll(starts, -1), starts + lengths, rtol=0, atol=1e-13)
     # ∮ dζ / (ζ − z) = 2πi inside.
@@ -234,7 +234,7 @@ def test_far_from_the_origin_nothing_is_lost_but_the_rounding_of_coordinates(sha
         for hole in shape.holes
     ]
     transform = HilbertTransform.on(Domain(shape.outline + far, shape.cage + far, holes))
-    middles = [loop + 0.5 * edges(loop) for loop in shape.loops]
+    middles = [loop + 0.5 * edge_vectors(loop) for loop in shape.loops]
     points = far + np.concatenate([*shape.loops, *middles, points_of(shape, 60)])
     values, slopes, _ = transform.at(points).extend(entire(transform.nodes - far)[0].real)
     expected, expected_slopes = entire(points - far)
@@ -312,10 +312,10 @@ def test_single_precision_keeps_close_weights_and_takes_half_the_memory():
     assert_allclose(slopes, exact_slopes, rtol=0, atol=3e-5)
     many = inner_points(outline, 4000, 3)
     single, double = (CauchyIntegral.of(panels, many, single=each) for each in (True, False))
-    assert held_bytes(single) < 0.65 * held_bytes(double)
+    assert nbytes_of(single) < 0.65 * nbytes_of(double)
     # A far pair takes two rows of powers and not the matrix that they stand for.
-    pairs = sum(len(each.sources) for each in double.expansions.far)
-    held = held_bytes(double.expansions.far)
+    pairs = sum(len(each.sources) for each in double.expansions.m2l)
+    held = nbytes_of(double.expansions.m2l)
     assert held < 0.15 * pairs * 16 * TERMS**2
 
 

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine.dirichlet.boundary_operator import BoundaryOperator
 from engine.dirichlet.hilbert import HilbertTransform
 from engine.dirichlet.panels import Panels
-from engine.dirichlet.partition import partition
+from engine.dirichlet.partition import partition_panels
 from engine.dirichlet.skeleton_solver import SkeletonSolver
 from engine.geometry import Domain
 
@@ -65,7 +65,7 @@ def panels_on_a_line():
 @pytest.mark.parametrize("depth", [0, 1, 4])
 @pytest.mark.parametrize("panels", [Panels.on(Domain(*narrow_u())), panels_on_a_line()])
 def test_boxes_share_all_panels_out(panels, depth):
-    boxes = partition(panels, depth)
+    boxes = partition_panels(panels, depth)
     assert len(boxes) == 2**depth
     assert min(len(box) for box in boxes) > 0
     assert_array_equal(np.sort(np.concatenate(boxes)), np.arange(len(panels)))

@@ -5,17 +5,17 @@ import pytest
 import shapely
 from silhouettes import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
 
-from engine.domain import guessed_kind, suggested_joints
+from engine.domain import guess_kind, suggest_joints
 from engine.geometry import contains, signed_area
-from engine.geometry.motions import KINDS, kind_named
+from engine.geometry.motions import KINDS, find_kind
 
 
 def suggested(loops, kind):
     """Return the joints by their names, all of them inside and of the kind."""
-    joints = suggested_joints(loops, kind_named(kind))
+    joints = suggest_joints(loops, find_kind(kind))
     places = np.array(list(joints.values()), dtype=complex)
     assert contains(loops[0], places, holes=loops[1:]).all()
-    kind_named(kind).require_joints(joints)
+    find_kind(kind).require_joints(joints)
     return joints
 
 
@@ -24,14 +24,14 @@ def suggested(loops, kind):
 def test_a_kind_is_guessed_from_either_side_and_every_kind_has_joints_inside(name, flip):
     kind, strokes = BODIES[name]
     loops = drawn(*((-np.conj(points) if flip else points, width) for points, width in strokes))
-    assert guessed_kind(loops).name == kind
+    assert guess_kind(loops).name == kind
     for other in KINDS:
         suggested(loops, other)
 
 
 def test_a_child_from_the_front_has_its_left_on_the_right_of_the_picture():
     joints = suggested(drawn(*CHILD), "biped-front")
-    assert joints.keys() >= set(kind_named("biped-front").usual)
+    assert joints.keys() >= set(find_kind("biped-front").usual)
     assert "tail" not in joints
     for side, way in (("L", 1), ("R", -1)):
         assert abs(joints[f"hand.{side}"] - complex(way * 215, 285)) < 25
@@ -61,7 +61,7 @@ def test_a_kangaroo_on_its_tail_has_one_leg_and_a_heel():
 
 def test_a_steep_tail_is_no_second_foot():
     loops = drawn(*KANGAROO[:-1], ([-110 + 110j, -190 + 60j, -240 + 12j, -290 + 8j], 40))
-    assert guessed_kind(loops).name == "biped-side"
+    assert guess_kind(loops).name == "biped-side"
     joints = suggested(loops, "biped-side")
     assert "foot.R" not in joints
     assert joints["foot.L"].real > -80
@@ -105,7 +105,7 @@ def test_joints_are_the_same_however_densely_edges_are_sampled(name):
     fine = [
         (loop[:, None] + shares * (np.roll(loop, -1) - loop)[:, None]).ravel() for loop in loops
     ]
-    assert guessed_kind(fine).name == kind
+    assert guess_kind(fine).name == kind
     others = suggested(fine, kind)
     assert others.keys() == joints.keys()
     for joint, place in joints.items():
@@ -118,4 +118,4 @@ def test_corner_that_stays_in_a_disc_of_the_body_is_no_leg():
     outline, hole = (np.array(ring.coords)[:-1] @ [1, 1j] for ring in rings)
     assert signed_area(outline) * signed_area(hole) > 0
     loops = [outline[::-1], hole] if signed_area(outline) < 0 else [outline, hole[::-1]]
-    assert guessed_kind(loops).name == "anything"
+    assert guess_kind(loops).name == "anything"

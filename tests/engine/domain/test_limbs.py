@@ -9,8 +9,8 @@ from shapes import regular_polygon
 from silhouettes import drawn
 
 from engine.domain import suggest_handles
-from engine.domain.limbs.anatomy import Anatomy
-from engine.domain.limbs.medial_axis import medial_axis
+from engine.domain.anatomy.anatomy import Anatomy
+from engine.domain.anatomy.medial_axis import medial_axis
 from engine.geometry import contains
 
 

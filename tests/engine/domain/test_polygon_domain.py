@@ -9,7 +9,7 @@ from engine.arrays import FEW_ENTRIES, NOT_FINITE, NOT_WHOLE, OTHER_KIND
 from engine.domain import Domain, build_domain, domain_of_polygon, require_domain
 from engine.domain.build import LONGEST_EDGE, NO_DETAIL, NO_PICTURE
 from engine.errors import EngineError
-from engine.geometry import diameter, edges, signed_area
+from engine.geometry import diameter, edge_vectors, signed_area
 from engine.geometry.polygon import HOLE_LEAVES
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
@@ -24,10 +24,10 @@ def test_domain_of_polygon_is_valid_in_either_direction(step):
     require_domain(domain)
     assert [signed_area(loop) > 0 for loop in domain.loops] == [True, False]
     assert_allclose(sum(map(signed_area, domain.loops)), 11, rtol=1e-12, atol=0)
-    longest = max(np.abs(edges(loop)).max() for loop in domain.loops)
+    longest = max(np.abs(edge_vectors(loop)).max() for loop in domain.loops)
     assert longest <= LONGEST_EDGE * diameter(domain.outline)
     identity = HarmonicMap.identity(domain.cage, domain.holes)
-    assert certify(identity, Boundary.sample(domain), Bounds()).certified
+    assert certify(identity, Boundary.sample(domain), Bounds()).is_certified
 
 
 @pytest.mark.parametrize(

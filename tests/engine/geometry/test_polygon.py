@@ -18,7 +18,7 @@ from engine.geometry import (
     require_inside,
     sample_graded,
     signed_area,
-    winding,
+    winding_number,
 )
 from engine.geometry.polygon import CAGE_ORDER, OUTSIDE_OUTLINE
 
@@ -83,10 +83,10 @@ def test_constrained_delaunay_triangles_are_the_polygon(outline: Complexes) -> N
 
 def test_windings_are_counted_with_their_sign() -> None:
     circle = regular_polygon(9)
-    assert winding(circle, 0.3j) == 1
-    assert winding(circle[::-1], 0.3j) == -1
-    assert winding(circle, 1.1) == 0
-    assert winding(np.concatenate([circle, circle]), 0.0) == 2
+    assert winding_number(circle, 0.3j) == 1
+    assert winding_number(circle[::-1], 0.3j) == -1
+    assert winding_number(circle, 1.1) == 0
+    assert winding_number(np.concatenate([circle, circle]), 0.0) == 2
 
 
 def test_a_cage_must_go_around_the_outline_once() -> None:

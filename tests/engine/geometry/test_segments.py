@@ -3,7 +3,7 @@ from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon
 
-from engine.geometry import Pieces, bisect, distance_to_segments
+from engine.geometry import Pieces, bisect_segments, distance_to_segments
 
 STARTS = np.array([0, 1 + 1j, 0.3j])
 ENDS = np.array([1 + 0j, -2 + 5j, 7])
@@ -52,7 +52,7 @@ def test_bisection_halves_what_is_not_fine_and_asks_once() -> None:
         asked.update(zip(keys, fine, strict=True))
         return np.asarray(fine)
 
-    pieces = bisect(Pieces.whole(STARTS, np.array([0.9, -2 + 5j, 7])), is_fine)
+    pieces = bisect_segments(Pieces.whole(STARTS, np.array([0.9, -2 + 5j, 7])), is_fine)
     assert_covers(pieces)
     fine = [key for key, is_fine in asked.items() if is_fine]
     assert sorted(fine) == list(zip(pieces.segment, pieces.place, pieces.width, strict=True))

@@ -14,13 +14,13 @@ from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
 from engine.geometry import Domain
 from engine.interpolation import (
-    Interval,
-    Passage,
-    Sites,
+    KeyframeBlend,
+    KeyframeSegment,
+    SampledDomain,
     Variant,
     prepare,
     prepare_inbetweens,
-    prepare_sites,
+    sample_domain,
     sample_keyframes,
 )
 from engine.interpolation.proof import bisection, prove
@@ -182,7 +182,7 @@ class Pulled(NamedTuple):
     shape: Holed
     circles: list[np.ndarray]
     edge: np.ndarray
-    sites: Sites
+    sites: SampledDomain
     transform: Extension
 
 
@@ -197,7 +197,7 @@ def pulled_on(name, count=5):
     circles = [h.centre + r * turn for h, r in zip(shape.holes, radii, strict=True)]
     edge = along(shape.loops, count)
     points = np.concatenate([*circles, edge])
-    sites = prepare_sites(Boundary.sample(shape.domain), points, anchor=shape.anchor)
+    sites = sample_domain(Boundary.sample(shape.domain), points, anchor=shape.anchor)
     transform = HilbertTransform.on(shape.domain)
     return Pulled(shape, circles, edge, sites, transform.at(sites.paths.nodes))
 
@@ -216,9 +216,9 @@ BY_DEFAULT |= {("twisted", "nu"), ("twisted", "metric")}
 )
 def test_handles_pulled_hard_keep_bounds_and_are_closed(name, variant):
     state = pulled(name)
-    assert state.certificate.certified
+    assert state.certificate.is_certified
     assert state.status in (Status.CONVERGED, Status.AT_LIMITS)
-    assert state.statistics.handle_error < 0.02
+    assert state.statistics.target_error < 0.02
     shape, circles, edge, sites, transform = pulled_on("ring" if name in DRAGS else "plate")
     maps = [HarmonicMap.identity(shape.cage, shape.holes), state.map]
     pointwise = np.maximum(*(distortion.k(*f.derivatives(edge)) for f in maps))
@@ -228,8 +228,8 @@ def test_handles_pulled_hard_keep_bounds_and_are_closed(name, variant):
     least_b = min(distortion.sigma_b(*end).min() for end in ends)
     keyframes = sample_keyframes(maps, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-    passage = Passage.of(keyframes, sheets)
-    motion = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
+    passage = KeyframeBlend.of(keyframes, sheets)
+    motion = prepare_inbetweens(variant, KeyframeSegment(sites, passage, Bounds(), transform))
     assert 1e-4 < motion.correction < 0.3
     for time in (0.2, 0.5, 0.8):
         frame = motion.frame(time)
@@ -256,7 +256,9 @@ def metric_between(maps, edge):
     shape, _, _, sites, transform = pulled_on("ring", edge)
     keyframes = sample_keyframes(maps, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-    interval = Interval(sites, Passage.of(keyframes, sheets), Bounds(), transform=transform)
+    interval = KeyframeSegment(
+        sites, KeyframeBlend.of(keyframes, sheets), Bounds(), transform=transform
+    )
     return prepare_inbetweens(Variant.METRIC, interval), along(shape.loops, edge)
 
 
@@ -292,7 +294,7 @@ def test_the_metric_variant_folds_nowhere_between_hard_keys(monkeypatch):
     require_limits(motion, edge, maps, np.linspace(0.02, 0.98, 33))
     monkeypatch.setattr(bisection, "MOST_CELLS", 100_000)
     proof = prove(motion)
-    assert not proof.unsettled
+    assert not proof.unproven_times
     (circle,) = pulled_on("ring", 20).circles
     dz = 2j * np.pi / len(circle) * (circle - circle.mean())
     for time in np.linspace(0.05, 0.95, 10):
@@ -313,8 +315,8 @@ def test_the_correction_is_the_smallest():
     shape = ring()
     motion = between(shape, keys(shape), "nu")
     loops, boundary, inbetweens = motion.sites.loops, motion.sites.boundary, motion.intervals[0]
-    plain = replace(inbetweens.passage, residuals=())
-    blend = replace(inbetweens.blend, passage=plain.at(motion.sites.paths.around))
+    plain = replace(inbetweens.keyframe_blend, residuals=())
+    blend = replace(inbetweens.blend, keyframe_blend=plain.at(motion.sites.paths.around))
     here, closing = blend.derivatives(0.5), inbetweens.closing
     (modes,) = boundary.span.evaluate(closing.functions.coefficients, boundary.points, orders=(0,))
 

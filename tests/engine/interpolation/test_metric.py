@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given, settings, strategies as st
 from numpy.testing import assert_allclose
 
-from engine.interpolation import Course
+from engine.interpolation import TimeWeights
 from engine.interpolation.blends.outline import OutlineMetric
-from engine.interpolation.series.chebyshev import separate
+from engine.interpolation.series.chebyshev import separate_variables
 from engine.maps import Bounds
 
 
@@ -28,7 +28,7 @@ def jacobian(fz, fzbar):
 @settings(max_examples=30)
 def test_lemma_7_the_discriminant_is_positive_and_as_the_lemma_has_it(seed, time):
     fz, fzbar = random_derivatives(seed)
-    metric = OutlineMetric.of(fz, fzbar, Course.straight(), Bounds())
+    metric = OutlineMetric.of(fz, fzbar, TimeWeights.straight(), Bounds())
     a, eta = metric.trace, metric.eta
     trace = (1 - time) * a[0] + time * a[1]
     blended = (1 - time) * eta[0] + time * eta[1]
@@ -45,7 +45,7 @@ def test_lemma_7_the_discriminant_is_positive_and_as_the_lemma_has_it(seed, time
 @settings(max_examples=20)
 def test_the_root_of_equation_13_has_the_blended_metric_tensor(seed, time):
     fz, fzbar = random_derivatives(seed, k=0.99)
-    metric = OutlineMetric.of(fz, fzbar, Course.straight(), Bounds())
+    metric = OutlineMetric.of(fz, fzbar, TimeWeights.straight(), Bounds())
     weights = np.array([1 - time, time])
     modulus = np.exp(metric.residuals(np.array([time]))[:, 0] + weights @ metric.log_modulus)
     # Any rotation has the same metric; f_z̄ follows from η, up to conjugation.
@@ -61,8 +61,8 @@ def test_the_root_of_equation_13_has_the_blended_metric_tensor(seed, time):
 
 def test_the_residual_is_written_in_few_products_and_vanishes_at_the_keyframes():
     fz, fzbar = random_derivatives(2, k=0.7)
-    metric = OutlineMetric.of(fz, fzbar, Course.straight(), Bounds())
-    modes, series = separate(metric.residuals, tolerance=1e-10, left_out=1e-8)
+    metric = OutlineMetric.of(fz, fzbar, TimeWeights.straight(), Bounds())
+    modes, series = separate_variables(metric.residuals, tolerance=1e-10, left_out=1e-8)
     times = np.random.default_rng(0).random(30)
     found = np.array([modes @ series(time) for time in times]).T
     assert_allclose(modes @ series.at(times), found, rtol=0, atol=1e-13)
@@ -74,8 +74,8 @@ def test_the_residual_is_written_in_few_products_and_vanishes_at_the_keyframes()
 def test_between_equal_keyframes_there_is_no_residual():
     fz, fzbar = random_derivatives(3, k=0.7)
     same = np.stack([fz[0], fz[0]]), np.stack([fzbar[0], fzbar[0]])
-    metric = OutlineMetric.of(*same, Course.straight(), Bounds())
+    metric = OutlineMetric.of(*same, TimeWeights.straight(), Bounds())
     for values in (metric.residuals, lambda times: np.zeros((5, len(times)))):
-        modes, series = separate(values, tolerance=1e-10, left_out=1e-8)
+        modes, series = separate_variables(values, tolerance=1e-10, left_out=1e-8)
         assert modes.shape[1] == 1
         assert_allclose(modes @ series(0.3), 0, rtol=0, atol=1e-14)

@@ -18,20 +18,20 @@ from numpy.testing import assert_allclose, assert_array_equal
 from engine.errors import EngineError
 from engine.interpolation import (
     BLENDS,
-    Course,
-    Interval,
-    Joint,
-    Passage,
+    InteriorKnot,
+    KeyframeBlend,
+    KeyframeSegment,
     Tangent,
+    TimeWeights,
     Variant,
     frame_at,
     prepare,
     prepare_inbetweens,
-    prepare_sites,
     prove,
+    sample_domain,
     sample_keyframes,
 )
-from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
+from engine.interpolation.keyframe_blend.derivatives import KEYFRAMES_OF_SEGMENT
 from engine.maps import Bounds, HarmonicMap
 from engine.paths import root_sheets
 
@@ -99,12 +99,14 @@ def test_keyframes_are_met_exactly_and_passed_at_one_velocity(variant, loop):
 
 
 def test_the_velocity_at_a_keyframe_is_the_slope_of_the_parabola_through_three():
-    joint = Joint(2.0, 5.0)
+    joint = InteriorKnot(2.0, 5.0)
     times = np.array([-2.0, 0.0, 5.0])
     assert_allclose(
         joint.velocity @ np.array([np.ones(3), times, times**2]).T, [0, 1, 0], atol=1e-15
     )
-    course = Course.between(Tangent(joint, 0.5, 1.0), Tangent(Joint(5.0, 1.0), 1.0, 1.0))
+    course = TimeWeights.between(
+        Tangent(joint, 0.5, 1.0), Tangent(InteriorKnot(5.0, 1.0), 1.0, 1.0)
+    )
     keys = np.array([1.0, -2.0, 3.0, 7.0])
     weights = course.at(np.linspace(0, 1, 7))
     assert_allclose(weights.sum(axis=0), 1, atol=1e-14)
@@ -116,19 +118,21 @@ def test_the_velocity_at_a_keyframe_is_the_slope_of_the_parabola_through_three()
 
 
 def test_corners_and_stops():
-    assert Course.between(1.0, 1.0).is_straight
+    assert TimeWeights.between(1.0, 1.0).is_straight
     times = np.linspace(0, 1, 9)
-    assert_allclose(Course.between(0.0, 0.0).at(times)[1], times**2 * (3 - 2 * times), atol=1e-15)
-    one_sided = Course.between(1.0, 0.0)
+    assert_allclose(
+        TimeWeights.between(0.0, 0.0).at(times)[1], times**2 * (3 - 2 * times), atol=1e-15
+    )
+    one_sided = TimeWeights.between(1.0, 0.0)
     assert_allclose((one_sided(1e-6)[1]) / 1e-6, 1.0, rtol=1e-5)
     assert_allclose((1 - one_sided(1 - 1e-6)[1]) / 1e-6, 0.0, atol=1e-5)
 
 
 def test_an_easing_that_slows_time_at_a_key_is_made_up_for():
-    joint = Joint(1.0, 1.0, end_pace=0.5, start_pace=2.0)
+    joint = InteriorKnot(1.0, 1.0, end_pace=0.5, start_pace=2.0)
     before, after = (
-        Course.between(1.0, Tangent(joint, 1.0, 1.0)),
-        Course.between(Tangent(joint, 1.0, 1.0), 1.0),
+        TimeWeights.between(1.0, Tangent(joint, 1.0, 1.0)),
+        TimeWeights.between(Tangent(joint, 1.0, 1.0), 1.0),
     )
     e = 1e-6
     rates = (before(1.0) - before(1.0 - e)) / e * 0.5, (after(e) - after(0.0)) / e * 2.0
@@ -145,9 +149,11 @@ def test_two_keyframes_have_the_in_betweens_of_the_paper(variant):
     # A stop at both ends is the same way at another pace.
     sites = plain.sites
     sheets = root_sheets(np.array([key.anchor_fz for key in plain.keyframes]))
-    passage = Passage.of(plain.keyframes, sheets, Course.between(0.0, 0.0))
+    passage = KeyframeBlend.of(plain.keyframes, sheets, TimeWeights.between(0.0, 0.0))
     extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
-    stopped = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform=extension))
+    stopped = prepare_inbetweens(
+        variant, KeyframeSegment(sites, passage, Bounds(), transform=extension)
+    )
     if not variant.is_scaled:  # whose ρ is for other bounds
         eased = plain.frame(0.3**2 * (3 - 2 * 0.3))
         assert_allclose(stopped.frame(0.3).positions, eased.positions, atol=1e-9)
@@ -270,9 +276,9 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
         Bounds(k=0.8, sigma_a=3.2, sigma_b=0.2),
         Bounds(k=0.75, sigma_a=3.0, sigma_b=0.25),
     )
-    lengths = [length(Joint(3.0, 5.0), b) for b in (WIDE, tight, tighter)]
+    lengths = [length(InteriorKnot(3.0, 5.0), b) for b in (WIDE, tight, tighter)]
     assert lengths == sorted(lengths, reverse=True)
-    assert_allclose(length(Joint(0.3, 0.5), tight), lengths[1], rtol=1e-8)
+    assert_allclose(length(InteriorKnot(0.3, 0.5), tight), lengths[1], rtol=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -282,9 +288,11 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
 def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
     prepared = between(MAPS[:3], variant=variant, through=through)
     interval, sites = prepared.intervals[0], prepared.sites
-    passage = interval.passage
-    own = Passage.of(passage.keyframes, passage.sheets, passage.eta_course)
-    alone = Interval(sites, own, Bounds(), transform=transform_of(SHAPE).at(sites.paths.nodes))
+    passage = interval.keyframe_blend
+    own = KeyframeBlend.of(passage.keyframes, passage.sheets, passage.eta_time_weights)
+    alone = KeyframeSegment(
+        sites, own, Bounds(), transform=transform_of(SHAPE).at(sites.paths.nodes)
+    )
     for time in (0.0, 0.37, 1.0):
         frame = frame_at(time, variant, alone)
         expected = interval.frame(time)
@@ -299,12 +307,12 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
 
 
 def test_a_course_asks_for_its_keyframes():
-    sites = prepare_sites(boundary_of(SHAPE), POINTS)
+    sites = sample_domain(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS[:2], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    course = Course.between(Tangent(Joint(1.0, 1.0), 1.0, 1.0), 1.0)
-    with pytest.raises(EngineError, match=says(KEYFRAMES_OF_INTERVAL, wanted="three", count=2)):
-        Passage.of(keys, sheets, course)
+    course = TimeWeights.between(Tangent(InteriorKnot(1.0, 1.0), 1.0, 1.0), 1.0)
+    with pytest.raises(EngineError, match=says(KEYFRAMES_OF_SEGMENT, wanted="three", count=2)):
+        KeyframeBlend.of(keys, sheets, course)
 
 
 def test_tangents_apart_are_those_of_other_keyframes():
@@ -313,24 +321,31 @@ def test_tangents_apart_are_those_of_other_keyframes():
     In their order: before, first, last, after, and apart the one after the first in its own motion,
     and the one before the last in its own.
     """
-    start, end = Tangent(Joint(2.0, 3.0), 0.5, 1.0), Tangent(Joint(1.0, 4.0), 0.25, 1.0)
-    course = Course.between(start, end, apart=(True, True))
+    start, end = (
+        Tangent(InteriorKnot(2.0, 3.0), 0.5, 1.0),
+        Tangent(InteriorKnot(1.0, 4.0), 0.25, 1.0),
+    )
+    course = TimeWeights.between(start, end, apart=(True, True))
     assert (course.count, course.first) == (6, 1)
-    assert course.windows == ([0, 1, 4], [5, 2, 3])
+    assert course.support == ([0, 1, 4], [5, 2, 3])
     values = np.array([3.0, -1.0, 2.0, 7.0, 0.5, -4.0])
     controls = course.controls @ values
     velocities = [
-        each.length * each.joint.velocity @ values[window]
-        for each, window in zip((start, end), course.windows, strict=True)
+        each.length * each.knot.velocity @ values[window]
+        for each, window in zip((start, end), course.support, strict=True)
     ]
     assert_allclose(controls[[0, 3]], [-1.0, 2.0], atol=1e-15)
-    assert_allclose(controls[1] - controls[0], start.joint.arms[1] * velocities[0], atol=1e-14)
-    assert_allclose(controls[2] - controls[3], end.joint.arms[0] * velocities[1], atol=1e-14)
-    assert_allclose(course.controls.sum(axis=1), 1.0, atol=1e-15)
-    assert Course.between(1.0, end, apart=(False, True)).windows[1] == [3, 1, 2]
     assert_allclose(
-        course.full.controls[:2],
-        Course.between(Tangent(start.joint, 1.0, 1.0), end, apart=(True, True)).controls[:2],
+        controls[1] - controls[0], start.knot.control_offsets[1] * velocities[0], atol=1e-14
+    )
+    assert_allclose(
+        controls[2] - controls[3], end.knot.control_offsets[0] * velocities[1], atol=1e-14
+    )
+    assert_allclose(course.controls.sum(axis=1), 1.0, atol=1e-15)
+    assert TimeWeights.between(1.0, end, apart=(False, True)).support[1] == [3, 1, 2]
+    assert_allclose(
+        course.unlimited.controls[:2],
+        TimeWeights.between(Tangent(start.knot, 1.0, 1.0), end, apart=(True, True)).controls[:2],
         atol=1e-15,
     )
 
@@ -338,22 +353,24 @@ def test_tangents_apart_are_those_of_other_keyframes():
 @pytest.mark.parametrize("variant", ["nu", "scaled-eta", "metric"])
 @pytest.mark.parametrize("bounds", [WIDE, Bounds(k=0.3, sigma_a=2.2, sigma_b=0.5)])
 def test_what_leads_to_another_motion_keeps_the_bounds_and_is_proven(variant, bounds):
-    sites = prepare_sites(boundary_of(SHAPE), POINTS, anchor=0.7 + 0.6j)
+    sites = sample_domain(boundary_of(SHAPE), POINTS, anchor=0.7 + 0.6j)
     # From the first to the second; in the motion that it leads to the third comes after that, and
     # the fourth before.
     keys = sample_keyframes(MAPS, sites)
-    joint = Joint(1.0, 1.0, end_pace=0.5)
+    joint = InteriorKnot(1.0, 1.0, end_pace=0.5)
     tangent = BLENDS[Variant(variant)].tangent(
         [MAPS[3], MAPS[1], MAPS[2]], joint, bounds, sites.boundary
     )
-    course = Course.between(1.0, tangent, apart=(False, True))
+    course = TimeWeights.between(1.0, tangent, apart=(False, True))
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    passage = Passage.of(keys, sheets, course)
+    passage = KeyframeBlend.of(keys, sheets, course)
     extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
-    interval = prepare_inbetweens(Variant(variant), Interval(sites, passage, bounds, extension))
+    interval = prepare_inbetweens(
+        Variant(variant), KeyframeSegment(sites, passage, bounds, extension)
+    )
     assert_allclose(interval.frame(1.0).positions, keys[1].positions, rtol=0, atol=1e-9)
     proof = prove(interval)
-    assert proof.never_folds
+    assert proof.is_locally_injective
     for time in (0.3, 0.6, 0.9, 0.97):
         frame = interval.frame(time)
         k = np.abs(frame.fzbar / frame.fz)

@@ -7,7 +7,7 @@ import pytest
 from interpolation_shapes import bar, bent, inner_points, stage_of
 from numpy.testing import assert_allclose
 
-from engine.deform.correction import corrector_of, solve
+from engine.deform.correction import build_corrector, solve_correction
 from engine.interpolation import (
     SegmentPins,
     Variant,
@@ -49,19 +49,19 @@ def pinned(variant, *, anchored=False, bounds=WIDE):
     """In-betweens at the points that pins need, without pins and with them."""
     maps = keyframes()
     stage = stage_of(SHAPE, HANDLES, ANCHOR)
-    corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
+    corrector = build_corrector(stage.sites.boundary, ANCHOR, HANDLES)
     base = stage_of(SHAPE, HANDLES, ANCHOR, value_points_for_corrections(corrector)).between(
         maps, variant
     )
     pins = pins_of(maps, anchored=anchored)
-    return base, base.corrected(solve_pins(base, corrector, pins, bounds)), pins
+    return base, base.with_correction(solve_pins(base, corrector, pins, bounds)), pins
 
 
 def at(points, variant, **options):
     """The same at other points."""
     _, known, _ = pinned(variant, **options)
     series = known.corrections[0].known
-    return stage_of(SHAPE, points, ANCHOR).between(keyframes(), variant).corrected(series)
+    return stage_of(SHAPE, points, ANCHOR).between(keyframes(), variant).with_correction(series)
 
 
 @pytest.mark.parametrize("variant", list(Variant))
@@ -85,13 +85,13 @@ def test_keyframes_are_met_exactly(variant):
 
 def test_series_is_what_is_solved_at_any_time():
     base, known, pins = pinned(Variant.METRIC)
-    corrector = corrector_of(base.boundary, ANCHOR, HANDLES)
+    corrector = build_corrector(base.boundary, ANCHOR, HANDLES)
     nodes = slice(len(corrector.paths.nodes))
     for time in (0.21, 0.66):
         frame, values = base.frame_with_values(time)
         fz, g, by = (z[nodes] for z in values)
         targets = pins.targets(time, frame.positions, base.anchor_position(time))
-        found = solve(corrector, pinning.BaseFrame(fz, g, by, -1), targets)
+        found = solve_correction(corrector, pinning.BaseFrame(fz, g, by, -1), targets)
         series = known.corrections[0].known
         values = corrector.variables.at_samples
         h = base.boundary.span.evaluate(
@@ -157,14 +157,14 @@ def test_whole_segments_are_proven_with_their_pins(variant):
     assert k <= proof.k <= k + 0.004
     assert sigma_a <= proof.sigma_a <= 1.01 * sigma_a
     assert 0.98 * sigma_b - 0.005 <= proof.sigma_b <= sigma_b
-    assert proof.unsettled == ()
+    assert proof.unproven_times == ()
 
 
 def test_limits_are_kept_where_pins_ask_too_much():
     maps = keyframes()
     tight = Bounds(k=0.3, sigma_a=1.4, sigma_b=0.7)
     stage = stage_of(SHAPE, HANDLES, ANCHOR)
-    corrector = corrector_of(stage.sites.boundary, ANCHOR, HANDLES)
+    corrector = build_corrector(stage.sites.boundary, ANCHOR, HANDLES)
     beside = value_points_for_corrections(corrector)
     base = stage_of(SHAPE, HANDLES, ANCHOR, beside).between(maps, Variant.NU)
     own = pins_of(maps)
@@ -180,7 +180,7 @@ def test_limits_are_kept_where_pins_ask_too_much():
     assert (np.abs(reached.fz) + np.abs(reached.g)).max() < 1.4
     series = solve_pins(base, corrector, far, tight)
     assert 0 < series.share < 1
-    known = base.corrected(series)
+    known = base.with_correction(series)
     ends = base.values_at(np.array([0.0, 1.0]))
     most = (np.abs(ends.fz) + np.abs(ends.g)).max()
     least = (np.abs(ends.fz) - np.abs(ends.g)).min()

@@ -22,25 +22,25 @@ from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
 from engine.geometry import Domain, polygon
 from engine.interpolation import (
-    Course,
-    Interval,
-    Passage,
+    KeyframeBlend,
+    KeyframeSegment,
+    TimeWeights,
     Variant,
     prepare,
     prepare_inbetweens,
-    prepare_sites,
+    sample_domain,
 )
 from engine.interpolation.blends.metric import RESOLVED
 from engine.interpolation.blends.outline import OutlineMetric
-from engine.interpolation.passage.derivatives import KEYFRAMES_OF_INTERVAL
-from engine.interpolation.passage.keyframe_samples import FOLDS, sample_keyframes
+from engine.interpolation.keyframe_blend.derivatives import KEYFRAMES_OF_SEGMENT
+from engine.interpolation.keyframe_blend.keyframe_samples import FOLDS, sample_keyframes
 from engine.interpolation.preparation import (
     OTHER_BOUNDARY,
     OTHER_CAGE,
     TIME_RANGE,
     TWO_KEYFRAMES,
 )
-from engine.interpolation.sites import ONE_ANCHOR, OTHER_OUTLINE
+from engine.interpolation.sampled_domain import ONE_ANCHOR, OTHER_OUTLINE
 from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap, derivatives_of
 from engine.paths.complex_log import root_sheets
@@ -73,14 +73,14 @@ def test_frames_are_pure_and_their_inputs_frozen():
 @pytest.mark.parametrize("variant", list(Variant))
 def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     whole = between(variant=variant)
-    sites = prepare_sites(boundary_of(SHAPE), POINTS)
+    sites = sample_domain(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS[:2], sites)
     keys += sample_keyframes(MAPS[2:], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     transform = stage_of(SHAPE, POINTS).transform.at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
-        passage = Passage.of(pair, sheets[i : i + 2])
-        interval = prepare_inbetweens(variant, Interval(sites, passage, Bounds(), transform))
+        passage = KeyframeBlend.of(pair, sheets[i : i + 2])
+        interval = prepare_inbetweens(variant, KeyframeSegment(sites, passage, Bounds(), transform))
         frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
@@ -118,8 +118,10 @@ def test_scattered_points_and_a_mesh_give_the_same(variant):
 def test_the_default_anchor_is_the_centre_of_the_largest_disc():
     outline, _ = bar()
     prepared = prepare([bent(bar()), bent(bar(), turn=1)], boundary_of(bar()), [0j], variant="nu")
-    assert abs(prepared.sites.anchor.imag) < 1e-3
-    assert polygon.distance_to_boundary(outline, np.array([prepared.sites.anchor]))[0] > 0.499
+    assert abs(prepared.sampled_domain.anchor.imag) < 1e-3
+    assert (
+        polygon.distance_to_boundary(outline, np.array([prepared.sampled_domain.anchor]))[0] > 0.499
+    )
 
 
 def test_a_full_turn_is_kept_and_flipped_by_its_integer():
@@ -207,10 +209,10 @@ def test_bad_input_is_refused(changes, message):
 
 
 def test_points_on_the_outline_within_a_billionth_are_taken():
-    middles = OUTLINE + 0.4 * polygon.edges(OUTLINE)
-    outside = middles - 0.9e-9j * polygon.diameter(OUTLINE) * polygon.edges(OUTLINE) / np.abs(
-        polygon.edges(OUTLINE)
-    )
+    middles = OUTLINE + 0.4 * polygon.edge_vectors(OUTLINE)
+    outside = middles - 0.9e-9j * polygon.diameter(OUTLINE) * polygon.edge_vectors(
+        OUTLINE
+    ) / np.abs(polygon.edge_vectors(OUTLINE))
     for variant in Variant:
         on, off = (between(points=z, variant=variant).frame(0.5) for z in (middles, outside))
         assert_allclose(on.positions, off.positions, rtol=0, atol=1e-7)
@@ -246,14 +248,14 @@ def test_a_transform_of_another_outline_is_refused():
 
 
 def test_what_a_variant_needs_is_asked_for():
-    sites = prepare_sites(boundary_of(SHAPE), POINTS)
+    sites = sample_domain(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     with pytest.raises(
-        EngineError, match=says(KEYFRAMES_OF_INTERVAL, wanted="two", count=3, sheets=3)
+        EngineError, match=says(KEYFRAMES_OF_SEGMENT, wanted="two", count=3, sheets=3)
     ):
-        Passage.of(keys, sheets)
-    interval = Interval(sites, Passage.of(keys[:2], sheets[:2]), Bounds())
+        KeyframeBlend.of(keys, sheets)
+    interval = KeyframeSegment(sites, KeyframeBlend.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:
         if variant.needs_transform:
             with pytest.raises(EngineError, match="needs a Hilbert transform"):
@@ -273,14 +275,14 @@ def test_the_metric_converges_with_the_nodes_that_the_keyframes_ask_for(monkeypa
     points = points[np.abs(points[:, None] - outline).min(axis=1) > 1e-3]
     rng = np.random.default_rng(38)
     noise = rng.normal(size=(2, len(cage))) + 1j * rng.normal(size=(2, len(cage)))
-    noise *= np.abs(polygon.edges(cage)).mean()
+    noise *= np.abs(polygon.edge_vectors(cage)).mean()
     of_noise = HarmonicMap(cage=cage, phi=noise[0], psi=noise[1])
     fz, fzbar = of_noise.derivatives(points)
     phi = cage + 0.8 / np.abs(fz).max() * noise[0]
     fz, _ = HarmonicMap(cage=cage, phi=phi, psi=noise[1]).derivatives(points)
     key = HarmonicMap(cage=cage, phi=phi, psi=0.93 / (np.abs(fzbar) / np.abs(fz)).max() * noise[1])
     maps = [HarmonicMap.identity(cage), key]
-    metric = OutlineMetric.of(*derivatives_of(maps, points), Course.straight(), Bounds())
+    metric = OutlineMetric.of(*derivatives_of(maps, points), TimeWeights.straight(), Bounds())
     halves = np.full((2, 1), 0.5)
     expected = metric.residuals(halves[0]) + metric.log_modulus.T @ halves
     shape = outline, cage

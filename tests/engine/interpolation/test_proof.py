@@ -17,17 +17,17 @@ from messages import says
 
 from engine.errors import EngineError
 from engine.geometry import Domain
-from engine.interpolation import Course, Joint, Tangent, Variant, prepare
+from engine.interpolation import InteriorKnot, Tangent, TimeWeights, Variant, prepare
 from engine.interpolation.added.pins import CorrectionSeries
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.linear import LinearBlend
 from engine.interpolation.blends.metric import MetricBlend
 from engine.interpolation.blends.nu import NuBlend
-from engine.interpolation.enclosing import Changes, Patch, Subdivision
+from engine.interpolation.enclosures import BernsteinPatch, BlendChanges, Subdivision
 from engine.interpolation.proof import bisection, prove
 from engine.interpolation.proof.bisection import TIGHTNESS
-from engine.interpolation.series import one
-from engine.interpolation.sites import NO_SAMPLES
+from engine.interpolation.sampled_domain import NO_SAMPLES
+from engine.interpolation.series import constant_one
 from engine.maps import Boundary, Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 
@@ -63,10 +63,10 @@ def test_nothing_is_beyond_what_is_proven_and_that_is_tight(variant, seed):
     slack = ACCURACY if variant is Variant.METRIC else 1e-9
     assert proof.k >= k * (1 - slack)
     assert proof.sigma_a >= sigma_a * (1 - slack)
-    assert proof.never_folds == (k < 1) == (proof.unsettled == ())
-    assert proof.loose == ()
+    assert proof.is_locally_injective == (k < 1) == (proof.unproven_times == ())
+    assert proof.not_tight == ()
     assert proof.sigma_b <= max(sigma_b * (1 + slack), 0.0)
-    if proof.never_folds:
+    if proof.is_locally_injective:
         assert proof.sigma_b >= sigma_b * (1 - 0.02)
         assert proof.k <= k + 3 * TIGHTNESS + 1e-3
     assert proof.sigma_a <= sigma_a * (1 + 3 * TIGHTNESS + 1e-3)
@@ -80,21 +80,21 @@ def test_motion_through_keyframes_is_proven(variant):
     if variant.needs_transform:
         options["transform"] = stage_of(SHAPE, POINTS).transform
     prepared = prepare(maps, BOUNDARY, POINTS[::3], **options)
-    for interval in prepared.intervals:
+    for interval in prepared.segments:
         k, sigma_a, sigma_b = measured(interval, TIMES[::4])
         proof = prove(interval)
         assert proof.k >= k - ACCURACY
         assert proof.sigma_a >= sigma_a * (1 - ACCURACY)
         assert proof.sigma_b <= max(sigma_b * (1 + ACCURACY), 0.0)
-        assert proof.never_folds == (proof.unsettled == ())
-        for start, end in proof.unsettled:
+        assert proof.is_locally_injective == (proof.unproven_times == ())
+        for start, end in proof.unproven_times:
             # It does fold there, or nearly.
             assert measured(interval, np.linspace(start, end, 7))[0] > 0.9
         if variant is Variant.METRIC:
             # It keeps the bounds, or what its keyframes have beyond them.
             own = [f.derivatives(BOUNDARY.points) for f in maps]
             assert proof.k <= max(0.6, *(distortion.k(*f).max() for f in own)) + 2 * TIGHTNESS
-            assert proof.never_folds
+            assert proof.is_locally_injective
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_in_betweens_around_holes_are_proven(variant, through):
     maps = [holed_map(shape, seed, 0.1) for seed in range(3 if through else 2)]
     points = boundary.points[::9]
     prepared = prepare(maps, boundary, points, variant=variant, through=through)
-    interval = prepared.intervals[0]
+    interval = prepared.segments[0]
     assert interval.correction > 1e-3
     k, sigma_a, sigma_b = measured(interval, np.linspace(0, 1, 9))
     proof = prove(interval)
@@ -129,7 +129,7 @@ def test_in_betweens_around_holes_are_proven(variant, through):
     assert k * (1 - slack) <= proof.k
     assert sigma_a * (1 - slack) <= proof.sigma_a
     assert sigma_b * (1 + slack) >= proof.sigma_b
-    assert proof.never_folds
+    assert proof.is_locally_injective
     assert proof.k <= k + 0.02
     assert proof.sigma_a <= 1.02 * sigma_a
     assert proof.sigma_b >= sigma_b - 0.02
@@ -143,7 +143,7 @@ def test_a_small_rho_is_proven_as_tightly_as_any_other():
     assert min(map(interval.rho, times)) < 0.2
     k, sigma_a, sigma_b = measured(interval, times)
     proof = prove(interval)
-    assert proof.unsettled == ()
+    assert proof.unproven_times == ()
     assert k <= proof.k <= k + 2e-3
     assert sigma_a <= proof.sigma_a <= 1.002 * sigma_a
     assert sigma_b >= proof.sigma_b >= sigma_b - 0.002 * sigma_a
@@ -154,15 +154,15 @@ def test_what_folds_between_its_keyframes_is_not_proven():
     maps = [HarmonicMap.identity(cage), HarmonicMap(cage=cage, phi=-1.0 * cage, psi=0.0 * cage)]
     points = np.array([0.1, -1.3])
     linearly, by_nu = (
-        prove(prepare(maps, boundary_of(bar()), points, variant=v).intervals[0])
+        prove(prepare(maps, boundary_of(bar()), points, variant=v).segments[0])
         for v in (Variant.LINEAR, Variant.NU)
     )
-    assert not linearly.never_folds
+    assert not linearly.is_locally_injective
     assert linearly.sigma_b == 0
-    assert (linearly.unsettled[0][0], linearly.unsettled[-1][1]) == pytest.approx(
+    assert (linearly.unproven_times[0][0], linearly.unproven_times[-1][1]) == pytest.approx(
         (0.5, 0.5), abs=0.01
     )
-    assert by_nu.never_folds
+    assert by_nu.is_locally_injective
     assert by_nu.k == pytest.approx(0, abs=1e-8)
     assert (by_nu.sigma_a, by_nu.sigma_b) == pytest.approx((1, 1), abs=2 * TIGHTNESS)
 
@@ -174,8 +174,8 @@ def test_where_nothing_is_proven_sigma_b_is_0(monkeypatch):
     proof = prove(interval)
     assert proof.k < 1
     assert proof.sigma_b == 0
-    assert not proof.never_folds
-    assert proof.unsettled
+    assert not proof.is_locally_injective
+    assert proof.unproven_times
 
 
 def test_times_that_cannot_be_settled_are_named(monkeypatch):
@@ -183,12 +183,12 @@ def test_times_that_cannot_be_settled_are_named(monkeypatch):
     maps = [HarmonicMap.identity(CAGE), random_map(SHAPE, 3, k=0.5, bend=0.8)]
     interval = stage_of(SHAPE, POINTS[:2]).between(maps, "eta")
     proof = prove(interval)
-    assert proof.never_folds
-    assert proof.unsettled == ()
-    assert proof.loose
+    assert proof.is_locally_injective
+    assert proof.unproven_times == ()
+    assert proof.not_tight
     monkeypatch.undo()
     better = prove(interval)
-    assert better.loose == better.unsettled == ()
+    assert better.not_tight == better.unproven_times == ()
     assert better.k <= proof.k
     assert better.sigma_b >= proof.sigma_b
 
@@ -239,7 +239,7 @@ def test_cells_enclose_what_is_blended_on_them(seed, degree):
     def patch(middle, columns, *, is_complex):
         shape = (1, degree + 1, columns)
         noise = rng.normal(size=shape) + (1j * rng.normal(size=shape) if is_complex else 0)
-        return Patch(middle + size * noise, np.array([0.0]))
+        return BernsteinPatch(middle + size * noise, np.array([0.0]))
 
     s, t = rng.uniform(size=(2, 200))
 
@@ -258,8 +258,10 @@ def test_cells_enclose_what_is_blended_on_them(seed, degree):
     f, g = patch(1j, 2, is_complex=True), patch(0.5, 2, is_complex=True)
     h, rho, factor = (patch(rng.normal() / 9, 2, is_complex=False) for _ in range(3))
     if degree > 1:  # changes are linear in time
-        h, rho, factor = (Patch(each.controls[:, [0, -1]], each.error) for each in (h, rho, factor))
-    changes = Changes(h, rho, factor)
+        h, rho, factor = (
+            BernsteinPatch(each.controls[:, [0, -1]], each.error) for each in (h, rho, factor)
+        )
+    changes = BlendChanges(h, rho, factor)
     size_a, by_h = np.exp(values(a)), np.exp(linearly(h, s, t))
     by_rho, by_factor = np.exp(linearly(rho, s, t)), np.exp(linearly(factor, s, t))
     size_eta = np.abs(values(eta))
@@ -292,7 +294,7 @@ def test_cells_enclose_what_is_blended_on_them(seed, degree):
 
 
 def test_a_course_is_cut_exactly():
-    course = Course.between(Tangent(Joint(1.0, 2.0), 0.7, 0.7), 0.0)
+    course = TimeWeights.between(Tangent(InteriorKnot(1.0, 2.0), 0.7, 0.7), 0.0)
     start, end = np.array([0.0, 0.3]), np.array([1.0, 0.35])
     controls = course.controls_on(start, end)
     for x in (0.0, 0.4, 1.0):
@@ -306,7 +308,7 @@ def test_the_bound_on_rho_encloses_it_and_is_near():
     rng = np.random.default_rng(0)
     starts = np.concatenate([rng.uniform(size=300), [0.0, 1e-9, 0.999999]])
     ends = np.minimum(starts + 10.0 ** rng.uniform(-9, -2, len(starts)), 1.0)
-    values, errors = interval.scale.enclosures().chords(starts, ends)
+    values, errors = interval.scale.enclosures().linear_enclosures(starts, ends)
     share = np.linspace(0, 1, 20)
     for start, end, ends_of, error in zip(starts, ends, values, errors, strict=True):
         rho = interval.scale.at(start + share * (end - start))
@@ -323,7 +325,9 @@ def correction_of(shape, holes=(), seed=0, size=0.05):
     # Logarithms are not single-valued.
     draw[:, count - len(holes) :] = 0.0
     h, q = (draw[0] + 1j * draw[1]).T
-    return CorrectionSeries(series=one(), h=h[:, None], q=q[:, None], shifts=np.array([0.3 - 0.1j]))
+    return CorrectionSeries(
+        series=constant_one(), h=h[:, None], q=q[:, None], shifts=np.array([0.3 - 0.1j])
+    )
 
 
 # Each variant with two of the four, which make each pair with another variant.
@@ -351,17 +355,17 @@ def test_proof_of_a_corrected_frame_is_tight(variant, holed, through):
         else (lambda seed: random_map(SHAPE, seed, k=0.3, bend=0.5))
     )
     maps = [draw(seed) for seed in range(3 if through else 2)]
-    ends = boundary.points[boundary.following]
+    ends = boundary.points[boundary.next_samples]
     points = np.concatenate(
         [boundary.points, *(boundary.points * (1 - s) + ends * s for s in (0.33, 0.66))]
     )
     bounds = Bounds(k=0.8, sigma_a=5, sigma_b=0.1)
     interval = prepare(
         maps, boundary, points, variant=variant, through=through, bounds=bounds
-    ).intervals[0]
+    ).segments[0]
     # One after the other, as a track comes after handles that stay.
     for seed in range(2):
-        interval = interval.corrected(correction_of((outline, cage), holes, seed))
+        interval = interval.with_correction(correction_of((outline, cage), holes, seed))
     for time in (0.0, 0.37, 0.8):
         frame = interval.frame(time)
         k = distortion.k(frame.fz, frame.fzbar).max()
@@ -369,7 +373,7 @@ def test_proof_of_a_corrected_frame_is_tight(variant, holed, through):
         sigma_b = distortion.sigma_b(frame.fz, frame.fzbar).min()
         proof = prove(interval, time)
         if k >= 1:
-            assert not proof.never_folds
+            assert not proof.is_locally_injective
             continue
         assert k <= proof.k <= k + 0.01
         assert sigma_a <= proof.sigma_a <= 1.01 * sigma_a
@@ -378,6 +382,6 @@ def test_proof_of_a_corrected_frame_is_tight(variant, holed, through):
 
 def test_proof_refuses_sites_without_samples():
     maps = [random_map(SHAPE, seed, k=0.3, bend=0.5) for seed in (1, 2)]
-    interval = stage_of(SHAPE, POINTS).between(maps, "nu").corrected(correction_of(SHAPE))
+    interval = stage_of(SHAPE, POINTS).between(maps, "nu").with_correction(correction_of(SHAPE))
     with pytest.raises(EngineError, match=says(NO_SAMPLES)):
         prove(interval, 0.5)

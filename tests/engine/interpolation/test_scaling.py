@@ -6,16 +6,21 @@ from hypothesis import given, settings, strategies as st
 from interpolation_shapes import bar, bent, boundary_of, letter_l, random_map
 from numpy.testing import assert_allclose
 
-from engine.geometry.polygon import edges
-from engine.interpolation import Course, prepare
-from engine.interpolation.scaling import BESIDE_KEY, PointSamples, SharpScaling
-from engine.interpolation.scaling.smooth import FARTHEST, HALF_WINDOW, Scaling, time_of
+from engine.geometry.polygon import edge_vectors
+from engine.interpolation import TimeWeights, prepare
+from engine.interpolation.scaling import BESIDE_KEY, ExactRho, PointSamples
+from engine.interpolation.scaling.smoothed_rho import (
+    FARTHEST,
+    HALF_WINDOW,
+    SmoothedRho,
+    unstretch_times,
+)
 from engine.maps import Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 from engine.reference import Reference
 
 SHAPE = letter_l()
-STRAIGHT = Course.straight()
+STRAIGHT = TimeWeights.straight()
 
 
 def pair(seed, shape=SHAPE, **options):
@@ -23,11 +28,11 @@ def pair(seed, shape=SHAPE, **options):
 
 
 def sharp_rho(maps, times, shape=SHAPE):
-    return SharpScaling.of(maps, shape[0], STRAIGHT, Bounds())(np.atleast_1d(times))
+    return ExactRho.of(maps, shape[0], STRAIGHT, Bounds())(np.atleast_1d(times))
 
 
 def smooth_rho(maps, shape=SHAPE):
-    return Scaling.of(SharpScaling.of(maps, shape[0], STRAIGHT, Bounds()))
+    return SmoothedRho.of(ExactRho.of(maps, shape[0], STRAIGHT, Bounds()))
 
 
 def grown(shape, k):
@@ -44,7 +49,7 @@ def printed(maps, outline):
 
 def dense_samples(shape, count=1000):
     outline, _ = shape
-    return (outline[:, None] + edges(outline)[:, None] * np.arange(count) / count).ravel()
+    return (outline[:, None] + edge_vectors(outline)[:, None] * np.arange(count) / count).ravel()
 
 
 @given(seed=st.integers(0, 10_000), time=st.floats(BESIDE_KEY, 1 - BESIDE_KEY))
@@ -74,7 +79,7 @@ def test_no_valley_of_the_ratios_is_missed_however_many_there_are():
     ]
     times = np.linspace(0.25, 0.75, 7)
     dense = dense_samples((outline, cage), 500)
-    found = SharpScaling.of(maps, outline, STRAIGHT, Bounds())(times)
+    found = ExactRho.of(maps, outline, STRAIGHT, Bounds())(times)
     for time, rho in zip(times, found, strict=True):
         expected = printed(maps, outline).allowed(dense, time).min()
         assert rho <= min(1.0, expected) + 1e-9
@@ -107,7 +112,7 @@ def test_each_bound_is_just_reached_where_it_alone_counts(bound):
         conformal=np.empty((0, 1), np.complex128),
         **values,
     )
-    (rho,) = samples.ratios(np.array([[0.5], [0.5]]))
+    (rho,) = samples.largest_rhos(np.array([[0.5], [0.5]]))
     reached = {"k": rho * 4 / 2, "sigma_a": 2 + rho * 4, "sigma_b": 2 - rho * 4}
     assert_allclose(reached[bound], limits[bound], rtol=1e-12, atol=0)
 
@@ -124,7 +129,7 @@ def test_around_holes_no_smaller_rho_leaves_the_bounds_and_no_larger_one_obeys_t
         conformal=d[None],
         **{name: np.full(count, bound) for name, bound in bounds.items()},
     )
-    (ratios,) = samples.ratios(np.ones((2, 1, 1)))
+    (ratios,) = samples.largest_rhos(np.ones((2, 1, 1)))
     assert 0.2 < (ratios < 1).mean() < 0.9
 
     def room(rho):
@@ -159,8 +164,8 @@ def test_conformal_keyframes_need_no_scaling():
 
 @pytest.mark.parametrize("seed", [25, 26, 27, 3, 11])
 def test_the_smooth_rho_is_never_above_the_sharp_one_and_seldom_below(seed):
-    sharp = SharpScaling.of(pair(seed), SHAPE[0], STRAIGHT, Bounds())
-    smooth = Scaling.of(sharp)
+    sharp = ExactRho.of(pair(seed), SHAPE[0], STRAIGHT, Bounds())
+    smooth = SmoothedRho.of(sharp)
     times = np.sort(
         np.concatenate([np.random.default_rng(0).random(300), 10.0 ** np.arange(-14, -1)])
     )
@@ -175,18 +180,18 @@ def test_the_smooth_rho_is_never_above_the_sharp_one_and_seldom_below(seed):
 
 @pytest.mark.parametrize("seed", [26, 3])
 def test_the_sharp_rho_is_looked_at_closely_at_its_kinks_only(seed):
-    sharp = SharpScaling.of(pair(seed), SHAPE[0], STRAIGHT, Bounds())
+    sharp = ExactRho.of(pair(seed), SHAPE[0], STRAIGHT, Bounds())
     asked = []
 
     def seen(times):
         asked.extend(times)
         return sharp(times)
 
-    smooth = Scaling.of(seen)
+    smooth = SmoothedRho.of(seen)
     samples = smooth.logarithms[HALF_WINDOW + 1 : -HALF_WINDOW - 1]
     everywhere = np.linspace(-FARTHEST, FARTHEST, len(samples))
     assert len(asked) < 0.4 * len(samples)
-    assert_allclose(samples, np.log(sharp(time_of(everywhere))), rtol=0, atol=5e-7)
+    assert_allclose(samples, np.log(sharp(unstretch_times(everywhere))), rtol=0, atol=5e-7)
 
 
 def test_rho_does_not_fall_at_once_beside_a_key_where_the_other_part_vanishes():
@@ -228,7 +233,7 @@ def test_beside_a_key_the_bounds_are_the_worst_of_the_keyframes(seed):
 def test_the_worst_bounds_may_lie_on_either_side_of_a_sample(seed):
     # Looked for on one side alone they were too tight, and ρ below 0 where f_z̄ is small.
     maps = pair(seed)
-    worst = SharpScaling.of(maps, SHAPE[0], STRAIGHT, Bounds()).worst
+    worst = ExactRho.of(maps, SHAPE[0], STRAIGHT, Bounds()).extremes
     points = dense_samples(SHAPE, 300)
     a, b = np.abs(np.array([f.derivatives(points) for f in maps]).swapaxes(0, 1))
     assert worst.k >= (b / a).max() - 1e-9
@@ -242,7 +247,7 @@ def test_maps_of_very_different_size_keep_their_bounds_beside_the_keys():
         HarmonicMap(cage=cage, phi=scale * f.phi, psi=scale * f.psi)
         for scale, f in zip((20.0, 0.05), pair(4), strict=True)
     ]
-    smooth, sharp = smooth_rho(maps), SharpScaling.of(maps, SHAPE[0], STRAIGHT, Bounds())
+    smooth, sharp = smooth_rho(maps), ExactRho.of(maps, SHAPE[0], STRAIGHT, Bounds())
     times = np.sort(10.0 ** np.linspace(-9, -1, 60))
     assert np.all(np.array([smooth(time) for time in times]) <= sharp(times) * (1 + 1e-6))
     dense = dense_samples(SHAPE, 200)
@@ -257,8 +262,8 @@ def test_maps_of_very_different_size_keep_their_bounds_beside_the_keys():
 
 def test_the_smooth_rho_has_no_kinks():
     maps = grown(bar(), 0.3)
-    sharp = SharpScaling.of(maps, bar()[0], STRAIGHT, Bounds())
-    smooth = Scaling.of(sharp)
+    sharp = ExactRho.of(maps, bar()[0], STRAIGHT, Bounds())
+    smooth = SmoothedRho.of(sharp)
     # Second differences of a smooth function fall by 4 when the step is halved; at a kink by 2.
     falls = []
     for rho, count in (

@@ -9,20 +9,20 @@ from interpolation_shapes import bar, bent, letter_l, narrow_u, random_map
 from messages import says
 from numpy.testing import assert_allclose
 
-from engine.deform.correction import corrector_of
+from engine.deform.correction import build_corrector
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.geometry import Domain
 from engine.interpolation import (
-    Interval,
-    Passage,
+    KeyframeBlend,
+    KeyframeSegment,
     Variant,
     prepare_inbetweens,
-    prepare_sites,
+    sample_domain,
     sample_keyframes,
     value_points_for_corrections,
 )
-from engine.interpolation.sites import VALUES_OR_TRIANGLES
+from engine.interpolation.sampled_domain import VALUES_OR_TRIANGLES
 from engine.maps import Boundary, Bounds
 from engine.paths import root_sheets
 
@@ -47,7 +47,7 @@ def points_of(name):
     shape, _ = CASES[name]
     boundary = Boundary.sample(shape.domain)
     handles = shape.anchor + 0.1 * np.array([0, 1, 1j, -1])
-    corrector = corrector_of(boundary, shape.anchor, handles)
+    corrector = build_corrector(boundary, shape.anchor, handles)
     return handles, value_points_for_corrections(corrector)
 
 
@@ -59,13 +59,13 @@ def transform_of(name):
 
 def between(name, variant, points, beside=()):
     shape, maps = CASES[name]
-    sites = prepare_sites(
+    sites = sample_domain(
         Boundary.sample(shape.domain), points, anchor=shape.anchor, values_at=beside
     )
     keys = sample_keyframes(maps, sites)
-    passage = Passage.of(keys, root_sheets(np.array([key.anchor_fz for key in keys])))
+    passage = KeyframeBlend.of(keys, root_sheets(np.array([key.anchor_fz for key in keys])))
     extension = transform_of(name).at(sites.paths.nodes) if variant.needs_transform else None
-    return prepare_inbetweens(variant, Interval(sites, passage, Bounds(), extension))
+    return prepare_inbetweens(variant, KeyframeSegment(sites, passage, Bounds(), extension))
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_values_are_those_of_full_paths_at_few_nodes(name, variant):
     for number, time in enumerate(TIMES):
         frame, values = few.frame_with_values(time)
         expected = full.frame(time)
-        plain = full.passage.plain_log_fz(time)[0][places]
+        plain = full.keyframe_blend.plain_log_fz(time)[0][places]
         assert_allclose(frame.positions, expected.positions[:count], rtol=0, atol=tolerance)
         assert_allclose(values.fz, expected.fz[count:], rtol=tolerance, atol=0)
         assert_allclose(values.g, expected.fzbar[count:].conj(), rtol=0, atol=tolerance)
@@ -103,6 +103,6 @@ def test_values_are_those_of_full_paths_at_few_nodes(name, variant):
 def test_values_beside_triangles_are_refused():
     outline, cage = bar()
     with pytest.raises(EngineError, match=says(VALUES_OR_TRIANGLES)):
-        prepare_sites(
+        sample_domain(
             Boundary.sample(Domain(outline, cage)), outline, triangles=[[0, 1, 2]], values_at=[0j]
         )

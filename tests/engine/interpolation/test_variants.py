@@ -392,8 +392,8 @@ def test_in_betweens_of_dragged_and_certified_keyframes_keep_their_bounds(seed, 
         targets = np.exp(1j * rng.uniform(-1, 1)) * STAR_POINTS
         targets += 0.4 * (rng.normal(size=len(targets)) + 1j * rng.normal(size=len(targets)))
         for _ in range(15):
-            state = deformer.step(state, deformer.handles.wish(targets))
-        assert state.certificate.certified
+            state = deformer.step(state, deformer.handles.targets(targets))
+        assert state.certificate.is_certified
         maps.append(state.map)
         proven.append(state.certificate)
     boundary = star_boundary()

@@ -13,13 +13,13 @@ from engine.arrays import NOT_FINITE
 from engine.errors import EngineError
 from engine.geometry import Domain, Hole
 from engine.geometry.polygon import FEW_VERTICES, HOLE_LEAVES
-from engine.maps import Boundary, Bounds, HarmonicMap, Limits, Span, certify, distortion
+from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds, Span, certify, distortion
 from engine.maps.certificate import OTHER_SPAN
 from engine.maps.harmonic_map import COEFFICIENT_COUNT
 
 SHAPES = [ring(), plate(2), plate(3)]
 NAMES = ["one hole", "two holes", "three holes"]
-LOOSE = Limits(k=1.0, sigma_a=100.0, sigma_b=0.0)
+LOOSE = LocalBounds(k=1.0, sigma_a=100.0, sigma_b=0.0)
 
 
 def fitted(shape: Holed, values) -> np.ndarray:
@@ -134,7 +134,7 @@ def test_a_map_of_other_holes_is_refused():
 def test_all_loops_are_sampled_with_the_domain_on_the_left():
     shape = plate()
     boundary = boundary_of("plate", 3)
-    steps = boundary.points[boundary.following] - boundary.points
+    steps = boundary.points[boundary.next_samples] - boundary.points
     assert_allclose(np.abs(steps), 2 * boundary.half_lengths, rtol=1e-12)
     assert_allclose(boundary.weights.sum(), 1)
     for loop, start, end in zip(
@@ -151,12 +151,12 @@ def test_refining_keeps_every_loop():
     ends = np.append(boundary.starts[1:], len(boundary.points)) - 1
     finer = boundary.refined(np.concatenate([ends, boundary.starts, [5, 17]]))
     assert len(finer.points) == len(boundary.points) + len(ends) + len(boundary.starts) + 2
-    steps = finer.points[finer.following] - finer.points
+    steps = finer.points[finer.next_samples] - finer.points
     assert_allclose(np.abs(steps) / 2, finer.half_lengths, rtol=1e-12)
     assert_array_equal(finer.points[finer.starts], boundary.points[boundary.starts])
     assert_allclose(finer.derivatives, finer.span.derivatives(finer.points), atol=1e-12)
-    kernel = finer.span.bending_kernel(finer.points, finer.points[finer.following])
-    assert_allclose(finer.bending_kernel, kernel, rtol=1e-12)
+    kernel = finer.span.third_derivative_kernel(finer.points, finer.points[finer.next_samples])
+    assert_allclose(finer.third_derivative_kernel, kernel, rtol=1e-12)
     f = random_map(plate(), 4)
     assert_allclose(certify(f, finer, LOOSE).k, certify(f, boundary, LOOSE).k, atol=0.003)
 
@@ -167,11 +167,12 @@ def test_certificates_enclose_what_is_anywhere_in_the_domain(name, seed):
     shape, boundary = (ring() if name == "ring" else plate()), boundary_of(name, 3)
     f = random_map(shape, seed, 0.1)
     certificate = certify(f, boundary, LOOSE)
-    assert certificate.certified
+    assert certificate.is_certified
     assert certificate.winding == 0
     along = np.linspace(0, 1, 23)
     dense = (
-        boundary.points + along[:, None] * (boundary.points[boundary.following] - boundary.points)
+        boundary.points
+        + along[:, None] * (boundary.points[boundary.next_samples] - boundary.points)
     ).ravel()
     fz, fzbar = f.derivatives(np.concatenate([dense, inner_points(shape)]))
     k, sigma_a, sigma_b = (
@@ -205,7 +206,7 @@ def test_a_fold_at_a_hole_is_refused():
         fz, fzbar = f.derivatives(shape.outline)
         assert distortion.sigma_b(fz, fzbar).min() > 0.5
         proof = certify(f, boundary, LOOSE)
-        assert proof.certified is holds
+        assert proof.is_certified is holds
         assert (proof.sigma_b > 0) is holds
 
 
@@ -216,7 +217,7 @@ def test_a_zero_between_outline_and_hole_is_refused():
     phi = np.concatenate([fine**2 - 1.5 * fine, np.zeros(36)])
     proof = certify(holed_map(shape, phi), boundary, LOOSE)
     assert proof.winding == 1
-    assert not proof.certified
+    assert not proof.is_certified
     assert proof.k == np.inf
 
 
@@ -228,7 +229,7 @@ def test_a_ring_turned_inside_out_is_refused():
     assert distortion.sigma_b(fz, fzbar).min() > 0
     proof = certify(f, boundary, LOOSE)
     assert proof.winding is None
-    assert not proof.certified
+    assert not proof.is_certified
 
 
 def test_a_tiny_hole_changes_nothing():
@@ -240,7 +241,7 @@ def test_a_tiny_hole_changes_nothing():
     alone = HarmonicMap(cage=cage, phi=cage + 0.1 * cage**2, psi=0.1 * cage)
     f = holed_map(tiny, np.append(alone.phi, np.zeros(36)), np.append(alone.psi, np.zeros(36)))
     one, two = certify(f, boundary, Bounds()), certify(alone, whole, Bounds())
-    assert one.certified
+    assert one.is_certified
     assert_allclose([one.k, one.sigma_a, one.sigma_b], [two.k, two.sigma_a, two.sigma_b], rtol=1e-9)
     points = inner_points(tiny)
     assert_allclose(f(points), alone(points), atol=1e-13)

@@ -9,7 +9,7 @@ from shapes import regular_polygon, star_polygons
 
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
-from engine.geometry.polygon import as_xy, contains, diameter, edges
+from engine.geometry.polygon import as_xy, contains, diameter, edge_vectors
 from engine.maps.cauchy import evaluate
 from engine.paths import integration_paths
 from engine.paths.integration_paths import lay_paths
@@ -57,7 +57,7 @@ def networks(outline, seed):
     """Return a mesh's network and one of scattered points of the same outline."""
     mesh = triangulate(outline, 300)
     anchor = inner_points(outline, 1, seed)
-    thirds = outline + edges(outline) / 3
+    thirds = outline + edge_vectors(outline) / 3
     scattered = np.concatenate([inner_points(outline, 60, seed), outline, thirds])
     return (
         mesh_network(outline, mesh.vertices, mesh.triangles, anchor),
@@ -98,7 +98,7 @@ def test_the_same_point_many_times_and_the_anchor_among_them():
 
 def test_points_a_billionth_outside_are_reached():
     outline, cage = bar()
-    points = outline + 0.3 * edges(outline) - 3e-9j * edges(outline)
+    points = outline + 0.3 * edge_vectors(outline) - 3e-9j * edge_vectors(outline)
     paths = lay_paths(scattered_network(outline, points, np.array([0j])), outline, cage)
     assert_allclose(paths.integrals(paths.steps), points, rtol=0, atol=1e-12)
 

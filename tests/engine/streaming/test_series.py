@@ -22,8 +22,8 @@ from engine.geometry import Domain
 from engine.interpolation import Variant, chebyshev, prepare
 from engine.maps import Boundary, HarmonicMap, distortion
 from engine.streaming import Distortions, Positions, build_series, finish
-from engine.streaming.cutting import MOST_ROWS, OF_PIECES
 from engine.streaming.functions import DEGREES, MOST_ATTEMPTS
+from engine.streaming.splitting import MOST_ROWS, OF_PIECES
 
 SHAPES = {"bar": bar(), "letter L": letter_l(), "narrow U": narrow_u(0.1)}
 cases = st.tuples(st.sampled_from(sorted(SHAPES)), st.integers(0, 10_000))
@@ -72,7 +72,7 @@ def test_positions_are_those_of_the_direct_path(variant, case, seed):
     between = prepared(case[0], variant, random_pair(*case))
     channels = Positions.of(between, between.sites)
     diameter = between.sites.diameter
-    largest = max(np.abs(key.positions).max() for key in between.passage.ends)
+    largest = max(np.abs(key.positions).max() for key in between.keyframe_blend.ends)
     assert channels.tolerance <= max(1e-6 * diameter, 5e-7 * largest)
     series = finish(build_series(channels))
     for time in np.random.default_rng(seed).random(12):
@@ -86,7 +86,7 @@ def test_positions_are_those_of_the_direct_path(variant, case, seed):
 def test_keyframes_are_exact_to_float32(variant):
     between = prepared("letter L", variant, random_pair("letter L", 5))
     series = finish(build_series(Positions.of(between, between.sites)))
-    for time, key in enumerate(between.passage.ends):
+    for time, key in enumerate(between.keyframe_blend.ends):
         expected = key.positions.astype(np.complex64)
         assert_array_equal(series.values(float(time)).view(np.complex64), expected)
         beside = series.values(abs(time - 1e-9)).view(np.complex64)
@@ -326,13 +326,18 @@ def test_values_are_written_where_they_are_wanted():
 
 @pytest.mark.parametrize("degree", DEGREES)
 def test_chebyshev_coefficients_and_their_basis(degree):
-    assert_allclose(chebyshev.nodes(2 * degree)[::2], chebyshev.nodes(degree), rtol=0, atol=1e-15)
+    assert_allclose(
+        chebyshev.chebyshev_nodes(2 * degree)[::2],
+        chebyshev.chebyshev_nodes(degree),
+        rtol=0,
+        atol=1e-15,
+    )
     rng = np.random.default_rng(degree)
     expected = rng.normal(size=degree + 1)
-    values = np.polynomial.chebyshev.chebval(chebyshev.nodes(degree), expected)
+    values = np.polynomial.chebyshev.chebval(chebyshev.chebyshev_nodes(degree), expected)
     assert_allclose(chebyshev.to_coefficients(degree) @ values, expected, rtol=0, atol=1e-12)
     for x in (-1.0, -0.3, 0.77, 1.0):
-        found = chebyshev.basis(x, degree + 1) @ expected
+        found = chebyshev.chebyshev_basis(x, degree + 1) @ expected
         assert_allclose(found, np.polynomial.chebyshev.chebval(x, expected), rtol=0, atol=1e-12)
 
 
@@ -364,6 +369,6 @@ def test_a_hole_alone_adds_no_rows(variant):
             variant=variant,
             anchor=shape.anchor,
         )
-        series = finish(build_series(Positions.of(motion.intervals[0], motion.sites)))
+        series = finish(build_series(Positions.of(motion.segments[0], motion.sampled_domain)))
         rows.append([len(piece.rows) for piece in series.pieces])
     assert rows[0] == rows[1]

@@ -96,7 +96,7 @@ def make_figure_9(studio: FigureContext) -> PaperFigure:
 def _played(pair: ShapePair) -> Callable[[float], object]:
     """Return what plays the metric variant's series."""
     prepared = prepare_variant(pair, Variant.METRIC)
-    return finish(build_series(Positions.of(prepared.intervals[0], prepared.sites))).values
+    return finish(build_series(Positions.of(prepared.segments[0], prepared.sampled_domain))).values
 
 
 def _seconds(frame: Callable[[], object]) -> float:

@@ -9,5 +9,5 @@ from app.document.commands.layers import (
     filming_commands as filming_commands,
     group_commands as group_commands,
     layer_commands as layer_commands,
-    switch_group_commands as choice_commands,
+    switch_group_commands as switch_group_commands,
 )

@@ -21,7 +21,7 @@ from app.document.queries.tangents import (
 )
 from app.document.timing import Cycle
 from engine.arrays import Complexes
-from engine.geometry import HERE, RigidMotion, Similarity
+from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
 
 Key = TypeVar("Key", CameraKey, TransformKey, OpacityKey)
 
@@ -52,7 +52,7 @@ class CameraState(NamedTuple):
         """Return the corners of what is seen (4,), counter-clockwise from the lower left one."""
         seen, (width, height) = self.canvas_motion(canvas), canvas
         corners = (0j, complex(width, 0), complex(width, height), complex(0, height))
-        return np.array([seen.back(corner) for corner in corners])
+        return np.array([seen.apply_inverse(corner) for corner in corners])
 
 
 def camera_at(document: Document, frame: float) -> CameraState | None:
@@ -75,7 +75,7 @@ def transform_at(document: Document, layer: Layer, frame: float) -> RigidMotion:
     """Return by which a layer is moved as a whole at a frame, as the camera is."""
     keys, cycle = layer.transform_keys, repeating_cycle(layer, layer.transform_keys)
     if not keys:
-        return HERE
+        return IDENTITY_MOTION
     shift = _value_at(document, keys, SHIFT, frame, cycle)
     turn = _value_at(document, keys, TURN, frame, cycle)
     factor = complex(np.exp(1j * turn))

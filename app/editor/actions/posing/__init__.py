@@ -5,42 +5,44 @@ Out: poses in the document, step by step; handles and the anchor.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 """
 
-from app.editor.actions.posing.adopting import (
-    adopt_wish as adopt_wish,
-    as_key as as_key,
-)
 from app.editor.actions.posing.handles import (
     add_handle as add_handle,
-    anchor_at as anchor_at,
     mirror_handles as mirror_handles,
-    put_anchor as put_anchor,
     remove_handles as remove_handles,
+    set_anchor as set_anchor,
     suggest_handles as suggest_handles,
+    toggle_anchor_at_handle as toggle_anchor_at_handle,
 )
 from app.editor.actions.posing.inserting import (
-    fit_pose as fit_pose,
     insert_key as insert_key,
     insert_key_at as insert_key_at,
+    solve_nearest_pose as solve_nearest_pose,
 )
-from app.editor.actions.posing.pulling import (
-    end_at as end_at,
-    free_turn as free_turn,
-    give_up as give_up,
-    insist as insist,
-    let_go as let_go,
-    move as move,
-    nudge as nudge,
-    pin_here as pin_here,
-    pose_here as pose_here,
-    pull as pull,
-    pull_again as pull_again,
-    take_back as take_back,
-    wish as wish,
+from app.editor.actions.posing.pose_commit import (
+    commit_targets as commit_targets,
+    key_pose_command as key_pose_command,
 )
-from app.editor.actions.posing.settling import (
-    bring_all as bring_all,
-    maintain as maintain,
-    tried_clips as tried_clips,
+from app.editor.actions.posing.pose_drag import (
+    cancel_drag as cancel_drag,
+    drag_handles as drag_handles,
+    end_drag_at as end_drag_at,
+    free_rotation as free_rotation,
+    move_pose as move_pose,
+    nudge_handles as nudge_handles,
+    pin_selected_handles as pin_selected_handles,
+    pose_at_playhead as pose_at_playhead,
+    release_drag as release_drag,
+    release_drag_forced as release_drag_forced,
+    revert_drag as revert_drag,
+    set_targets as set_targets,
+    solve_pose_again as solve_pose_again,
 )
-from app.editor.actions.posing.solving import POSING as POSING, STEPS as STEPS
-from app.editor.actions.posing.stopping import give_in as give_in
+from app.editor.actions.posing.pose_lifecycle import (
+    candidate_clips as candidate_clips,
+    commit_all_poses as commit_all_poses,
+    update_pose_drags as update_pose_drags,
+)
+from app.editor.actions.posing.pose_solver import POSING as POSING, STEPS as STEPS
+from app.editor.actions.posing.reach_limit import (
+    clamp_unreachable_targets as clamp_unreachable_targets,
+)

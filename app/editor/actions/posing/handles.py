@@ -13,7 +13,7 @@ from app.document import (
     shape_commands,
 )
 from app.editor.action import do
-from app.editor.actions.posing.pulling import let_go
+from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import DisplayedFrame
@@ -29,14 +29,14 @@ def add_handle(
     _: Session, project: Project, place: complex, *, gesture: object | None = None
 ) -> None:
     """Add a handle where the shape is at a place of the screen's plane; nothing moves."""
-    if project.puppet.shown is None:
+    if project.layer_runtime.shown is None:
         return
-    rest = _at_rest(project.puppet.shown, place)
+    rest = _at_rest(project.layer_runtime.shown, place)
     identity = project.layer.next_handle
     project.history.do(
         handle_commands.add_handle(project.active, rest), gesture=gesture or object()
     )
-    project.selected, project.chosen = frozenset({identity}), frozenset()
+    project.selected_handles, project.selected_frames = frozenset({identity}), frozenset()
 
 
 @with_project
@@ -48,10 +48,10 @@ def remove_handles(
     gesture: object | None = None,
 ) -> None:
     """Delete handles; every pose stays as it is, or comes to rest as it was pulled."""
-    let_go(session)
+    release_drag(session)
     command = handle_commands.remove_handles(project.active, identities)
     project.history.do(command, gesture=gesture or object())
-    project.selected -= identities
+    project.selected_handles -= identities
 
 
 @with_project
@@ -63,7 +63,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:
-        session.tell("There are handles already where Lissom would put them.")
+        session.show_notice("There are handles already where Lissom would put them.")
         return
     names = {handle.name for handle in layer.handles}
     handles = [
@@ -73,9 +73,9 @@ def suggest_handles(session: Session, project: Project) -> None:
     gesture = object()
     project.history.do(handle_commands.add_handles(project.active, handles), gesture=gesture)
     added = {handle.id for handle in project.layer.handles} - {h.id for h in layer.handles}
-    project.selected = project.chosen = frozenset()
+    project.selected_handles = project.selected_frames = frozenset()
     count = len(added)
-    session.tell(
+    session.show_notice(
         f"{count} handle{'s were' if count > 1 else ' was'} added. Drag one to pose.",
         label="Take back",
         action=do(_take_suggestions_back, project, frozenset(added), gesture),
@@ -92,7 +92,7 @@ def _take_suggestions_back(
     remaining = added & {handle.id for handle in project.layer.handles}
     if remaining:
         remove_handles(session, remaining)
-    project.selected -= added
+    project.selected_handles -= added
 
 
 @with_project
@@ -100,7 +100,9 @@ def mirror_handles(session: Session, project: Project) -> None:
     """Give each selected handle a partner on the other side of the mirror axis, named to match."""
     layer, words = project.layer, project.document.pairs
     pairs = mirrored_handles_by_name(layer.handles, words)
-    alone = [handle for handle in layer.handles if handle.id in project.selected - pairs.keys()]
+    alone = [
+        handle for handle in layer.handles if handle.id in project.selected_handles - pairs.keys()
+    ]
     gesture, outside = object(), 0
     partners: list[Handle] = []
     for handle in alone:
@@ -117,9 +119,9 @@ def mirror_handles(session: Session, project: Project) -> None:
     if partners:
         project.history.do(handle_commands.add_handles(project.active, partners), gesture=gesture)
     if outside:
-        session.tell("The other side of the mirror axis is beside the drawing there.")
+        session.show_notice("The other side of the mirror axis is beside the drawing there.")
     elif not partners:
-        session.tell("Every selected handle has its partner on the other side already.")
+        session.show_notice("Every selected handle has its partner on the other side already.")
 
 
 def _is_inside(domain: MeshedDomain, place: complex) -> bool:
@@ -128,7 +130,7 @@ def _is_inside(domain: MeshedDomain, place: complex) -> bool:
 
 
 @with_project
-def anchor_at(
+def toggle_anchor_at_handle(
     _: Session, project: Project, identity: int, *, gesture: object | None = None
 ) -> None:
     """Make a handle's point the anchor, or let the engine choose again if it is already."""
@@ -140,12 +142,12 @@ def anchor_at(
 
 
 @with_project
-def put_anchor(
+def set_anchor(
     _: Session, project: Project, place: complex, *, gesture: object | None = None
 ) -> None:
     """Make the shape's point at a place of the screen's plane the anchor."""
-    if project.puppet.shown:
-        rest = _at_rest(project.puppet.shown, place)
+    if project.layer_runtime.shown:
+        rest = _at_rest(project.layer_runtime.shown, place)
         project.history.do(shape_commands.set_anchor(project.active, rest), gesture=gesture)
 
 

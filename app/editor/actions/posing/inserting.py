@@ -4,33 +4,33 @@ from collections.abc import Callable
 from functools import partial
 
 from app.document import Clip, Pose, PreviewPose, clip_of
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.action import do
 from app.editor.actions import playback
-from app.editor.actions.posing.adopting import as_key
+from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind
+from app.editor.work import JobKind
 from app.solving import Rig, fit_shown_pose
 
-INSERTING = Kind("Inserting a key", "The key could not be inserted", "hand")
+INSERTING = JobKind("Inserting a key", "The key could not be inserted", "hand")
 
 
 @with_project
 def insert_key(session: Session, project: Project) -> None:
     """Insert a key of the pose that is shown, at the present frame, in each chosen layer."""
-    playback.halt(session)
-    if project.beside:
+    playback.stop_playback(session)
+    if project.other_selected_layers:
         here, gesture = playback.current_frame(session, project), object()
         chosen = [project.document.layer(each) for each in project.selected_layers]
         for layer in (each for each in chosen if not each.still):
             if (at := layer.source_of(here)) not in layer.key_frames:
                 insert_key_at(session, layer.id, at, gesture)
         return
-    frame = playback.posed_frame(session, project)
+    frame = playback.edited_frame(session, project)
     if any((pull.layer, pull.frame) == (project.active, frame) for pull in project.pulls):
         # What is on its way there may be a key itself.
-        promises.once_settled(session, do(insert_key_at, project.active, frame), "The key")
+        pending_changes.run_when_idle(session, do(insert_key_at, project.active, frame), "The key")
     else:
         insert_key_at(session, project.active, frame)
 
@@ -40,49 +40,49 @@ def insert_key_at(
     session: Session, project: Project, layer: int, frame: int, gesture: object | None = None
 ) -> None:
     """Insert a key of the pose that a layer has at a frame; those of a gesture are one step."""
-    if layer not in project.puppets:
+    if layer not in project.layer_runtimes:
         return
     unkeyed = project.history.preview_pose
     if unkeyed is not None and (unkeyed.layer, unkeyed.frame) == (layer, frame):
         gesture = gesture or object()
-        project.history.do(as_key(session, project, unkeyed), gesture=gesture)
+        project.history.do(key_pose_command(session, project, unkeyed), gesture=gesture)
         project.history.set_preview_pose(None, gesture=gesture)
     elif frame not in project.document.layer(layer).key_frames:
         clip = clip_of(project.document, layer)
         take = partial(_insert, session, project, clip, frame, gesture)
-        fit_pose(session, project, clip, frame, take, kind=INSERTING)
+        solve_nearest_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
-        session.tell(f"Frame {frame} has a key already. Drag a handle to change it.")
+        session.show_notice(f"Frame {frame} has a key already. Drag a handle to change it.")
 
 
-def fit_pose(
+def solve_nearest_pose(
     session: Session,
     project: Project,
     clip: Clip,
     frame: int,
     take: Callable[[Pose], None],
     *,
-    kind: Kind,
+    kind: JobKind,
 ) -> None:
     """Let the worker find the pose that is nearest to what a clip shows at a frame."""
-    puppet = project.puppets[clip.layer.id]
+    puppet = project.layer_runtimes[clip.layer.id]
     rig, sibling = Rig.of(clip.layer, puppet.rig), puppet.store.sampler
 
     def work() -> Pose:
         return fit_shown_pose(rig, clip, frame, sibling)
 
-    promises.begin(session, project, kind, work, take)
+    pending_changes.begin_pending_change(session, project, kind, work, take)
 
 
 def _insert(
     session: Session, project: Project, clip: Clip, frame: int, gesture: object | None, pose: Pose
 ) -> None:
     layer = clip.layer.id
-    if layer in project.puppets and clip_of(project.document, layer) == clip:
+    if layer in project.layer_runtimes and clip_of(project.document, layer) == clip:
         found = PreviewPose(layer=layer, frame=frame, pose=pose)
-        project.history.do(as_key(session, project, found), gesture=gesture)
+        project.history.do(key_pose_command(session, project, found), gesture=gesture)
         if project.active == layer:
-            project.chosen = frozenset({frame})
+            project.selected_frames = frozenset({frame})
     else:
         # Other keys came or went meanwhile: the layer is shown otherwise there now.
         insert_key_at(session, layer, frame, gesture)

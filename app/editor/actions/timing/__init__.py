@@ -9,6 +9,6 @@ from app.editor.actions.timing import (
     cycles as cycles,
     keys as keys,
     springs as springs,
-    timeline_pointing as timeline_pointing,
+    timeline_drag as timeline_drag,
     tracks as tracks,
 )

@@ -18,7 +18,7 @@ from app.editor.actions import editing, playback, posing
 from app.editor.actions.timing import tracks
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import KeysOf, frames_in, keys_in, own_frame
+from app.editor.timeline_view import KeysByRow, frames_in, keys_in, source_frame
 from app.errors import LissomError
 
 NO_LAST_FRAME = (
@@ -32,118 +32,118 @@ TURN = editing.KeyVerb(key_commands.set_revolutions)  # a track's keys turn by a
 
 
 @with_project
-def retime(session: Session, project: Project, command: Command) -> None:
+def edit_timing(session: Session, project: Project, command: Command) -> None:
     """Run a command that changes time itself; the playhead stays where it is, or near."""
     before = playback.current_frame(session, project)
-    editing.edit(session, command)
+    editing.edit_document(session, command)
     frame = project.document.frames.clamp(before)
     if playback.current_frame(session, project) != frame:
         project.playhead = project.playhead.seek(frame, session.clock())
 
 
 @with_project
-def insert(session: Session, project: Project) -> None:
+def insert_key_in_row(session: Session, project: Project) -> None:
     """Insert a key at the present frame into the chosen row: of the pose, or of a track alone."""
-    track = project.chosen_track
-    if track is None or project.unkeyed is not None:
+    track = project.selected_track
+    if track is None or project.unkeyed_pose is not None:
         posing.insert_key(session)
     else:
-        tracks.key_here(session, (track,))
+        tracks.key_handles_at_playhead(session, (track,))
 
 
-def insert_at(session: Session, frame: int) -> None:
+def insert_key_in_row_at(session: Session, frame: int) -> None:
     """Put the playhead on a frame, and insert a key into the chosen row."""
     playback.scrub(session, frame)
-    insert(session)
+    insert_key_in_row(session)
 
 
-def set_easing(session: Session, keys: KeysOf, easing: Easing) -> None:
+def set_easing(session: Session, keys: KeysByRow, easing: Easing) -> None:
     """Set how time runs from keys on."""
-    editing.edit(session, editing.change_keys(EASE, keys, easing))
+    editing.edit_document(session, editing.change_keys(EASE, keys, easing))
 
 
-def set_passing(session: Session, keys: KeysOf, passing: TangentMode) -> None:
+def set_tangent_mode(session: Session, keys: KeysByRow, passing: TangentMode) -> None:
     """Set how the motion passes keys."""
-    editing.edit(session, editing.change_keys(PASS, keys, passing))
+    editing.edit_document(session, editing.change_keys(PASS, keys, passing))
 
 
-def set_turns(session: Session, keys: KeysOf, turns: int) -> None:
+def set_revolutions(session: Session, keys: KeysByRow, turns: int) -> None:
     """Set how often the shape turns round after keys of poses."""
-    editing.edit(session, editing.change_keys(TURN, keys, turns))
+    editing.edit_document(session, editing.change_keys(TURN, keys, turns))
 
 
 @with_project
-def pass_otherwise(session: Session, project: Project) -> None:
+def use_next_tangent_mode(session: Session, project: Project) -> None:
     """Pass the chosen keys in the next way, or the key at the playhead or before it."""
-    keys = _chosen_or_here(session, project)
+    keys = _selected_or_at_playhead(session, project)
     passings = list(TangentMode)
     row = project.row if project.row in keys else next(iter(keys))
     frame = min(keys[row])
     first = next(k.shown_tangent_mode for k in keys_in(project.document, row) if k.frame == frame)
-    set_passing(session, keys, passings[(passings.index(first) + 1) % len(passings)])
+    set_tangent_mode(session, keys, passings[(passings.index(first) + 1) % len(passings)])
 
 
 @with_project
-def ease(session: Session, project: Project, easing: Easing) -> None:
+def ease_selected_keys(session: Session, project: Project, easing: Easing) -> None:
     """Set how time runs from the chosen keys on, or from the key at the playhead or before it."""
-    set_easing(session, _chosen_or_here(session, project), easing)
+    set_easing(session, _selected_or_at_playhead(session, project), easing)
 
 
-def _chosen_or_here(session: Session, project: Project) -> KeysOf:
+def _selected_or_at_playhead(session: Session, project: Project) -> KeysByRow:
     """Return the chosen keys, or that of the chosen row at the playhead or before it."""
-    if project.chosen_of:
-        return project.chosen_of
+    if project.selected_keys:
+        return project.selected_keys
     here, row = playback.current_frame(session, project), project.row
     if (track := project.track_in(row)) is not None:
-        own = own_frame(project.document, track, here)
+        own = source_frame(project.document, track, here)
         here = project.document.frames.first if own is None else own
     frames = frames_in(project.document, row)
     frame = max((each for each in frames if each <= here), default=min(frames))
     return {row: frozenset({frame})}
 
 
-def ease_new_keys(session: Session, easing: Easing) -> None:
+def set_default_easing(session: Session, easing: Easing) -> None:
     """Set how time runs from keys that will be made."""
     session.preferences = replace(session.preferences, easing=easing)
 
 
 @with_project
-def reverse(session: Session, project: Project) -> None:
+def reverse_selected_keys(session: Session, project: Project) -> None:
     """Let the chosen keys run backwards, or all of the row's if fewer than two are chosen."""
-    keys = project.chosen_of
-    if project.count_chosen < 2:
+    keys = project.selected_keys
+    if project.selected_key_count < 2:
         keys = {project.row: frames_in(project.document, project.row)}
     _rearrange(session, project, editing.change_keys(REVERSE, keys, _span(keys)))
 
 
 @with_project
-def scale(session: Session, project: Project, factor: float) -> None:
+def scale_selected_keys(session: Session, project: Project, factor: float) -> None:
     """Stretch the time of the chosen keys, or of everything if fewer than two are chosen.
 
     Tracks whose keys are not chosen have their own time, and keep it.
     """
     command = scene_commands.scale_time(factor)
-    if project.count_chosen >= 2:
-        first, _ = _span(project.chosen_of)
-        command = editing.change_keys(SCALE, project.chosen_of, factor, first)
+    if project.selected_key_count >= 2:
+        first, _ = _span(project.selected_keys)
+        command = editing.change_keys(SCALE, project.selected_keys, factor, first)
     _rearrange(session, project, command)
 
 
-def _span(keys: KeysOf) -> tuple[int, int]:
+def _span(keys: KeysByRow) -> tuple[int, int]:
     """Return the first and the last frame of keys."""
     return min(map(min, keys.values())), max(map(max, keys.values()))
 
 
 def _rearrange(session: Session, project: Project, command: Command) -> None:
     """Run a command that moves the chosen keys, and choose them where they are then."""
-    chosen_of, everything = project.chosen_of, project.count_chosen < 2
+    chosen_of, everything = project.selected_keys, project.selected_key_count < 2
     others = {row: frames_in(project.document, row) - chosen_of[row] for row in chosen_of}
-    retime(session, command)
+    edit_timing(session, command)
     chosen = {row: frames_in(project.document, row) - others[row] for row in others}
-    editing.choose_keys_of(session, {} if everything else chosen)
+    editing.select_keys_in_rows(session, {} if everything else chosen)
 
 
-def match_ends(session: Session) -> None:
+def match_loop_ends(session: Session) -> None:
     """Give the last key the pose of the first one."""
     editing.edit_layer(session, key_commands.match_loop_ends)
 
@@ -151,12 +151,12 @@ def match_ends(session: Session) -> None:
 @with_project
 def toggle_loop(session: Session, project: Project) -> None:
     """Let the end lead back to the beginning, or not."""
-    retime(session, scene_commands.set_loop(loop=not project.document.loop))
+    edit_timing(session, scene_commands.set_loop(loop=not project.document.loop))
 
 
 def set_fps(session: Session, fps: float) -> None:
     """Set how fast the animation plays; it goes on from where it is."""
-    retime(session, scene_commands.set_fps(fps))
+    edit_timing(session, scene_commands.set_fps(fps))
 
 
 @with_project
@@ -165,23 +165,23 @@ def set_last_frame(session: Session, project: Project, last: int) -> None:
     first = project.document.frames.first
     if not first < last <= LAST_FRAME:
         raise LissomError(NO_LAST_FRAME.format(first=first, most=LAST_FRAME, last=last))
-    retime(session, scene_commands.set_frames(FrameRange(first, last)))
+    edit_timing(session, scene_commands.set_frames(FrameRange(first, last)))
 
 
-def play_all(session: Session) -> None:
+def clear_preview_range(session: Session) -> None:
     """Play all frames, and not a preview range."""
-    retime(session, scene_commands.set_preview(None))
+    edit_timing(session, scene_commands.set_preview(None))
 
 
 @with_project
-def start_preview_here(session: Session, project: Project) -> None:
+def start_preview_at_playhead(session: Session, project: Project) -> None:
     """Let the preview range begin at the playhead."""
     frame = playback.current_frame(session, project)
     _set_preview(session, project, frame, max(frame, project.document.played_frames.last))
 
 
 @with_project
-def end_preview_here(session: Session, project: Project) -> None:
+def end_preview_at_playhead(session: Session, project: Project) -> None:
     """Let the preview range end at the playhead."""
     frame = playback.current_frame(session, project)
     _set_preview(session, project, min(frame, project.document.played_frames.first), frame)
@@ -190,34 +190,34 @@ def end_preview_here(session: Session, project: Project) -> None:
 def _set_preview(session: Session, project: Project, first: int, last: int) -> None:
     preview = FrameRange(first, last)
     whole = preview == project.document.frames
-    retime(session, scene_commands.set_preview(None if whole else preview))
+    edit_timing(session, scene_commands.set_preview(None if whole else preview))
 
 
 @with_project
 def add_marker(session: Session, project: Project, frame: int) -> None:
     """Mark a frame, unless it is marked already."""
     if any(marker.frame == frame for marker in project.document.markers):
-        session.tell(f"Frame {frame} has a marker already. Double-click it to name it.")
+        session.show_notice(f"Frame {frame} has a marker already. Double-click it to name it.")
     else:
-        editing.edit(session, scene_commands.add_marker(frame))
+        editing.edit_document(session, scene_commands.add_marker(frame))
 
 
 @with_project
-def mark_here(session: Session, project: Project) -> None:
+def add_marker_at_playhead(session: Session, project: Project) -> None:
     """Mark the frame at the playhead."""
     add_marker(session, playback.current_frame(session, project))
 
 
 def rename_marker(session: Session, frame: int, name: str) -> None:
     """Give a marker another name."""
-    editing.edit(session, scene_commands.rename_marker(frame, name))
+    editing.edit_document(session, scene_commands.rename_marker(frame, name))
 
 
 def delete_marker(session: Session, frame: int) -> None:
     """Take a marker away."""
-    editing.edit(session, scene_commands.delete_marker(frame))
+    editing.edit_document(session, scene_commands.delete_marker(frame))
 
 
-def set_variant(session: Session, variant: Variant) -> None:
+def set_inbetween_method(session: Session, variant: Variant) -> None:
     """Set how in-betweens are made."""
     editing.edit_layer(session, shape_commands.set_variant, variant)

@@ -8,16 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Document, Spring, Track, TrackKey, track_commands
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Kind
+from app.editor.work import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
 from engine.geometry.kinematics import fit_keys
 
-KEYING = Kind("Making keys of a spring", "The swing could not be made into keys")
+KEYING = JobKind("Making keys of a spring", "The swing could not be made into keys")
 NEAR = 4e-4  # of the layer's diameter: that the keys' motion may be beside the swing
 AT_REST = 0.01  # pixels
 
@@ -30,7 +30,7 @@ class _Swing(NamedTuple):
 
 
 @with_project
-def make_keys(session: Session, project: Project, handle: int) -> None:
+def bake_spring(session: Session, project: Project, handle: int) -> None:
     """Give a handle a track that swings as its spring does, in place of the spring."""
     layer, spring = project.layer, project.layer.spring_of(handle)
     if spring is None or not spring.enabled or layer.track_of(handle) is not None:
@@ -40,7 +40,7 @@ def make_keys(session: Session, project: Project, handle: int) -> None:
     def take(swing: _Swing) -> None:
         _put(session, project, layer.id, spring, swing)
 
-    promises.begin(session, project, KEYING, work, take)
+    pending_changes.begin_pending_change(session, project, KEYING, work, take)
 
 
 def _measure(
@@ -73,7 +73,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         return
     moves = np.flatnonzero(np.abs(swing.offsets) > AT_REST)
     if not len(moves):
-        session.tell("It does not swing: nothing moves its place in the shape.")
+        session.show_notice("It does not swing: nothing moves its place in the shape.")
         return
     # It begins and ends at rest, where there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
@@ -93,7 +93,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         track_commands.put_track(identity, track),
     ):
         project.history.do(command, gesture=gesture)
-    project.timing.unfolded |= {identity}
+    project.timeline.expanded_layers |= {identity}
     if project.active == identity:
-        project.chosen_track = spring.handle
-    session.tell(f"The spring has become a track of {len(keys)} keys.")
+        project.selected_track = spring.handle
+    session.show_notice(f"The spring has become a track of {len(keys)} keys.")

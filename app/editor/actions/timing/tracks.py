@@ -17,43 +17,45 @@ from app.document import (
     track_commands,
     velocity_at,
 )
-from app.editor import promises
+from app.editor import pending_changes
 from app.editor.actions import editing, playback, posing, tracking
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import seen_at
-from app.editor.work import Kind
+from app.editor.timeline_view import display_frame
+from app.editor.work import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
-from engine.geometry import HERE, RigidMotion
+from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 AROUND = 1 / 64  # frames beside a key, between which its velocity is measured
-PLACING = Kind("Placing keys of a track", "The places of the track's keys could not be found")
+CONVERTING_KEYS = JobKind(
+    "Placing keys of a track", "The places of the track's keys could not be found"
+)
 
 
 @with_project
-def choose(_: Session, project: Project, handle: int | None) -> None:
+def select_track(_: Session, project: Project, handle: int | None) -> None:
     """Choose the row of a handle's track, so that drags of it go there; None the whole pose's."""
-    project.chosen_track = handle
+    project.selected_track = handle
 
 
 @with_project
-def key_selected(session: Session, project: Project) -> None:
+def key_selected_handles(session: Session, project: Project) -> None:
     """Key the selected handles alone at the present frame."""
-    key_here(session, sorted(project.selected))
+    key_handles_at_playhead(session, sorted(project.selected_handles))
 
 
 @with_project
-def key_here(session: Session, project: Project, handles: Sequence[int]) -> None:
+def key_handles_at_playhead(session: Session, project: Project, handles: Sequence[int]) -> None:
     """Key handles alone at the present frame, where they are now, and choose their track's row.
 
     Those that have no track get one together, with the pose; their first key is no offset.
     """
-    playback.halt(session)
-    posing.let_go(session)
+    playback.stop_playback(session)
+    posing.release_drag(session)
     layer, gesture = project.layer, object()
     new = tuple(identity for identity in handles if layer.track_of(identity) is None)
     if new:
-        frame = playback.posed_frame(session, project)
+        frame = playback.edited_frame(session, project)
         key = TrackKey(frame=frame, place=0j, easing=session.preferences.easing)
         command = track_commands.put_track(project.active, Track(handles=new, keys=(key,)))
         project.history.do(Command("Key handle", command.change), gesture=gesture)
@@ -61,14 +63,14 @@ def key_here(session: Session, project: Project, handles: Sequence[int]) -> None
     for track in known:
         if track is not None:
             _key(session, project, track, gesture)
-    project.chosen_track = (new or tuple(handles))[0]
-    project.timing.unfolded |= {project.active}
+    project.selected_track = (new or tuple(handles))[0]
+    project.timeline.expanded_layers |= {project.active}
 
 
 def _key(session: Session, project: Project, track: Track, gesture: object) -> None:
     """Insert a key into a track at the present frame that changes nothing there."""
     frame, layer = playback.current_frame(session, project), project.layer
-    own = tracking.key_frame(session, project.document, track, frame)
+    own = tracking.find_key_frame(session, project.document, track, frame)
     if own is None or own in track.key_frames:
         return
     easing, clip = session.preferences.easing, project.clip
@@ -83,7 +85,7 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
             velocity=velocity_at(track, clip, frame),
             easing=easing,
         )
-        if layer.id in project.puppets and project.document.layer(layer.id).tracks:
+        if layer.id in project.layer_runtimes and project.document.layer(layer.id).tracks:
             project.history.do(command, gesture=gesture)
 
     at = track_at(track, clip, frame)
@@ -92,24 +94,26 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
     elif not track.is_scene_space:
         put(0j)
     else:
-        place = partial(_beside, project.document, layer, track, [frame], project.samplers)
-        promises.begin(session, project, PLACING, place, lambda found: put(found[0].planted(0j)))
+        place = partial(_base_value_at, project.document, layer, track, [frame], project.samplers)
+        pending_changes.begin_pending_change(
+            session, project, CONVERTING_KEYS, place, lambda found: put(found[0].planted(0j))
+        )
 
 
 @with_project
-def put(
+def set_handle_value(
     session: Session, project: Project, handle: int, place: complex, turn: float | None = None
 ) -> None:
     """Let the track of a handle have a key at the present frame that wants it at a place.
 
     Of a track with the pose, 0 is where the pose has it: there the track may begin and end.
     """
-    playback.halt(session)
+    playback.stop_playback(session)
     track = project.layer.track_of(handle)
     if track is None:
         return
     frame = playback.current_frame(session, project)
-    own = tracking.key_frame(session, project.document, track, frame)
+    own = tracking.find_key_frame(session, project.document, track, frame)
     if own is not None:
         key, easing = track_commands.put_track_key, session.preferences.easing
         velocity = velocity_at(track, project.clip, frame)
@@ -118,7 +122,7 @@ def put(
         )
 
 
-class _Beside(NamedTuple):
+class _BaseValue(NamedTuple):
     """Where a handle is in a frame without its track, as places of tracks' keys are told by it."""
 
     place: complex  # by the layer itself
@@ -128,20 +132,20 @@ class _Beside(NamedTuple):
     def planted(self, offset: complex) -> complex:
         """Return the place in the picture of an offset beside the pose."""
         place = np.array([self.place + offset * self.turned])
-        return complex(self.carried.on(place)[0])
+        return complex(self.carried.apply(place)[0])
 
     def offset(self, planted: complex) -> complex:
         """Return by how much a place in the picture is beside the pose."""
-        return (self.carried.back(planted) - self.place) * self.turned.conjugate()
+        return (self.carried.apply_inverse(planted) - self.place) * self.turned.conjugate()
 
 
-def _beside(
+def _base_value_at(
     document: Document,
     layer: Layer,
     track: Track,
     frames: Sequence[float],
     siblings: Mapping[int, PoseSampler],
-) -> list[_Beside]:
+) -> list[_BaseValue]:
     """Return where the first handle of a track is in some frames without it."""
     point = np.array([layer.handle(track.handles[0]).position])
     carried = find_parent_motion(document, layer.id, siblings)
@@ -150,22 +154,22 @@ def _beside(
     for frame in frames:
         still = animation.base.frame(frame)
         fz = complex(still.fz[0])
-        hangs = HERE if carried is None else carried(frame)
-        found.append(_Beside(complex(still.positions[0]), fz / abs(fz), hangs))
+        hangs = IDENTITY_MOTION if carried is None else carried(frame)
+        found.append(_BaseValue(complex(still.positions[0]), fz / abs(fz), hangs))
     return found
 
 
 @with_project
-def plant(session: Session, project: Project, handle: int, planted: bool) -> None:  # noqa: FBT001
+def set_track_space(session: Session, project: Project, handle: int, planted: bool) -> None:  # noqa: FBT001
     """Let a track's keys be places in the picture, or beside the pose; none moves by that."""
     layer, track = project.layer, project.layer.track_of(handle)
     if track is None or track.is_scene_space == planted:
         return
     around = [_frames_around(project.document, track, key) for key in track.keys]
     frames = [frame for each in around for frame in each]
-    work = partial(_beside, project.document, layer, track, frames, project.samplers)
+    work = partial(_base_value_at, project.document, layer, track, frames, project.samplers)
 
-    def take(found: list[_Beside]) -> None:
+    def take(found: list[_BaseValue]) -> None:
         now = {each.id: each for each in project.document.layers}.get(layer.id)
         if now is None or track not in now.tracks:
             # It became another one meanwhile.
@@ -179,7 +183,7 @@ def plant(session: Session, project: Project, handle: int, planted: bool) -> Non
         command = track_commands.plant_track
         project.history.do(command(layer.id, handle, places, velocities, planted=planted))
 
-    promises.begin(session, project, PLACING, work, take)
+    pending_changes.begin_pending_change(session, project, CONVERTING_KEYS, work, take)
 
 
 def _frames_around(document: Document, track: Track, key: TrackKey) -> list[float]:
@@ -187,14 +191,14 @@ def _frames_around(document: Document, track: Track, key: TrackKey) -> list[floa
 
     They are just before it and just after, if it has a velocity of its own.
     """
-    seen, frames = seen_at(document, track, key.frame), document.frames
+    seen, frames = display_frame(document, track, key.frame), document.frames
     if key.velocity is None:
         return [seen]
     return [seen, max(seen - AROUND, frames.first), min(seen + AROUND, frames.last)]
 
 
 def _replaced(
-    key: TrackKey, beside: Sequence[_Beside], frames: Sequence[float], *, planted: bool
+    key: TrackKey, beside: Sequence[_BaseValue], frames: Sequence[float], *, planted: bool
 ) -> TrackKey:
     """Return a key with a place in the picture, or beside the pose, that is where it was."""
     there = []

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 from app.document import Track, TrackKey, track_at, track_commands
 from app.editor.actions import editing, playback, posing
-from app.editor.actions.tracking.carrying import go_on, put_key
-from app.editor.actions.tracking.places import ground_at, index_of
-from app.editor.failures import report
+from app.editor.actions.tracking.track_dragging import commit_track_drags, commit_track_key
+from app.editor.actions.tracking.track_space import base_frame_at, handle_index
+from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import CLICK, Session, with_project
-from app.editor.timeline_view import own_frame
-from app.editor.work import Carry, Sample, Take
+from app.editor.timeline_view import source_frame
+from app.editor.work import RecordedSample, Recording, TrackDrag
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
 from engine.geometry import RigidMotion
@@ -21,30 +21,30 @@ RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # tremble: at no smoothing and at all of it.
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # at first
-NO_TAKE = "The recording could not be kept"
+NO_RECORDING = "The recording could not be kept"
 
 
 @with_project
-def take_up(session: Session, project: Project) -> None:
+def toggle_recording_armed(session: Session, project: Project) -> None:
     """Let the next drag of a handle be recorded, or not any more; what was recorded is kept."""
-    keep(session)
+    accept_recording(session)
     if session.records:
         session.records = False
     elif not project.layer.handles:
-        session.tell("Click on the drawing to add a handle; then record how it is dragged.")
+        session.show_notice("Click on the drawing to add a handle; then record how it is dragged.")
     else:
-        playback.halt(session)
-        posing.let_go(session)
+        playback.stop_playback(session)
+        posing.release_drag(session)
         session.records, session.moves = True, False
 
 
-def set_speed(session: Session, speed: float) -> None:
+def set_recording_speed(session: Session, speed: float) -> None:
     """Set how fast the timeline plays while a drag is recorded."""
     session.recording_speed = speed
 
 
 @with_project
-def begin_take(
+def start_recording(
     session: Session, project: Project, handle: int, place: complex, *, gesture: object
 ) -> None:
     """Begin to record a drag of a handle, which is at a place of the scene."""
@@ -55,7 +55,7 @@ def begin_take(
     # Over the seam of a loop it goes on, at most once round; that of a part of it is a jump.
     goes_round = document.loop and played == frames
     project.playhead = running
-    project.take = Take(
+    project.recording = Recording(
         layer=project.active,
         handle=handle if track is None else track.handles[0],
         gesture=gesture,
@@ -70,71 +70,71 @@ def begin_take(
 
 
 @with_project
-def perform(_: Session, project: Project, place: complex) -> None:
+def drag_recorded_handle(_: Session, project: Project, place: complex) -> None:
     """Want the handle that is recorded at another place of the scene."""
-    if project.take is not None:
-        project.take.place = place
+    if project.recording is not None:
+        project.recording.place = place
 
 
 @with_project
-def end_take(session: Session, project: Project, *, has_moved: bool = True) -> None:
+def stop_recording(session: Session, project: Project, *, has_moved: bool = True) -> None:
     """End a recording where it is; the playhead goes back to where that began.
 
     Where the hand has not moved it is kept if the body moved under it.
     """
-    take = project.take
+    take = project.recording
     if take is None or take.is_over:
         return
-    if session.pointer is take.gesture:
-        session.pointer = None
+    if session.active_tool is take.gesture:
+        session.active_tool = None
     take.is_over, take.has_moved = True, has_moved
     project.playhead = replace(take.playhead, since=None, speed=take.speed)
     if take.layer == project.active:
-        project.chosen_track = take.handle
-        project.timing.unfolded |= {take.layer}
+        project.selected_track = take.handle
+        project.timeline.expanded_layers |= {take.layer}
 
 
-def keep(session: Session) -> None:
+def accept_recording(session: Session) -> None:
     """Keep what was recorded, as it is."""
-    end_take(session)
+    stop_recording(session)
     if session.project is not None:
-        session.project.take = None
+        session.project.recording = None
 
 
 @with_project
-def give_up(session: Session, project: Project) -> None:
+def discard_recording(session: Session, project: Project) -> None:
     """Take back what was recorded, or record nothing."""
-    session.records, take = False, project.take
+    session.records, take = False, project.recording
     if take is not None:
-        end_take(session)
-        editing.take_back(session, take.gesture)
-        project.take = None
+        stop_recording(session)
+        editing.revert_gesture(session, take.gesture)
+        project.recording = None
 
 
-def again(session: Session) -> None:
+def retry_recording(session: Session) -> None:
     """Take back what was recorded, and let the next drag be recorded in its place."""
-    give_up(session)
+    discard_recording(session)
     session.records = True
 
 
 @with_project
-def smooth(_: Session, project: Project, smoothing: float) -> None:
+def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
     """Smooth what was recorded, from 0 to 1."""
-    take = project.take
+    take = project.recording
     if take is not None and take.after is not None:
         take.smoothing = smoothing
         _write(project, take)
 
 
-def maintain(session: Session, project: Project) -> None:
+def update_track_drags(session: Session, project: Project) -> None:
     """Go on with what hands do with tracks; once a frame."""
-    if not (project.carries or project.take):
+    if not (project.track_drags or project.recording):
         return
-    project.puppet.corrected = reuse_corrections(
-        project.document, project.active, project.puppet.corrected
+    project.layer_runtime.corrected = reuse_corrections(
+        project.document, project.active, project.layer_runtime.corrected
     )
-    go_on(session, project)
-    take = project.take
+    commit_track_drags(session, project)
+    take = project.recording
     if take is None:
         return
     is_here = take.layer == project.active and any(
@@ -142,27 +142,27 @@ def maintain(session: Session, project: Project) -> None:
     )
     if not is_here or (take.after is not None and take.after is not project.document):
         # What was done since, even that it was taken back, is what the person goes on with.
-        keep(session)
+        accept_recording(session)
     elif not take.is_over:
         _record(session, project, take)
     elif take.after is None and _is_click(project, take):
-        give_up(session)
+        discard_recording(session)
     elif take.after is None:
         try:
             _write(project, take)
         except LissomError as error:
-            report(session, NO_TAKE, error)
-            give_up(session)
+            report_failure(session, NO_RECORDING, error)
+            discard_recording(session)
 
 
-def _record(session: Session, project: Project, take: Take) -> None:
+def _record(session: Session, project: Project, take: Recording) -> None:
     """Take note of where the handle is dragged at this moment, and show that."""
-    since, now, shown = take.playhead.since, session.clock(), project.puppet.shown
+    since, now, shown = take.playhead.since, session.clock(), project.layer_runtime.shown
     if since is None:
         return
     gone = (now - since) * project.document.fps * take.playhead.speed
     time = min(take.playhead.frame + gone, float(take.last))
-    sample = Sample(time, take.place)
+    sample = RecordedSample(time, take.place)
     if take.samples and take.samples[-1].time == time:
         take.samples[-1] = sample
     else:
@@ -170,19 +170,19 @@ def _record(session: Session, project: Project, take: Take) -> None:
     if shown is not None:
         frame = playback.current_frame(session, project)
         (placement,) = project.placements([frame], shown.placement)
-        held = Carry(
+        held = TrackDrag(
             layer=take.layer,
             handle=take.handle,
             frame=frame,
             gesture=take.gesture,
-            place=placement.back(take.place),
+            place=placement.apply_inverse(take.place),
         )
-        put_key(session, project, held)
+        commit_track_key(session, project, held)
     if project.playhead is not take.playhead or time == take.last:
-        end_take(session)
+        stop_recording(session)
 
 
-def _is_click(project: Project, take: Take) -> bool:
+def _is_click(project: Project, take: Recording) -> bool:
     """Tell whether the hand has rested on a body that has not moved, as far as that is known."""
     if take.has_moved:
         return False
@@ -193,7 +193,7 @@ def _is_click(project: Project, take: Take) -> bool:
     return values is not None and max(abs(v - values[0]) for v in values) * take.scale <= CLICK
 
 
-def _write(project: Project, take: Take) -> None:
+def _write(project: Project, take: Recording) -> None:
     """Let the track have what was recorded, once it is known what that is relative to."""
     clip, before = project.clip, take.before
     values = _values(project, take)
@@ -203,7 +203,7 @@ def _write(project: Project, take: Take) -> None:
     fitted = _fitted(project, take, values)
 
     def own(frame: int) -> int | None:
-        return own_frame(project.document, fresh, _wrapped(project, frame))
+        return source_frame(project.document, fresh, _wrapped(project, frame))
 
     start, end = fitted[0][0], fitted[-1][0]
     recorded = {own(frame) for frame in range(start, end + 1)}
@@ -224,7 +224,7 @@ def _write(project: Project, take: Take) -> None:
 
 
 def _fitted(
-    project: Project, take: Take, values: list[complex]
+    project: Project, take: Recording, values: list[complex]
 ) -> list[tuple[int, complex, complex]]:
     """Return frames, places and velocities of as few keys as will do.
 
@@ -237,15 +237,17 @@ def _fitted(
     return list(zip(*(each.tolist() for each in fitted), strict=True))
 
 
-def _values(project: Project, take: Take) -> list[complex] | None:
+def _values(project: Project, take: Recording) -> list[complex] | None:
     """Return what was recorded as the track's keys have it; None until all of it is known."""
     if take.before is not None and take.before.is_scene_space:
         return [sample.place for sample in take.samples]
-    index, values = index_of(project, take.handle), []
+    index, values = handle_index(project, take.handle), []
     for time, place in take.samples:
         frame = int(time)
         ends = [_wrapped(project, each) for each in (frame, frame + 1)]
-        grounds = [each for each in (ground_at(project, end) for end in ends) if each is not None]
+        grounds = [
+            each for each in (base_frame_at(project, end) for end in ends) if each is not None
+        ]
         placements = project.placed_at(project.active, ends)
         if len(grounds) < len(ends) or placements is None:
             return None
@@ -260,7 +262,7 @@ def _values(project: Project, take: Take) -> list[complex] | None:
 
 def _beside(ground: BaseMotionFrame, placement: RigidMotion, index: int, place: complex) -> complex:
     """Return by how much a place of the scene is beside a handle's, in the axes of the shape."""
-    beside = placement.back(place) - ground.positions[index]
+    beside = placement.apply_inverse(place) - ground.positions[index]
     return complex(beside * ground.rotations[index].conjugate())
 
 

@@ -16,11 +16,11 @@ def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:
     draw_tooltip("Let it move between two keys that have it at one place; else it stays there")
     if changed:
         command = handle_commands.unpin_handles(project.active, frozenset({handle.id}), free=free)
-        actions.append(do(editing.edit, command))
+        actions.append(do(editing.edit_document, command))
     if not layer.has_auto_pins:
         small_text(look, "In this drawing no handle stays between keys.")
         hint = "Let handles stay in between where two keys have them at one place"
         if text_button("Let handles stay", FILL, hint):
             command = shape_commands.set_auto_pins(project.active, stillness=True)
-            actions.append(do(editing.edit, command))
+            actions.append(do(editing.edit_document, command))
     return actions

@@ -85,7 +85,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
         else "Its track comes before the spring: delete the track first"
     )
     if text_button("Make keys of it", FILL, hint, enabled=can):
-        actions.append(do(springs.make_keys, handle.id))
+        actions.append(do(springs.bake_spring, handle.id))
     return actions
 
 

@@ -85,13 +85,13 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
         place = complex(
             at.place.real if x is None else x, at.place.imag if y is None else height - y
         )
-        actions.append(do(tracks.put, first, place))
+        actions.append(do(tracks.set_handle_value, first, place))
     if track.keys_rotation:
         label(look, "Turned by")
         turn = number_field("track turn", math.degrees(at.turn), "%.1f°")
         draw_tooltip("Beyond what the pose turns it here, counter-clockwise: typing makes a key")
         if turn is not None:
-            actions.append(do(tracks.put, first, at.place, math.radians(turn)))
+            actions.append(do(tracks.set_handle_value, first, at.place, math.radians(turn)))
     return actions
 
 
@@ -104,19 +104,19 @@ def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Ac
         "Beside where the pose has it, or places in the picture, as of a foot on the ground"
     )
     if kind is not None:
-        actions.append(do(tracks.plant, handle.id, kind == "picture"))
+        actions.append(do(tracks.set_track_space, handle.id, kind == "picture"))
     label(look, "Track")
     changed, enabled = imgui.checkbox("on##track", track.enabled)
     draw_tooltip("Whether the track acts; its keys stay")
     if changed:
         command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
-        actions.append(do(editing.edit, command))
+        actions.append(do(editing.edit_document, command))
     imgui.same_line()
     changed, turns = imgui.checkbox("Keys turn it, too", track.keys_rotation)
     draw_tooltip("Let its keys turn the shape at the handle; else it turns as the shape likes")
     if changed:
         command = track_commands.set_turning(project.active, handle.id, turns=turns)
-        actions.append(do(editing.edit, command))
+        actions.append(do(editing.edit_document, command))
     return actions
 
 
@@ -170,7 +170,7 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
 
 def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle) -> None:
     """Tell by how much the handle misses its track in the present frame, where it does."""
-    frame, corrected = playback.current_frame(session, project), project.puppet.corrected
+    frame, corrected = playback.current_frame(session, project), project.layer_runtime.corrected
     miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
     if misses_target(project.layer, miss):
         small_text(look, f"{miss:.0f} px short of its track here.", look.palette.danger)

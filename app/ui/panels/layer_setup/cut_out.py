@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, CutTool, Project, Session, do
-from app.editor.actions import cutting, rebuilding
+from app.editor.actions import cut_out_editing, resolving
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
     FILL,
@@ -24,7 +24,9 @@ from app.ui.style import (
 from engine.domain import CutOut
 
 TOLERANCES = Scale(left=0, right=120)
-BRUSHES = Scale(left=cutting.SMALLEST_BRUSH, right=cutting.LARGEST_BRUSH / 2, logarithmic=True)
+BRUSHES = Scale(
+    left=cut_out_editing.SMALLEST_BRUSH, right=cut_out_editing.LARGEST_BRUSH / 2, logarithmic=True
+)
 BACKGROUNDS = (("auto", "Automatic"), ("none", "None"), ("colour", "Colour"))
 ENCLOSED = (("auto", "Automatic"), ("keep", "Keep"), ("remove", "Remove"))
 HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
@@ -53,7 +55,7 @@ def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[A
         "Take away all strokes, lines of the knife and the mask",
         enabled=cut_out.is_by_hand,
     ):
-        actions.append(do(cutting.forget_strokes))
+        actions.append(do(cut_out_editing.clear_cut_out_strokes))
     actions += _brush(session, look, project)
     actions += _mask(look, cut_out)
     heading(look, "Holes")
@@ -63,11 +65,11 @@ def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[A
 
 
 def _background(session: Session, look: Look, project: Project, cut_out: CutOut) -> list[Action]:
-    if not project.puppet.is_opaque and cut_out.background == "auto":
+    if not project.layer_runtime.is_opaque and cut_out.background == "auto":
         small_text(
             look, "The picture is transparent around the drawing: nothing has to be removed."
         )
-    elif project.puppet.is_opaque and project.puppet.cut.value.is_all:
+    elif project.layer_runtime.is_opaque and project.layer_runtime.cut.value.is_all:
         small_text(look, "The whole picture is the drawing: pick a colour, or brush the rest away.")
     actions: list[Action] = []
     imgui.begin_disabled(cut_out.mask is not None)
@@ -75,9 +77,9 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
     kind = "colour" if isinstance(cut_out.background, tuple) else cut_out.background
     match option_buttons(look, "background", BACKGROUNDS, kind):
         case "auto" | "none" as chosen:
-            actions.append(do(cutting.set_background, chosen))
+            actions.append(do(cut_out_editing.set_background, chosen))
         case "colour":
-            actions.append(do(cutting.take_up, "pick"))
+            actions.append(do(cut_out_editing.toggle_cut_tool, "pick"))
     draw_tooltip(
         "A plain background is found at the picture's border, or has the colour that you pick"
     )
@@ -93,17 +95,17 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
     hint = "How far the background may vary in colour, 0 to 255"
     entered = slider(look, "tolerance", cut_out.tolerance, TOLERANCES, text="%.0f", hint=hint)
     if entered is not None:
-        actions.append(do(cutting.set_tolerance, round(entered.value)))
+        actions.append(do(cut_out_editing.set_background_tolerance, round(entered.value)))
     label(look, "Inside")
     enclosed = option_buttons(look, "enclosed", ENCLOSED, cut_out.enclosed)
     if enclosed is not None:
-        actions.append(do(cutting.set_enclosed, enclosed))
+        actions.append(do(cut_out_editing.set_enclosed_removed, enclosed))
     draw_tooltip(
         "Parts inside that have the background's colour, as between an arm and the body: automatic "
         "removes vivid colours, but not white, grey and black, which eyes and paper have too; a "
         "click below changes one of them"
     )
-    if project.puppet.cut.value.background_like is not None:
+    if project.layer_runtime.cut.value.background_like is not None:
         small_text(
             look,
             "Parts inside have the background's colour and stay: tinted blue while a tool is in "
@@ -122,10 +124,10 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     label(look, "Size")
     keys = " and ".join(BINDINGS[name].shown_keys for name in ("smaller brush", "larger brush"))
     hint = f"Radius of the brush in pixels of the picture; {keys} change it"
-    radius = cutting.brush_radius(project)
+    radius = cut_out_editing.brush_radius(project)
     entered = slider(look, "brush", radius, BRUSHES, text="%.0f", hint=hint)
     if entered is not None:
-        actions.append(do(cutting.set_brush, entered.value))
+        actions.append(do(cut_out_editing.set_brush_radius, entered.value))
     return actions
 
 
@@ -134,13 +136,13 @@ def _mask(look: Look, cut_out: CutOut) -> list[Action]:
     widths = split_line(2)
     hint = "A black and white picture of the same size: white is kept, black is removed"
     if text_button(f"{icons.ICON_FA_FOLDER_OPEN}  Load mask…", next(widths), hint):
-        actions.append(do(cutting.ask_mask))
+        actions.append(do(cut_out_editing.ask_mask_to_load))
     hint = "Save what is kept as a black and white picture"
     if text_button(f"{icons.ICON_FA_FLOPPY_DISK}  Save mask…", next(widths), hint):
-        actions.append(do(cutting.ask_mask_path))
+        actions.append(do(cut_out_editing.ask_mask_to_save))
     count = len(cut_out.strokes)
     told = ["1 stroke" if count == 1 else f"{count:,} strokes"] if count else []
-    if lines := len(cut_out.slits):
+    if lines := len(cut_out.cut_lines):
         told.append("1 line of the knife" if lines == 1 else f"{lines:,} lines of the knife")
     if told:
         small_text(look, ", ".join(told))
@@ -148,7 +150,7 @@ def _mask(look: Look, cut_out: CutOut) -> list[Action]:
 
 
 def _holes(session: Session, look: Look, project: Project) -> list[Action]:
-    holes = project.puppet.cut.value.holes
+    holes = project.layer_runtime.cut.value.holes
     if holes is None or not holes.middles:
         small_text(look, "There are none. Where the brush removes a part inside, there is one.")
         return []
@@ -168,20 +170,20 @@ def _tool(
     pressed = imgui.button(f"{text}###{tool} tool", ImVec2(width, 0))
     imgui.pop_style_color(2)
     draw_tooltip(hint)
-    return [do(cutting.take_up, tool)] if pressed else []
+    return [do(cut_out_editing.toggle_cut_tool, tool)] if pressed else []
 
 
 def _state(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     imgui.dummy(ImVec2(0, 0.2 * look.em))
-    renewal = project.renewal
+    renewal = project.key_resolver
     if renewal is not None and renewal.meshing is not None:
         if progress_bar(renewal.progress, renewal.status_text):
-            actions.append(do(rebuilding.cancel))
+            actions.append(do(resolving.cancel_solving_keys))
     elif session.cutting is not None:
         hint, keys = "Show the drawing as it is posed", BINDINGS["pose"].shown_keys
         if text_button("Back to posing###done", FILL, hint, keys):
-            actions.append(do(cutting.take_up, None))
+            actions.append(do(cut_out_editing.toggle_cut_tool, None))
     if project.layer.is_stale and project.layer is project.unbuildable:
         small_text(
             look, "The mesh is still that of before: this cut-out gives none. Change it, or undo."

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Meshing
 from app.editor import Action, Overlays, Project, Session, do
-from app.editor.actions import OverlayName, rebuilding, viewing
+from app.editor.actions import OverlayName, resolving, viewing
 from app.ui.style import (
     FILL,
     Look,
@@ -43,19 +43,19 @@ def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Ac
     draft = project.meshing or layer.meshing
     chosen = _settings(look, draft)
     if chosen != draft:
-        actions.append(do(viewing.draft_meshing, chosen))
+        actions.append(do(viewing.preview_meshing, chosen))
     imgui.dummy(ImVec2(0, 0.2 * look.em))
-    renewal = project.renewal
+    renewal = project.key_resolver
     if renewal is not None and renewal.meshing is not None:
         if progress_bar(renewal.progress, renewal.status_text):
-            actions.append(do(rebuilding.cancel))
+            actions.append(do(resolving.cancel_solving_keys))
     else:
         is_new = chosen != layer.meshing and renewal is None
         text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
         if main_button(look, text, FILL, enabled=is_new):
-            actions.append(do(rebuilding.rebuild))
+            actions.append(do(resolving.rebuild_mesh))
         if is_new and imgui.button("Revert###forget", ImVec2(FILL, 0)):
-            actions.append(do(viewing.draft_meshing, layer.meshing))
+            actions.append(do(viewing.preview_meshing, layer.meshing))
     small_text(look, "Handles stay, and every key is posed again. Undo brings all of it back.")
     return actions
 
@@ -68,7 +68,7 @@ def _toggles(overlays: Overlays) -> list[Action]:
         if index:
             imgui.same_line(left + index * column)
         if imgui.checkbox(text, getattr(overlays, overlay))[0]:
-            actions.append(do(viewing.toggle, overlay))
+            actions.append(do(viewing.toggle_overlay, overlay))
         draw_tooltip(hint)
     return actions
 

@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Layer
 from app.editor import Action, MaterialTool, Project, Session, do
-from app.editor.actions import cutting, material, posing, rebuilding, viewing
+from app.editor.actions import cut_out_editing, posing, resolving, stiffness_editing, viewing
 from app.ui.panels.layer_setup.cut_out import BRUSHES
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import (
@@ -23,8 +23,12 @@ from app.ui.style import (
     text_button,
 )
 
-STRENGTHS = Scale(left=material.WEAKEST, right=material.STRONGEST, logarithmic=True)
-AMOUNTS = Scale(left=1 / material.SOFTEST, right=material.STRONGEST, logarithmic=True)
+STRENGTHS = Scale(
+    left=stiffness_editing.WEAKEST, right=stiffness_editing.STRONGEST, logarithmic=True
+)
+AMOUNTS = Scale(
+    left=1 / stiffness_editing.SOFTEST, right=stiffness_editing.STRONGEST, logarithmic=True
+)
 SOFTNESSES = Scale(left=0.0, right=1.0)
 TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
     ("stiff", icons.ICON_FA_CUBE, "Stiff", "Brush over what is to bend and stretch less"),
@@ -40,9 +44,9 @@ def draw_material_panel(session: Session, look: Look, project: Project) -> list[
     heading(look, "Brush", framed=True)
     align_right(1.15 * imgui.get_frame_height())
     hint, is_painted = "Take back all that is painted; bones stay", layer.stiffness is not None
-    actions = [] if session.tint == "stiffness" else [do(viewing.tint, "stiffness")]
+    actions = [] if session.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
     if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
-        actions.append(do(material.clear))
+        actions.append(do(stiffness_editing.clear_stiffness))
     actions += _tools(session, look) + _brush(session, look, project)
     heading(look, "Bones", framed=True)
     actions += _bones(look, layer)
@@ -60,7 +64,7 @@ def _tools(session: Session, look: Look) -> list[Action]:
         imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
         imgui.push_style_color(imgui.Col_.text, palette.on_accent if is_chosen else palette.text)
         if imgui.button(f"{icon}  {name}###{tool} tool", ImVec2(width, 0)):
-            actions.append(do(material.take_up, tool))
+            actions.append(do(stiffness_editing.toggle_stiffness_tool, tool))
         imgui.pop_style_color(2)
         draw_tooltip(hint)
     return actions
@@ -71,20 +75,20 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     label(look, "Size")
     keys = " and ".join(BINDINGS[name].shown_keys for name in ("smaller brush", "larger brush"))
     hint = f"Radius of the brush in pixels of the picture; {keys} change it"
-    radius = cutting.brush_radius(project)
+    radius = cut_out_editing.brush_radius(project)
     entered = slider(look, "material brush", radius, BRUSHES, text="%.0f", hint=hint)
     if entered is not None:
-        actions.append(do(cutting.set_brush, entered.value))
+        actions.append(do(cut_out_editing.set_brush_radius, entered.value))
     label(look, "Strength")
     hint = "How many times as stiff, or as soft, it makes what it covers"
     entered = slider(look, "strength", session.strength, STRENGTHS, text="%.1f ×", hint=hint)
     if entered is not None:
-        actions.append(do(material.set_strength, entered.value))
+        actions.append(do(stiffness_editing.set_stiffness_strength, entered.value))
     label(look, "Soft edge")
     hint = "Over which part of the radius that becomes less"
     entered = slider(look, "softness", session.softness, SOFTNESSES, hint=hint)
     if entered is not None:
-        actions.append(do(material.set_softness, entered.value))
+        actions.append(do(stiffness_editing.set_brush_softness, entered.value))
     small_text(
         look, "It acts on the outline within its radius, and by that as deep as a limb is thick."
     )
@@ -102,7 +106,7 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
     align_right(1.15 * imgui.get_frame_height())
     eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
     if icon_button(look, eye, "show bones", "Show the bones, or hide them: they act either way"):
-        actions.append(do(material.show_bones, shown=not is_shown))
+        actions.append(do(stiffness_editing.set_bones_visible, shown=not is_shown))
     for bone in layer.bones:
         first, second = (layer.handle(identity).name for identity in bone.ends)
         name = f"{first} – {second}"
@@ -111,11 +115,11 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
         imgui.text_unformatted(name)
         align_right(1.15 * imgui.get_frame_height())
         if icon_button(look, icons.ICON_FA_XMARK, "delete bone", "Take this bone away"):
-            actions.append(do(material.remove_bone, bone.ends))
+            actions.append(do(stiffness_editing.remove_bone, bone.ends))
         hint = "How many times as stiff as usual the limb is"
         entered = slider(look, "amount", bone.stiffness, AMOUNTS, text="%.1f ×", hint=hint)
         if entered is not None:
-            actions.append(do(material.set_bone, bone.ends, entered.value))
+            actions.append(do(stiffness_editing.set_bone_stiffness, bone.ends, entered.value))
         small_text(look, _describe_limits(layer, bone.stiffness))
         imgui.pop_id()
     return actions
@@ -125,7 +129,7 @@ def _describe_limits(layer: Layer, amount: float) -> str:
     """Return in words what new poses keep to where a layer is so stiff all around."""
     if amount <= 1:
         return "It gives way first, within the limits of the layer."
-    limits = layer.bounds.stiffened(np.array([amount]))
+    limits = layer.bounds.scaled_by(np.array([amount]))
     fields = limits.k, limits.sigma_a, limits.sigma_b
     shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
     return (
@@ -140,30 +144,32 @@ def _whole(layer: Layer) -> list[Action]:
     hint = "Heads, hands and feet stiff, tails and hair soft, by the names of the handles"
     text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  By names"
     if text_button(text, next(widths), hint, enabled=bool(layer.handles)):
-        actions.append(do(material.suggest))
+        actions.append(do(stiffness_editing.suggest_stiffness))
     hint = "Give both sides of the mirror axis what one of them has"
     is_any = layer.stiffness is not None or bool(layer.bones)
     text = f"{icons.ICON_FA_ARROWS_LEFT_RIGHT}  Mirror"
     if text_button(text, next(widths), hint, enabled=is_any):
-        actions.append(do(material.mirror))
+        actions.append(do(stiffness_editing.mirror_stiffness))
     return actions
 
 
 def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     small_text(look, "Keys keep their poses until they are posed again with this material.")
-    renewal = project.renewal
+    renewal = project.key_resolver
     if renewal is not None and renewal.new_layer is None:
         return (
-            [do(rebuilding.cancel)] if progress_bar(renewal.progress, renewal.status_text) else []
+            [do(resolving.cancel_solving_keys)]
+            if progress_bar(renewal.progress, renewal.status_text)
+            else []
         )
     actions: list[Action] = []
     is_possible = renewal is None and bool(project.layer.handles)
-    is_here = is_possible and posing.pose_here(session, project) is not None
+    is_here = is_possible and posing.pose_at_playhead(session, project) is not None
     widths = split_line(2)
     hint = "Pull the handles of the pose that is shown to their targets again"
     if text_button("Pose this key again", next(widths), hint, enabled=is_here):
-        actions.append(do(material.pose_again))
+        actions.append(do(stiffness_editing.solve_shown_pose_again))
     hint = "Pull the handles of every key to their targets again"
     if text_button("Pose all keys again", next(widths), hint, enabled=is_possible):
-        actions.append(do(rebuilding.solve_again))
+        actions.append(do(resolving.solve_keys_again))
     return actions

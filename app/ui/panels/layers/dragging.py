@@ -23,7 +23,7 @@ def drag_layer_row(
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(MOVED, row.layers[0])
         if row.layer is None and set(project.selected_layers) != set(row.layers):
-            actions.append(do(layering.choose_all, *row.layers))
+            actions.append(do(layering.select_layers, *row.layers))
         dragged = _dragged(project, row.layers[0])
         imgui.text(row.name if set(dragged) <= set(row.layers) else f"{len(dragged)} layers")
         imgui.end_drag_drop_source()
@@ -62,24 +62,27 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
     if set(row.layers) <= set(dragged):
         return None
     if row.group is not None:
-        return do(layering.take_in, row.group.name, *dragged)
+        return do(layering.add_layers_to_group, row.group.name, *dragged)
     if row.switch_group is not None:
-        return do(layering.join, row.switch_group.name, *dragged)
+        return do(layering.add_to_switch, row.switch_group.name, *dragged)
     # Where that would be a circle, it says so, and nothing moves.
-    return do(layering.hang_together, row.layers[0], *dragged)
+    return do(layering.attach_layers, row.layers[0], *dragged)
 
 
 def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
     """Tell whether layers would hang on a row that hangs on one of them."""
     return row.layer is not None and any(
-        layering.hangs_on(project, row.layer.id, each) for each in _dragged(project, identity)
+        layering.is_same_or_descendant(project, row.layer.id, each)
+        for each in _dragged(project, identity)
     )
 
 
 def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:
     """Return what a drop of layers above or below another one does."""
     moved = _dragged(project, dragged)
-    return [] if identity in moved else [do(layering.move_beside, identity, is_above, *moved)]
+    return (
+        [] if identity in moved else [do(layering.move_layers_beside, identity, is_above, *moved)]
+    )
 
 
 def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:

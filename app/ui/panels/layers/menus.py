@@ -45,45 +45,49 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     many = f" {len(chosen)} layers" if is_many else ""
     if not is_many:
         if item("Duplicate", icons.ICON_FA_CLONE):
-            actions.append(do(layering.duplicate, identity))
+            actions.append(do(layering.duplicate_layer, identity))
         if item("Replace picture…", icons.ICON_FA_FILE_IMAGE):
-            actions.append(do(layering.ask_replace, identity))
+            actions.append(do(layering.ask_replacement_picture, identity))
     imgui.separator()
     if item(("Show" if layer.hidden else "Hide") + many, icons.ICON_FA_EYE):
-        actions.append(do(layering.show, *whom))
+        actions.append(do(layering.toggle_layers_hidden, *whom))
     if item(("Unlock" if layer.locked else "Lock") + many, icons.ICON_FA_LOCK):
-        actions.append(do(layering.lock, *whom))
+        actions.append(do(layering.toggle_layers_locked, *whom))
     alone = project.solo == set(whom)
     if item("Look at all again" if alone else f"Look at{many or ' it'} alone", SOLO):
-        actions.append(do(layering.look_at_alone, *whom))
+        actions.append(do(layering.solo_layers, *whom))
     if not is_many:
         actions += _kind(layer)
     imgui.separator()
-    if item("Put in a group", icons.ICON_FA_FOLDER_PLUS, enabled=is_many or not project.beside):
-        actions.append(do(layering.choose_all, *whom))
-        actions.append(do(layering.group_together))
+    if item(
+        "Put in a group",
+        icons.ICON_FA_FOLDER_PLUS,
+        enabled=is_many or not project.other_selected_layers,
+    ):
+        actions.append(do(layering.select_layers, *whom))
+        actions.append(do(layering.group_layers))
     if layer.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
-        actions.append(do(layering.group, layer.group.rpartition("/")[0], *whom))
+        actions.append(do(layering.put_layers_in_group, layer.group.rpartition("/")[0], *whom))
     free = is_many and all(project.document.switch_group_of(each) is None for each in chosen)
     if item("Let them take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
-        actions.append(do(layering.form, *chosen))
+        actions.append(do(layering.create_switch, *chosen))
     if project.document.switch_group_of(identity) and item(
         "Take out of the choice", icons.ICON_FA_XMARK
     ):
-        actions.append(do(layering.leave, identity))
+        actions.append(do(layering.remove_from_switch, identity))
     imgui.separator()
     left = len(project.document.layers) > len(whom)
     if item(f"Delete{many}", icons.ICON_FA_TRASH, enabled=left):
-        actions.append(do(layering.remove, *whom))
+        actions.append(do(layering.delete_layers, *whom))
     return actions
 
 
 def _kind(layer: Layer) -> list[Action]:
     actions: list[Action] = []
     if item("Take into exports" if layer.reference else "Reference only", icons.ICON_FA_BAN):
-        actions.append(do(layering.refer, layer.id))
+        actions.append(do(layering.toggle_reference, layer.id))
     if item("Let it be posed" if layer.still else "Make it a still picture", icons.ICON_FA_IMAGE):
-        turn = layering.stand_up if layer.still else layering.stand_still
+        turn = layering.make_posable if layer.still else layering.make_still
         actions.append(do(turn, layer.id))
     return actions
 
@@ -91,13 +95,13 @@ def _kind(layer: Layer) -> list[Action]:
 def _draw_switch_items(project: Project, choice: SwitchGroup) -> list[Action]:
     imgui.separator()
     actions = [
-        do(layering.show_here, identity)
+        do(layering.key_switch, identity)
         for identity in choice.layers
         if item(f"Show {project.document.layer(identity).name}", icons.ICON_FA_CIRCLE_DOT)
     ]
     imgui.separator()
     if item("Let them take turns no more", icons.ICON_FA_XMARK):
-        actions.append(do(layering.dissolve, choice.name))
+        actions.append(do(layering.delete_switch, choice.name))
     return actions
 
 
@@ -105,24 +109,24 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
     if item("Choose all layers in it", icons.ICON_FA_LIST_CHECK):
-        actions.append(do(layering.choose_all, *row.layers))
+        actions.append(do(layering.select_layers, *row.layers))
     if item("Show" if group.hidden else "Hide", icons.ICON_FA_EYE):
-        actions.append(do(layering.show_group, group.name))
+        actions.append(do(layering.toggle_group_hidden, group.name))
     locked = all(project.document.layer(each).locked for each in row.layers)
     if item("Unlock" if locked else "Lock", icons.ICON_FA_LOCK):
-        actions.append(do(layering.lock, *row.layers))
+        actions.append(do(layering.toggle_layers_locked, *row.layers))
     alone = project.solo == set(row.layers)
     if item("Look at all again" if alone else "Look at it alone", SOLO):
-        actions.append(do(layering.look_at_alone, *row.layers))
+        actions.append(do(layering.solo_layers, *row.layers))
     whole = subgroups_with_layers(project.document, group.name)
     free = len(row.layers) > 1 and all(
         project.document.switch_group_of(each) is None for each in row.layers
     )
     if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
-        actions.append(do(layering.form, *row.layers, name=row.name))
+        actions.append(do(layering.create_switch, *row.layers, name=row.name))
     if whole:
         draw_tooltip(explain_unswitchable_groups(whole))
     imgui.separator()
     if item("Ungroup", icons.ICON_FA_FOLDER_MINUS):
-        actions.append(do(layering.ungroup, group.name))
+        actions.append(do(layering.ungroup_layers, group.name))
     return actions

@@ -4,7 +4,7 @@ from imgui_bundle import imgui
 
 from app.document import subgroups_with_layers, suggest_switch_groups
 from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import files, playback, rebuilding
+from app.editor.actions import files, playback, resolving
 from app.errors import few_notices
 from app.ui.panels.layers.menus import explain_unswitchable_groups
 from app.ui.panels.layers.settings import draw_layer_settings
@@ -24,13 +24,13 @@ def draw_layers_panel(
         small_text(
             look, "Drop another picture here, or open an .ora or .psd file, for more layers."
         )
-    renewal = project.renewal
+    renewal = project.key_resolver
     if (
         renewal is not None
         and renewal.replaces_picture
         and progress_bar(renewal.progress, renewal.status_text)
     ):
-        actions.append(do(rebuilding.cancel))
+        actions.append(do(resolving.cancel_solving_keys))
     heading(look, shorten_text(project.layer.name, imgui.get_content_region_avail().x))
     frame = playback.current_frame(session, project)
     return actions + draw_layer_settings(project, look, project.layer, frame)
@@ -43,9 +43,9 @@ def _summary(look: Look, project: Project) -> list[Action]:
         return []
     count = len(summary.warnings)
     title = "Nothing looks different here" if not count else f"What looks different here: {count}"
-    imgui.set_next_item_open(project.shows_summary)
+    imgui.set_next_item_open(project.is_import_log_open)
     is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
-    actions = [do(files.fold_summary)] if imgui.is_item_toggled_open() else []
+    actions = [do(files.toggle_import_log)] if imgui.is_item_toggled_open() else []
     if not is_open:
         return actions
     for loss in few_notices(summary.warnings):
@@ -61,7 +61,7 @@ def _offers(look: Look, project: Project) -> list[Action]:
     """Draw the offers to let layers of a group take turns, where it is named like mouths."""
     actions: list[Action] = []
     for path, layers in suggest_switch_groups(project.document):
-        if path in project.declined:
+        if path in project.dismissed_suggestions:
             continue
         name = path.rpartition("/")[2]
         imgui.push_id(path)
@@ -70,9 +70,9 @@ def _offers(look: Look, project: Project) -> list[Action]:
         if whole:
             small_text(look, f"{explain_unswitchable_groups(whole)}.")
         if imgui.button("Let them take turns"):
-            actions.append(do(layering.form, *layers, name=name))
+            actions.append(do(layering.create_switch, *layers, name=name))
         imgui.same_line()
         if imgui.button("No"):
-            actions.append(do(layering.decline, path))
+            actions.append(do(layering.dismiss_switch_suggestion, path))
         imgui.pop_id()
     return actions

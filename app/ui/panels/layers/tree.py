@@ -59,8 +59,8 @@ def draw_layer_tree(
     imgui.dummy(ImVec2(0, 0))
     scroll_while_dragged(look, ROW)
     imgui.end_child()
-    if project.listed != project.active:
-        actions.append(do(layering.list_active))
+    if project.last_listed_layer != project.active:
+        actions.append(do(layering.note_listed_layer))
     return actions
 
 
@@ -75,21 +75,40 @@ def _bar(look: Look, project: Project) -> list[Action]:
             actions.append(action)
         imgui.same_line()
 
-    forward, back = (do(layering.move, active, index + by) for by in (1, -1))
+    forward, back = (do(layering.move_layer, active, index + by) for by in (1, -1))
     replace = "Replace the layer's picture by another file: handles, keys and joints stay"
     what = "the layer" if len(chosen) == 1 else f"the {len(chosen)} chosen layers"
     delete = f"Delete {what}" if last else "A scene has at least one layer"
     group = f"Put {what} in a group"
-    button(icons.ICON_FA_PLUS, "add layer", "Add a picture as a layer", do(layering.ask))
-    button(icons.ICON_FA_CLONE, "copy layer", "Duplicate the layer", do(layering.duplicate, active))
-    button(icons.ICON_FA_FILE_IMAGE, "replace picture", replace, do(layering.ask_replace, active))
+    button(
+        icons.ICON_FA_PLUS,
+        "add layer",
+        "Add a picture as a layer",
+        do(layering.ask_pictures_to_add),
+    )
+    button(
+        icons.ICON_FA_CLONE,
+        "copy layer",
+        "Duplicate the layer",
+        do(layering.duplicate_layer, active),
+    )
+    button(
+        icons.ICON_FA_FILE_IMAGE,
+        "replace picture",
+        replace,
+        do(layering.ask_replacement_picture, active),
+    )
     button(
         icons.ICON_FA_ARROW_UP, "raise", "Bring the layer forward", forward, enabled=index < last
     )
     button(icons.ICON_FA_ARROW_DOWN, "lower", "Send the layer back", back, enabled=index > 0)
-    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(layering.group_together))
+    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(layering.group_layers))
     button(
-        icons.ICON_FA_TRASH, "delete layer", delete, do(layering.remove, *chosen), enabled=last > 0
+        icons.ICON_FA_TRASH,
+        "delete layer",
+        delete,
+        do(layering.delete_layers, *chosen),
+        enabled=last > 0,
     )
     imgui.new_line()
     return actions
@@ -109,11 +128,11 @@ def _row(
     after = imgui.get_cursor_screen_pos()
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     is_active = layer is not None and layer.id == project.active
-    if is_active and project.listed != project.active and not imgui.is_item_visible():
+    if is_active and project.last_listed_layer != project.active and not imgui.is_item_visible():
         imgui.set_scroll_here_y(0.5)
     if layer is not None and imgui.is_mouse_hovering_rect(low, high):
         # While another program drags a file here, nothing else is hovered.
-        actions.append(do(layering.point_at, layer.id))
+        actions.append(do(layering.set_drop_target, layer.id))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     actions += drag_layer_row(look, project, row, low, high)
     _tell(project.document, row)
@@ -154,12 +173,12 @@ def _chosen(row: TreeRow) -> Action:
     """Return what a click on a row chooses: with Ctrl beside others, with Shift all up to there."""
     io = imgui.get_io()
     if io.key_ctrl:
-        return do(layering.choose_too, *row.layers)
+        return do(layering.toggle_layers_selected, *row.layers)
     if io.key_shift:
-        return do(layering.choose_up_to, row.layers[-1])
+        return do(layering.select_layers_up_to, row.layers[-1])
     if row.layer is not None:
-        return do(layering.choose, row.layer.id)
-    return do(layering.choose_all, *row.layers)
+        return do(layering.set_active_layer, row.layer.id)
+    return do(layering.select_layers, *row.layers)
 
 
 def _shown(document: Document, row: TreeRow, frame: int) -> Layer:
@@ -187,7 +206,7 @@ def _naming(
     document, layer = project.document, row.layer
     if asks or (layer is not None and session.named_layer == layer.id):
         imgui.open_popup(f"name {row.key}")
-        actions.append(do(layering.ask_name, None))
+        actions.append(do(layering.ask_layer_name, None))
     imgui.set_next_window_pos(low)
     taken: Sequence[str] = ()
     kind = "layer"
@@ -200,9 +219,9 @@ def _naming(
     if name is None:
         return actions
     if layer is not None:
-        return [*actions, do(layering.rename, layer.id, name)]
+        return [*actions, do(layering.rename_layer, layer.id, name)]
     if row.switch_group is not None:
-        return [*actions, do(layering.rename_choice, row.switch_group.name, name)]
+        return [*actions, do(layering.rename_switch, row.switch_group.name, name)]
     if row.group is not None:
         return [*actions, do(layering.rename_group, row.group.name, name)]
     return actions
@@ -244,7 +263,7 @@ def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
     icon = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
     colour = colour_u32(look.palette.text if is_hovered_or_held() else look.palette.dim)
     draw_centred_text(low, low + ImVec2(FOLD * em, ROW * em), icon, colour)
-    return [do(layering.toggle, row.toggle)] if clicked else []
+    return [do(layering.toggle_tree_row, row.toggle)] if clicked else []
 
 
 def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Action]:
@@ -258,7 +277,7 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
         hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
-            actions.append(do(layering.show_here, row.layers[0]))
+            actions.append(do(layering.key_switch, row.layers[0]))
         if not is_on:
             _ring(look)
     elif row.switch_group is not None:
@@ -271,16 +290,16 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
         hint = f"Show {what}" if hidden else f"Hide {what}, also in exports"
         if icon_button(look, eye, f"eye {row.key}", hint, active=hidden):
             actions.append(
-                do(layering.show, *_of_chosen(project, row))
+                do(layering.toggle_layers_hidden, *_of_chosen(project, row))
                 if group is None
-                else do(layering.show_group, group.name)
+                else do(layering.toggle_group_hidden, group.name)
             )
     imgui.same_line(0, 0)
     locked = all(layer.locked for layer in layers)
     key = icons.ICON_FA_LOCK if locked else icons.ICON_FA_LOCK_OPEN
     hint = "Let clicks reach it" if locked else "Let clicks pass through it"
     if icon_button(look, key, f"lock {row.key}", hint, active=locked):
-        actions.append(do(layering.lock, *_of_chosen(project, row)))
+        actions.append(do(layering.toggle_layers_locked, *_of_chosen(project, row)))
     return actions
 
 
@@ -316,7 +335,7 @@ def _picture(
     high = ImVec2(left.x + WIDE * em, left.y + half)
     draw_list = imgui.get_window_draw_list()
     draw_list.add_rect_filled(low, high, PAPER, 0.25 * em)
-    pixels = project.puppets[layer.id].small.value
+    pixels = project.layer_runtimes[layer.id].small.value
     picture = None if pixels is None else pictures(layer.id, pixels)
     if picture is None:
         icon = icons.ICON_FA_IMAGE if layer.still else icons.ICON_FA_PERSON

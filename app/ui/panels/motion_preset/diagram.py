@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, do
-from app.editor.actions import placing
-from app.editor.work import MotionDraft
+from app.editor.actions import joint_placement
+from app.editor.work import MotionSetup
 from app.ui.style import Look, colour_u32, draw_knob, draw_tooltip, is_pressed
 from app.ui.viewport import joint_colour
 from engine.geometry.motions import BodyKind
@@ -98,7 +98,7 @@ def draw_body_diagram(look: Look, kind: BodyKind, low: ImVec2, size: ImVec2, col
         draw_list.add_circle_filled(points_of["head"], 0.3 * look.em, colour)
 
 
-def draw_joint_diagram(look: Look, draft: MotionDraft, size: ImVec2) -> list[Action]:
+def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Action]:
     """Draw the joints of a draft: filled if they are there; a click adds one, or leaves it out."""
     kind, actions = draft.body_kind, list[Action]()
     low = imgui.get_cursor_screen_pos()
@@ -119,9 +119,14 @@ def draw_joint_diagram(look: Look, draft: MotionDraft, size: ImVec2) -> list[Act
         imgui.invisible_button(f"joint {name}", grip)
         is_hot = imgui.is_item_hovered()
         if is_pressed():
-            actions.append(do(placing.leave_out if is_there else placing.add, name))
+            actions.append(
+                do(
+                    joint_placement.exclude_joint if is_there else joint_placement.include_joint,
+                    name,
+                )
+            )
         draw_tooltip(f"{name}: click to {'leave it out' if is_there else 'add it'}")
-        radius = DOT * (1.25 if is_hot or name == draft.chosen else 1.0)
+        radius = DOT * (1.25 if is_hot or name == draft.selected_joint else 1.0)
         colour = joint_colour(look, name)
         if is_there:
             draw_knob(look, point, radius, colour)

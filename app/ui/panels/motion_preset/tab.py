@@ -4,8 +4,8 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import AppliedMotion, is_motion_unedited
 from app.editor import Action, Project, Session, do
-from app.editor.actions import drafting, giving, placing
-from app.editor.work import MotionDraft
+from app.editor.actions import apply_motion, joint_placement, preset_setup
+from app.editor.work import MotionSetup
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
 from app.ui.shortcuts import ALT, BINDINGS, format_modified
 from app.ui.style import (
@@ -38,14 +38,22 @@ LOOKS = {None: "As it seems", -1: "Left", 1: "Right"}
 
 def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the motion that is drafted, or how far it is; else those that the layer was given."""
-    errand, draft = project.errand, project.draft
+    errand, draft = project.motion_job, project.motion_setup
     if errand is not None:
-        heading(look, f"Giving it “{errand.draft.ready.label}”")
-        return [do(giving.cancel)] if progress_bar(errand.progress, errand.now) else []
+        heading(look, f"Giving it “{errand.setup.preset.label}”")
+        return (
+            [do(apply_motion.cancel_motion_job)]
+            if progress_bar(errand.progress, errand.step_label)
+            else []
+        )
     if draft is None:
         return _draw_applied_motions(session, look, project)
     # What ends it is seen however far the rest is scrolled.
-    lines = 1 + bool(drafting.hindrance(project)) + drafting.was_edited(project)
+    lines = (
+        1
+        + bool(preset_setup.apply_motion_disabled_reason(project))
+        + preset_setup.is_applied_motion_edited(project)
+    )
     below = (2.0 + 1.5 * lines) * look.em + imgui.get_frame_height()
     imgui.begin_child("draft", ImVec2(0, max(imgui.get_content_region_avail().y - below, 1.0)))
     actions = _kinds(look, draft) + _motions(look, draft)
@@ -84,14 +92,14 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
         small_text(look, "Edited by hand since: it stays as it is.")
     widths = split_line(2)
     if text_button("Change…", next(widths), "Give it once more, in another way"):
-        actions.append(do(drafting.begin_again, given))
+        actions.append(do(preset_setup.edit_applied_motion, given))
     hint = f"Let another motion follow from frame {given.last} on"
     if text_button("Follow it by…", next(widths), hint):
-        actions.append(do(drafting.begin_after, given))
+        actions.append(do(preset_setup.append_motion, given))
     return actions
 
 
-def _kinds(look: Look, draft: MotionDraft) -> list[Action]:
+def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw a button with a diagram for each kind of body."""
     actions: list[Action] = []
     heading(look, "What it is")
@@ -103,7 +111,7 @@ def _kinds(look: Look, draft: MotionDraft) -> list[Action]:
         size = ImVec2(width, KIND_HEIGHT * look.em)
         imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)
         if imgui.button(f"###{name} kind", size):
-            actions.append(do(drafting.choose_kind, name))
+            actions.append(do(preset_setup.set_body_kind, name))
         imgui.pop_style_color()
         draw_tooltip(f"{kind.label}. {kind.hint}")
         colour = colour_u32(palette.on_accent if is_chosen else palette.text)
@@ -113,7 +121,7 @@ def _kinds(look: Look, draft: MotionDraft) -> list[Action]:
     return actions
 
 
-def _joints(look: Look, draft: MotionDraft) -> list[Action]:
+def _joints(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw which joints are there."""
     heading(look, "Joints")
     if not draft.body_kind.parents:
@@ -130,7 +138,7 @@ def _joints(look: Look, draft: MotionDraft) -> list[Action]:
     widths = split_line(1 + has_sides)
     if has_sides:
         binding = BINDINGS["mirror joints"]
-        way = "left to right" if placing.mirrored_side(draft) == "L" else "right to left"
+        way = "left to right" if joint_placement.mirrored_side(draft) == "L" else "right to left"
         text = f"{binding.icon}  Mirror {way}###mirror joints"
         hint = f"{binding.hint}: from that of the joint that was touched last"
         if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
@@ -141,23 +149,23 @@ def _joints(look: Look, draft: MotionDraft) -> list[Action]:
     return actions
 
 
-def _motions(look: Look, draft: MotionDraft) -> list[Action]:
+def _motions(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw the motions that fit the kind."""
     heading(look, "What it does")
     actions: list[Action] = []
-    fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.courses]
+    fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.templates]
     rows = -(-len(fitting) // IN_A_ROW)
     width = -(-len(fitting) // rows)
     for row in range(0, len(fitting), width):
         options = [(motion.name, motion.label) for motion in fitting[row : row + width]]
         chosen = option_buttons(look, f"motions {row}", options, draft.motion)
         if chosen is not None:
-            actions.append(do(drafting.choose_motion, chosen))
-    small_text(look, f"{draft.ready.hint}.")
+            actions.append(do(preset_setup.set_motion_preset, chosen))
+    small_text(look, f"{draft.preset.hint}.")
     return actions
 
 
-def _parameters(look: Look, draft: MotionDraft) -> list[Action]:
+def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw how it is to be done."""
     heading(look, "How")
     actions: list[Action] = []
@@ -171,71 +179,73 @@ def _parameters(look: Look, draft: MotionDraft) -> list[Action]:
         label(look, text)
         entered = slider(look, name, getattr(now, name), scale, text=form, hint=hint)
         if entered is not None:
-            actions.append(do(drafting.set_parameters, **{name: scale.clamp(entered.value)}))
+            actions.append(
+                do(preset_setup.set_motion_parameters, **{name: scale.clamp(entered.value)})
+            )
     label(look, "Times")
     hint = "How often it is there, one after the other"
     entered = slider(look, "rounds", draft.rounds, REPEATS, text="%.0f", hint=hint)
     if entered is not None:
-        rounds = min(max(round(entered.value), 1), drafting.MOST_ROUNDS)
-        actions.append(do(drafting.set_up, rounds=rounds))
+        rounds = min(max(round(entered.value), 1), preset_setup.MOST_ROUNDS)
+        actions.append(do(preset_setup.set_motion_options, rounds=rounds))
     if draft.kind in {"biped-side", "four-legs"}:
         label(look, "Looks")
         options = [(str(way), text) for way, text in LOOKS.items()]
         chosen = option_buttons(look, "facing", options, str(draft.facing))
         if chosen is not None:
             ways = {str(way): way for way in LOOKS}
-            actions.append(do(drafting.set_up, facing=ways[chosen]))
+            actions.append(do(preset_setup.set_motion_options, facing=ways[chosen]))
     actions += _switches(look, draft)
     return actions
 
 
-def _switches(look: Look, draft: MotionDraft) -> list[Action]:
+def _switches(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw what is on or off."""
     actions: list[Action] = []
     now = draft.parameters
     changed, mirrored = imgui.checkbox("Mirrored", now.mirrored)
     draw_tooltip("As in a mirror: the other arm waves, a walk goes the other way")
     if changed:
-        actions.append(do(drafting.set_parameters, mirrored=mirrored))
-    if draft.ready.course(draft.kind).travels:
+        actions.append(do(preset_setup.set_motion_parameters, mirrored=mirrored))
+    if draft.preset.template_for(draft.kind).can_travel:
         imgui.same_line(0, 1.2 * look.em)
         changed, travels = imgui.checkbox("Travels", now.travel)
         draw_tooltip("It gets on in the picture, and does not loop; else it walks on the spot")
         if changed:
-            actions.append(do(drafting.set_parameters, travel=travels))
+            actions.append(do(preset_setup.set_motion_parameters, travel=travels))
     if draft.body_kind.parents:
         imgui.same_line(0, 1.2 * look.em)
         changed, bones = imgui.checkbox("Bones for limbs", draft.bones)
         draw_tooltip("Limbs bend at their joints alone, and keep their lengths")
         if changed:
-            actions.append(do(drafting.set_up, bones=bones))
+            actions.append(do(preset_setup.set_motion_options, bones=bones))
     return actions
 
 
-def _end(look: Look, project: Project, draft: MotionDraft) -> list[Action]:
+def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     """Draw what is replaced, and the buttons that give it or do not."""
     actions: list[Action] = []
     imgui.separator()
-    if draft.given is not None and drafting.was_edited(project):
+    if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(project):
         changed, replaces = imgui.checkbox("Replace what was edited by hand", draft.replaces_edits)
         if changed:
-            actions.append(do(drafting.set_up, replaces_edits=replaces))
+            actions.append(do(preset_setup.set_motion_options, replaces_edits=replaces))
     small_text(look, _where(project, draft))
-    reason = drafting.hindrance(project)
+    reason = preset_setup.apply_motion_disabled_reason(project)
     if reason:
         small_text(look, reason, look.palette.warning)
     widths = split_line(2)
     if main_button(look, "Give it###give", next(widths), enabled=not reason):
-        actions.append(do(giving.give))
+        actions.append(do(apply_motion.apply_motion_preset))
     draw_tooltip(reason or "Solve it key after key, and play it; it is one step of undo")
     if text_button("Cancel###no motion", next(widths), "", BINDINGS["pose"].shown_keys):
-        actions.append(do(drafting.give_up))
+        actions.append(do(preset_setup.close_motion_setup))
     return actions
 
 
-def _where(project: Project, draft: MotionDraft) -> str:
+def _where(project: Project, draft: MotionSetup) -> str:
     """Return in words where in time it will be."""
-    period = draft.ready.frames(draft.parameters, project.document.fps) * draft.rounds
-    if draft.given is not None:
-        return f"It takes the place of frames {draft.given.first} – {draft.given.last}."
+    period = draft.preset.frames(draft.parameters, project.document.fps) * draft.rounds
+    if draft.applied_motion is not None:
+        return f"It takes the place of frames {draft.applied_motion.first} – {draft.applied_motion.last}."
     return f"It begins at frame {draft.first} and takes {period} frames."

@@ -2,9 +2,9 @@
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import SwitchGroup, choice_commands, turn_frame, with_repeats
-from app.editor import Action, KeysOf, TurnDrag, do, layering
-from app.editor.actions import editing, playback, timeline_pointing
+from app.document import SwitchGroup, switch_group_commands, turn_frame, with_repeats
+from app.editor import Action, KeysByRow, TurnDrag, do, layering
+from app.editor.actions import editing, playback, timeline_drag
 from app.ui.style import (
     SMALL,
     begin_tooltip,
@@ -34,14 +34,14 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         left = low.x + INDENT * row.depth * em
         imgui.push_id(row.key)
         if bands.button("name", low, high):
-            actions.append(do(layering.choose_all, *row.layers))
+            actions.append(do(layering.select_layers, *row.layers))
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():
             imgui.text_unformatted("Click to choose all layers in it")
             imgui.end_tooltip()
         if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
-            actions.append(do(layering.toggle, row.toggle))
+            actions.append(do(layering.toggle_tree_row, row.toggle))
         caret = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
         icon = icons.ICON_FA_FOLDER if row.switch_group is None else icons.ICON_FA_MASKS_THEATER
         text = row.name
@@ -82,18 +82,18 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
     layers = [document.layer(identity) for identity in lane.row.layers]
-    chosen_of = bands.project.chosen_of
+    chosen_of = bands.project.selected_keys
     at: dict[int, list[int]] = {}
     for layer in layers:
         for index in bands.in_view(layer.keys):
             at.setdefault(layer.keys[index].frame, []).append(layer.id)
     for frame in sorted(at):
         x = bands.x(frame)
-        keys: KeysOf = {each: frozenset({frame}) for each in at[frame]}
+        keys: KeysByRow = {each: frozenset({frame}) for each in at[frame]}
         box = ImVec2(GRIP * em, GRIP * em)
         middle = ImVec2(x, lane.middle)
         if bands.button(f"keys {frame}", middle - box, middle + box):
-            actions += [do(editing.choose_keys_of, keys), do(playback.scrub, frame)]
+            actions += [do(editing.select_keys_in_rows, keys), do(playback.scrub, frame)]
         is_chosen = all(frame in chosen_of.get(row, ()) for row in keys)
         if begin_tooltip():
             count = f"{len(keys)} keys" if len(keys) > 1 else "A key"
@@ -124,7 +124,7 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup
         if imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of turn {start}")
         elif imgui.is_item_clicked():
-            actions.append(do(layering.choose, seen))
+            actions.append(do(layering.set_active_layer, seen))
         number = choice.count_keys_until(start)
         strength = 0.34 if is_hovered_or_held() else 0.24 - 0.08 * (number % 2)
         draw_list.add_rect_filled(low, high, colour_u32(palette.accent, strength), 0.2 * em)
@@ -162,14 +162,18 @@ def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action
         name = bands.project.document.layer(identity).name
         is_seen = choice.layer_at(start) == identity
         if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
-            actions.append(do(editing.edit, choice_commands.choose_at(identity, start)))
+            actions.append(
+                do(editing.edit_document, switch_group_commands.choose_at(identity, start))
+            )
     imgui.separator()
     keyed = turn_frame(
         bands.project.document, bands.project.document.switch_group(choice.name), start
     )
     is_change = any(turn.frame == keyed for turn in choice.keys[1:])
     if imgui.menu_item_simple("Delete", enabled=is_change):
-        actions.append(do(editing.edit, choice_commands.unchoose_at(choice.name, keyed)))
+        actions.append(
+            do(editing.edit_document, switch_group_commands.unchoose_at(choice.name, keyed))
+        )
     imgui.end_popup()
     return actions
 
@@ -179,7 +183,7 @@ def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int
     em, x = bands.look.em, bands.x(start)
     if not bands.shows(x - EDGE * em, x + EDGE * em):
         return []
-    drag = bands.project.timing.gesture
+    drag = bands.project.timeline.gesture
     if not isinstance(drag, TurnDrag) or (drag.choice, drag.at) != (choice.name, start):
         drag = None
     origin = start if drag is None else drag.turn
@@ -204,4 +208,4 @@ def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int
         before=document,
         after=document,
     )
-    return [do(timeline_pointing.begin, begun, bands.time_view)]
+    return [do(timeline_drag.begin_timeline_drag, begun, bands.time_view)]

@@ -14,7 +14,7 @@ from app.document import (
     visibility_keys,
 )
 from app.editor import Action, SwitchDrag, do
-from app.editor.actions import editing, playback, timeline_pointing
+from app.editor.actions import editing, playback, timeline_drag
 from app.ui.style import (
     CHOSEN,
     SMALL,
@@ -218,7 +218,7 @@ def _draw_visibility_key(
     frame, half = switch.frame, EYE * bands.look.em
     x = bands.x(frame)
     left = _left_of_eye(bands, row, frame)
-    drag = bands.project.timing.gesture
+    drag = bands.project.timeline.gesture
     if not isinstance(drag, SwitchDrag) or (drag.layer, drag.at) != (row.layer.id, frame):
         drag = None
     # By where it was before it was dragged, so that its button stays the same one.
@@ -269,8 +269,8 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
             before=document,
             after=document,
         )
-        return [do(timeline_pointing.begin, drag, bands.time_view)]
-    if bands.project.timing.gesture is None and begin_tooltip():
+        return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
+    if bands.project.timeline.gesture is None and begin_tooltip():
         imgui.text_unformatted(f"{'Shown' if switch.visible else 'Hidden'} from frame {frame} on")
         imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
         imgui.end_tooltip()
@@ -283,6 +283,6 @@ def _menu(row: LayerRow, frame: int) -> list[Action]:
     if imgui.begin_popup(f"menu of switch {frame}"):
         if imgui.menu_item_simple("Delete"):
             command = layer_commands.key_visibility(row.layer.id, frame, visible=None)
-            actions.append(do(editing.edit, command))
+            actions.append(do(editing.edit_document, command))
         imgui.end_popup()
     return actions

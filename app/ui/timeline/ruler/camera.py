@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import CameraKey
 from app.editor import Action, CameraDrag, do, layering
-from app.editor.actions import playback, timeline_pointing
+from app.editor.actions import playback, timeline_drag
 from app.ui.shortcuts import draw_action_item
 from app.ui.style import (
     Look,
@@ -43,7 +43,7 @@ def draw_camera_row(bands: TimelineLayout) -> list[Action]:
     draw_list.add_line(
         ImVec2(first, middle), ImVec2(last, middle), colour_u32(palette.dim, 0.5), 1.5
     )
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     for index in bands.in_view(document.camera):
         key = document.camera[index]
         x, origin = bands.x(key.frame), key.frame
@@ -73,10 +73,10 @@ def _point(bands: TimelineLayout, key: CameraKey) -> list[Action]:
         drag = CameraDrag(
             key=key.frame, at=key.frame, start=bands.pointed, before=document, after=document
         )
-        return [do(timeline_pointing.begin, drag, bands.time_view)]
+        return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"{MENU} {key.frame}")
-    if bands.project.timing.gesture is None and begin_tooltip():
+    if bands.project.timeline.gesture is None and begin_tooltip():
         imgui.text_unformatted(f"Camera, {key.zoom:.3g} times as large")
         imgui.same_line()
         imgui.text_disabled(f"{key.frame}, {format_seconds(key.frame, document.fps)}")

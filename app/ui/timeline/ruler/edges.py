@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Edge, EdgeDrag, do
-from app.editor.actions import keys, timeline_pointing
+from app.editor.actions import keys, timeline_drag
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
@@ -64,7 +64,7 @@ def _clear(bands: TimelineLayout, left: float, right: float) -> list[Action]:
         start, end = ImVec2(x - half, y - side * half), ImVec2(x + half, y + side * half)
         draw_list.add_line(start, end, colour, 0.12 * em)
     draw_tooltip("Clear the preview range: play all frames", BINDINGS["preview none"].shown_keys)
-    return [do(keys.play_all)] if clicked else []
+    return [do(keys.clear_preview_range)] if clicked else []
 
 
 def _edge(
@@ -79,7 +79,7 @@ def _edge(
     if is_pressed():
         actions.append(begin_edge_drag(bands, edge))
     if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
-        actions.append(do(keys.play_all))
+        actions.append(do(keys.clear_preview_range))
     return actions
 
 
@@ -87,7 +87,7 @@ def begin_edge_drag(bands: TimelineLayout, edge: Edge) -> Action:
     """Begin to drag an end."""
     document = bands.project.document
     drag = EdgeDrag(edge=edge, start=bands.pointed, before=document, after=document)
-    return do(timeline_pointing.begin, drag, bands.time_view)
+    return do(timeline_drag.begin_timeline_drag, drag, bands.time_view)
 
 
 def _animation_end(bands: TimelineLayout) -> list[Action]:
@@ -104,7 +104,7 @@ def _animation_end(bands: TimelineLayout) -> list[Action]:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     draw_tooltip(f"The animation ends at frame {last}: drag to make it longer or shorter")
     actions = [begin_edge_drag(bands, "animation end")] if is_pressed() else []
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     if isinstance(gesture, EdgeDrag) and gesture.edge == "animation end":
         draw_time_tag(bands, x, f"{last}")
     colour = colour_u32(palette.accent if hot else palette.dim, 1.0 if hot else 0.8)

@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import Marker
 from app.editor import Action, MarkerDrag, TimeGesture, do
-from app.editor.actions import keys, playback, timeline_pointing
+from app.editor.actions import keys, playback, timeline_drag
 from app.ui.shortcuts import draw_action_item
 from app.ui.style import (
     SMALL,
@@ -31,7 +31,7 @@ def draw_markers(bands: TimelineLayout) -> list[Action]:
     if not markers:
         return []
     actions: list[Action] = []
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     low, high = ImVec2(bands.left, bands.markers_top), ImVec2(bands.right, bands.track_bottom)
     draw_list = imgui.get_window_draw_list()
     draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
@@ -89,7 +89,7 @@ def _draw(bands: TimelineLayout, marker: Marker, x: float, text: str) -> None:
         with push_text_size(SMALL):
             place = ImVec2(x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
             draw_list.add_text(place, colour_u32(palette.text if hot else palette.dim), text)
-    gesture = bands.project.timing.gesture
+    gesture = bands.project.timeline.gesture
     if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
         draw_time_tag(bands, x, f"{marker.frame}")
 
@@ -98,7 +98,7 @@ def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
     document = bands.project.document
     if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
         imgui.open_popup(f"name of marker {marker.frame}")
-        return [do(timeline_pointing.end)]
+        return [do(timeline_drag.end_timeline_drag)]
     if is_pressed():
         drag = MarkerDrag(
             marker=marker.frame,
@@ -107,10 +107,10 @@ def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
             before=document,
             after=document,
         )
-        return [do(timeline_pointing.begin, drag, bands.time_view)]
+        return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"menu of marker {marker.frame}")
-    if bands.project.timing.gesture is None and begin_tooltip():
+    if bands.project.timeline.gesture is None and begin_tooltip():
         imgui.text_unformatted(marker.name)
         imgui.same_line()
         imgui.text_disabled(f"{marker.frame}, {format_seconds(marker.frame, document.fps)}")

@@ -3,8 +3,8 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.document import Layer, memoized_on
-from app.editor import Action, Scrub, do
-from app.editor.actions import timeline_pointing
+from app.editor import Action, ScrubDrag, do
+from app.editor.actions import timeline_drag
 from app.ui.style import (
     SMALL,
     colour_u32,
@@ -30,8 +30,8 @@ def draw_ruler(bands: TimelineLayout, frame: int) -> list[Action]:
     actions: list[Action] = []
     if is_pressed():
         actions += [
-            do(timeline_pointing.begin, Scrub(), bands.time_view),
-            do(timeline_pointing.move, bands.pointed, bands.row.layer.id),
+            do(timeline_drag.begin_timeline_drag, ScrubDrag(), bands.time_view),
+            do(timeline_drag.move_timeline_drag, bands.pointed, bands.row.layer.id),
         ]
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -103,9 +103,9 @@ def draw_playhead(bands: TimelineLayout, frame: int) -> list[Action]:
         bands.button("playhead", low, high)
         bands.look.note_place("playhead")
         if is_pressed():
-            scrub = Scrub(offset=frame - bands.pointed)
-            actions.append(do(timeline_pointing.begin, scrub, bands.time_view))
-        colour = palette.warning if bands.project.unkeyed is not None else palette.accent
+            scrub = ScrubDrag(offset=frame - bands.pointed)
+            actions.append(do(timeline_drag.begin_timeline_drag, scrub, bands.time_view))
+        colour = palette.warning if bands.project.unkeyed_pose is not None else palette.accent
         if is_hovered_or_held():
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         draw_list.push_clip_rect(*bands.bounds, intersect_with_current_clip_rect=True)
@@ -142,7 +142,11 @@ def draw_overview(bands: TimelineLayout, frame: int) -> list[Action]:
     strip, frames, em = bands.time_view, bands.project.document.frames, bands.look.em
     end = strip.frame(bands.width)
     low, high = min(frames.first, strip.start), max(frames.last, end)
-    if bands.is_cramped or bands.project.timing.strip is None or high - low <= end - strip.start:
+    if (
+        bands.is_cramped
+        or bands.project.timeline.time_range is None
+        or high - low <= end - strip.start
+    ):
         return []
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     top, bottom = bands.bottom - 0.5 * em, bands.bottom
@@ -174,5 +178,5 @@ def draw_overview(bands: TimelineLayout, frame: int) -> list[Action]:
     delta = imgui.get_io().mouse_delta.x
     if imgui.is_item_active() and delta:
         moved = strip.panned(delta / per_frame * strip.scale)
-        return [do(timeline_pointing.look_at, moved.kept_near(frames, bands.width))]
+        return [do(timeline_drag.set_time_range, moved.kept_near(frames, bands.width))]
     return []

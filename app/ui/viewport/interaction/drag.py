@@ -7,24 +7,24 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import (
     Action,
-    BoneMark,
-    BoxMark,
-    EntryMark,
-    JointMark,
-    KnifeMark,
+    AttachOverlay,
+    BoneOverlay,
+    BoxOverlay,
+    KnifeOverlay,
     Mark,
+    NumericEntryOverlay,
+    RotationOverlay,
     Session,
-    StrokeMark,
-    SweepMark,
+    StrokeOverlay,
     do,
 )
-from app.editor.tools import ERASE, pointing
+from app.editor.tools import ERASE, tool_pointer
 from app.ui.style import Look, colour_u32, draw_tag, outline_strokes, tag_size
 from app.ui.viewport.cutout_overlay import find_stroke_colour
 from app.ui.viewport.marks import transform_loops
 from app.ui.viewport.screen import ScreenMapping
 from app.ui.viewport.stiffness_overlay import draw_bone
-from engine.domain import SLIT_WIDTH
+from engine.domain import CUT_WIDTH
 from engine.geometry import box_diagonal
 
 DIGITS = "0123456789.,-"
@@ -35,28 +35,28 @@ HALF = 0.5  # pixels by which what is shown of one may be beside it
 
 def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[Action]:
     """Follow the pointer in what it began; end it where the button is let go."""
-    gesture = session.pointer
+    gesture = session.active_tool
     if gesture is None:
         return []
     if imgui.is_key_pressed(imgui.Key.escape) or imgui.is_mouse_clicked(imgui.MouseButton_.right):
-        return [do(pointing.cancel)]
-    draw_gesture_overlays(look, screen, gesture.marks)
+        return [do(tool_pointer.cancel_tool)]
+    draw_gesture_overlays(look, screen, gesture.tool_overlays)
     io, pointer = imgui.get_io(), screen.pointer
     actions: list[Action] = []
     # Only what is turned goes by steps; Ctrl let go after Ctrl+Z is not to pull once more.
-    is_turning = any(isinstance(mark, SweepMark) for mark in gesture.marks)
-    is_stepped = is_turning and io.key_ctrl != session.snaps
+    is_turning = any(isinstance(mark, RotationOverlay) for mark in gesture.tool_overlays)
+    is_stepped = is_turning and io.key_ctrl != session.is_snapping
     # What is recorded goes on in time while the pointer rests.
-    is_recorded = screen.project.take is not None and not screen.project.take.is_over
+    is_recorded = screen.project.recording is not None and not screen.project.recording.is_over
     if io.mouse_delta.x or io.mouse_delta.y or is_stepped or is_recorded:
-        move = pointing.move_in_steps if io.key_ctrl else pointing.move
+        move = tool_pointer.move_pointer_in_steps if io.key_ctrl else tool_pointer.move_pointer
         actions.append(do(move, pointer))
     characters = _typed()
     if characters:
-        actions.append(do(pointing.type_in, characters))
+        actions.append(do(tool_pointer.type_in_tool, characters))
     is_entered = any(map(imgui.is_key_pressed, (imgui.Key.enter, imgui.Key.keypad_enter)))
     if is_entered or not imgui.is_mouse_down(imgui.MouseButton_.left):
-        end = pointing.end_insisting if io.key_alt else pointing.end
+        end = tool_pointer.release_pointer_forced if io.key_alt else tool_pointer.release_pointer
         actions.append(do(end, pointer))
     return actions
 
@@ -65,44 +65,44 @@ def draw_gesture_overlays(look: Look, screen: ScreenMapping, marks: Iterable[Mar
     """Draw what marks a gesture over the picture."""
     for mark in marks:
         match mark:
-            case BoxMark():
+            case BoxOverlay():
                 low, high = screen.point(mark.corner), screen.point(mark.opposite)
                 draw_list, accent = imgui.get_window_draw_list(), look.palette.accent
                 draw_list.add_rect_filled(low, high, colour_u32(accent, 0.12))
                 draw_list.add_rect(low, high, colour_u32(accent, 0.8))
-            case StrokeMark():
+            case StrokeOverlay():
                 _draw_stroke(look, screen, mark)
-            case KnifeMark():
+            case KnifeOverlay():
                 _draw_cut(look, screen, mark.points)
-            case JointMark():
+            case AttachOverlay():
                 _draw_joint(look, screen, mark)
-            case EntryMark():
+            case NumericEntryOverlay():
                 _draw_entry(look, screen, mark)
-            case BoneMark():
+            case BoneOverlay():
                 colour = look.palette.danger if mark.is_refused else look.palette.accent
                 draw_bone(look, screen.point(mark.start), screen.point(mark.end), colour)
 
 
 def draw_pending_strokes(look: Look, screen: ScreenMapping) -> None:
     """Draw the strokes of the brush that the worker has not come to yet."""
-    layer, known = screen.project.layer, screen.project.puppet.cut.source
+    layer, known = screen.project.layer, screen.project.layer_runtime.cut.source
     done = () if known is None else known.strokes
     for stroke in layer.cut_out.strokes[len(done) :]:
         places = tuple(complex(place) for place in stroke.points + layer.corner)
-        mark = StrokeMark(points=places, radius=stroke.radius, keeps=stroke.keeps)
+        mark = StrokeOverlay(points=places, radius=stroke.radius, keeps=stroke.keeps)
         _draw_stroke(look, screen, mark)
 
 
 def draw_cuts(look: Look, screen: ScreenMapping) -> None:
     """Draw the lines along which the knife has parted, or is about to."""
     layer = screen.project.layer
-    for slit in layer.cut_out.slits:
+    for slit in layer.cut_out.cut_lines:
         _draw_cut(look, screen, (slit.points + layer.corner).tolist())
 
 
 def _draw_cut(look: Look, screen: ScreenMapping, places: Sequence[complex]) -> None:
     """Draw a line of the knife, as wide as the slit that comes of it."""
-    width = SLIT_WIDTH * box_diagonal(screen.project.layer.domain.outline) * screen.scale
+    width = CUT_WIDTH * box_diagonal(screen.project.layer.domain.outline) * screen.scale
     points = [screen.point(place) for place in places]
     draw_list = imgui.get_window_draw_list()
     for tone, breadth in outline_strokes(look, colour_u32(look.palette.accent), 0.1):
@@ -118,7 +118,7 @@ def _typed() -> str:
     return text + (ERASE if imgui.is_key_pressed(imgui.Key.backspace) else "")
 
 
-def _draw_entry(look: Look, screen: ScreenMapping, mark: EntryMark) -> None:
+def _draw_entry(look: Look, screen: ScreenMapping, mark: NumericEntryOverlay) -> None:
     """Draw the axis that a drag keeps to, and beside the pointer what was typed."""
     corner, room = imgui.get_window_pos(), imgui.get_window_size()
     if mark.direction is not None:
@@ -134,7 +134,7 @@ def _draw_entry(look: Look, screen: ScreenMapping, mark: EntryMark) -> None:
     draw_tag(look, ImVec2(left, top), mark.text)
 
 
-def _draw_stroke(look: Look, screen: ScreenMapping, mark: StrokeMark) -> None:
+def _draw_stroke(look: Look, screen: ScreenMapping, mark: StrokeOverlay) -> None:
     colour = colour_u32(find_stroke_colour(look, keeps=mark.keeps), STROKE)
     points = [screen.point(place) for place in mark.points]
     draw_list = imgui.get_window_draw_list()
@@ -156,13 +156,13 @@ def triangulate_stroke(way: Sequence[ImVec2], radius: float) -> list[tuple[ImVec
     return [(ImVec2(*one), ImVec2(*two), ImVec2(*three)) for one, two, three, _ in rings]
 
 
-def _draw_joint(look: Look, screen: ScreenMapping, mark: JointMark) -> None:
+def _draw_joint(look: Look, screen: ScreenMapping, mark: AttachOverlay) -> None:
     """Draw the way from the anchor to the pointer, and the outline of the layer there."""
     draw_list = imgui.get_window_draw_list()
     colour = look.palette.danger if mark.is_refused else look.palette.accent
     start, end = screen.point(mark.start), screen.point(mark.end)
-    parent = None if mark.parent is None else screen.project.puppets[mark.parent].shown
-    loops = [] if parent is None else map(parent.placement.on, transform_loops(parent))
+    parent = None if mark.parent is None else screen.project.layer_runtimes[mark.parent].shown
+    loops = [] if parent is None else map(parent.placement.apply, transform_loops(parent))
     edges = [screen.points(loop) for loop in loops]
     for tone, width in outline_strokes(look, colour_u32(colour), 0.16):
         for edge in edges:

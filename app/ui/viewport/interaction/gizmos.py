@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.editor import Session, SweepMark
+from app.editor import RotationOverlay, Session
 from app.editor.poses import flipping
 from app.ui.style import (
     Look,
@@ -43,24 +43,28 @@ class RotationGizmo(NamedTuple):
 
 def find_rotation_gizmo(session: Session, screen: ScreenMapping) -> RotationGizmo | None:
     """Return the ring around the one handle that is selected, where it can be turned."""
-    project, gesture = screen.project, session.pointer
-    held = next((m for m in gesture.marks if isinstance(m, SweepMark)), None) if gesture else None
-    is_posing = session.poses and not session.records and project.playhead.since is None
+    project, gesture = screen.project, session.active_tool
+    held = (
+        next((m for m in gesture.tool_overlays if isinstance(m, RotationOverlay)), None)
+        if gesture
+        else None
+    )
+    is_posing = session.is_posing and not session.records and project.playhead.since is None
     if not (is_posing and session.overlays.handles):
         return None
-    if any(project.layer.is_locked(handle) for handle in project.selected):
+    if any(project.layer.is_locked(handle) for handle in project.selected_handles):
         return None
-    if len(project.selected) != 1 or not (gesture is None or held is not None):
+    if len(project.selected_handles) != 1 or not (gesture is None or held is not None):
         return None
     shown = screen.shown
     found = zip(
         shown.clip.layer.handles, shown.handle_positions, shown.handle_rotations, strict=True
     )
     for handle, place, turn in found:
-        if handle.id in project.selected:
+        if handle.id in project.selected_handles:
             centre = screen.point(complex(place))
             if held is not None:
-                return RotationGizmo(centre, held.turn, is_dragged=True, swept=held.swept)
+                return RotationGizmo(centre, held.angle, is_dragged=True, swept=held.swept_angle)
             return RotationGizmo(centre, turn, is_dragged=False, swept=0.0)
     return None
 
@@ -96,7 +100,7 @@ class MirrorAxisGizmo(NamedTuple):
 
 def add_mirror_axis_gizmo(session: Session, look: Look, screen: ScreenMapping) -> MirrorAxisGizmo:
     """Lay a button over the grip of the axis, if it is shown."""
-    if not flipping.shows_axis(session, screen.project):
+    if not flipping.is_mirror_axis_shown(session, screen.project):
         return MirrorAxisGizmo()
     x, radius = screen.point(complex(screen.project.layer.axis)).x, AXIS_RADIUS * look.em
     imgui.set_cursor_screen_pos(_grip(look, x) - ImVec2(radius, radius))

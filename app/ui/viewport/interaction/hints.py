@@ -5,8 +5,8 @@ from functools import reduce
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Hint, Project, Session
-from app.editor.actions import guiding
-from app.editor.tools import Spot, tools_of
+from app.editor.actions import tutorials
+from app.editor.tools import PointerHit, tools_of
 from app.ui.shortcuts import ALT, BINDINGS, CTRL, SHIFT, ActionSpec, format_modified
 from app.ui.style import Look, colour_u32, draw_tooltip
 from app.ui.viewport.marks import find_auto_pinned
@@ -20,21 +20,23 @@ HINTS = (
 KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT, CTRL)}
 
 
-def find_hint(session: Session, screen: ScreenMapping, spot: Spot) -> str:
+def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     """Return what can be done where the pointer is."""
     project = screen.project
-    if session.pointer is not None:
-        return _sentence([*map(_format_hint, session.pointer.ways), "Esc takes it back"])
+    if session.active_tool is not None:
+        return _sentence(
+            [*map(_format_hint, session.active_tool.active_hints), "Esc takes it back"]
+        )
     if session.cutting is None and project.playhead.since is not None:
         return "Space stops"
-    if session.poses and not session.overlays.handles:
+    if session.is_posing and not session.overlays.handles:
         return "The handles are hidden: H shows them"
     told = [
         _format_hint(hint)
         for tool in tools_of(session)
         for hint in tool.hints(session, project, spot)
     ]
-    if not session.poses:
+    if not session.is_posing:
         return _sentence([*told, "Esc goes back"])
     if spot.handle is not None:
         if spot.handle in find_auto_pinned(screen.shown):
@@ -68,16 +70,16 @@ def draw_badges(
 ) -> list[Action]:
     """Tell what is special now: a pose that no key holds, a tool in hand, or what to do next."""
     top = corner + ImVec2(room.x / 2, look.em)
-    if project.unkeyed is not None:
+    if project.unkeyed_pose is not None:
         return _draw_pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
     mode = _mode(session, project)
     if mode:
         return draw_mode_badge(look, mode, corner, room)
-    if project.errand is not None:
+    if project.motion_job is not None:
         stop = BINDINGS["no motion"].shown_keys
-        return _draw_pill(look, f"{project.errand.now}: {stop} gives the motion up", top)
+        return _draw_pill(look, f"{project.motion_job.step_label}: {stop} gives the motion up", top)
     step = find_first_step(project)
-    if step is None or guiding.is_led(session):
+    if step is None or tutorials.is_tutorial_shown(session):
         return []
     return _draw_pill(look, HINTS[step], corner + ImVec2(room.x / 2, room.y - 3.2 * look.em))
 
@@ -88,7 +90,7 @@ def _mode(session: Session, project: Project) -> str:
         return "Moving the whole layer"
     if session.material is not None:
         return MODES[session.material]
-    if project.draft is not None:
+    if project.motion_setup is not None:
         return "Putting joints where they belong"
     return "Recording the next drag of a handle" if session.records else ""
 
@@ -107,7 +109,7 @@ def find_first_step(project: Project) -> int | None:
         return 0
     if len(layer.keys) > 1 or project.playhead.since is not None:
         return None
-    return 2 if guiding.is_posed(layer) else 1
+    return 2 if tutorials.is_first_pose_changed(layer) else 1
 
 
 def _draw_pill(

@@ -3,8 +3,8 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.editor import Session
-from app.editor.actions import placing
-from app.editor.tools import pointed
+from app.editor.actions import joint_placement
+from app.editor.tools import find_joint_near
 from app.ui.style import Look, colour_u32, draw_knob, draw_tag, outline_strokes, tag_size
 from app.ui.viewport.screen import ScreenMapping
 
@@ -14,10 +14,10 @@ DOT, LIMB = 0.42, 0.16  # em: radius of a joint, width of what is between two
 def draw_joints(session: Session, look: Look, screen: ScreenMapping) -> None:
     """Draw joints and what is between them, each side in its own colour, with the pointed name."""
     project = screen.project
-    draft = project.draft
+    draft = project.motion_setup
     if draft is None or project.playhead.since is not None:
         return
-    kind, places = draft.body_kind, placing.shown_joints(project)
+    kind, places = draft.body_kind, joint_placement.shown_joint_places(project)
     points = {name: screen.point(at) for name, at in places.items()}
     draw_list = imgui.get_window_draw_list()
     for name, point in points.items():
@@ -27,8 +27,12 @@ def draw_joints(session: Session, look: Look, screen: ScreenMapping) -> None:
                 draw_list.add_line(points[before], point, tone, width)
     for name, point in points.items():
         draw_knob(look, point, DOT, joint_colour(look, name))
-    hot = draft.chosen if session.pointer else pointed(session, project, screen.pointer)
-    for marked in dict.fromkeys((draft.chosen, hot)):
+    hot = (
+        draft.selected_joint
+        if session.active_tool
+        else find_joint_near(session, project, screen.pointer)
+    )
+    for marked in dict.fromkeys((draft.selected_joint, hot)):
         if marked in points:
             radius = 1.7 * DOT * look.em
             draw_list.add_circle(points[marked], radius, colour_u32(look.palette.text), 0, 1.5)

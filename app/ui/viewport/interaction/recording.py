@@ -25,7 +25,7 @@ def add_track_key_gizmos(
         Whether one was pressed.
     """
     hovered, pressed = None, False
-    if not session.poses or screen.project.playhead.since is not None:
+    if not session.is_posing or screen.project.playhead.since is not None:
         return hovered, pressed
     radius = ImVec2(KEY_GRIP * look.em, KEY_GRIP * look.em)
     for frame, place in find_path_keys(screen.project):
@@ -40,7 +40,7 @@ def add_track_key_gizmos(
 
 def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Action]:
     """Draw a bar with what can be done with a drag that was recorded, until that is decided."""
-    take = project.take
+    take = project.recording
     if take is None or not take.is_over:
         return []
     actions: list[Action] = []
@@ -62,14 +62,14 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
         )
         draw_tooltip("How far the motion may be beside what was recorded: the more, the fewer keys")
         if changed:
-            actions.append(do(tracking.smooth, min(max(percent, 0), 100) / 100))
+            actions.append(do(tracking.smooth_recording, min(max(percent, 0), 100) / 100))
         imgui.same_line()
         if imgui.button("Keep"):
-            actions.append(do(tracking.keep))
+            actions.append(do(tracking.accept_recording))
         draw_tooltip("Keep these keys, which can be changed like all others")
         imgui.same_line()
         if imgui.button("Again"):
-            actions.append(do(tracking.again))
+            actions.append(do(tracking.retry_recording))
         draw_tooltip("Take this back, and record the next drag")
     padding = ImVec2(PADDING * em, PADDING * em)
     low, high = imgui.get_item_rect_min() - padding, imgui.get_item_rect_max() + padding

@@ -3,8 +3,8 @@
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.editor import Action, Guide, GuideStep, Session, do
-from app.editor.actions import exporting, guiding
+from app.editor import Action, Session, TutorialStage, TutorialState, do
+from app.editor.actions import exporting, tutorials
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import SMALL, Look, colour_u32, draw_tooltip, main_button, push_text_size
 from app.ui.viewport import ScreenMapping
@@ -15,7 +15,7 @@ from engine.arrays import Complexes
 WIDTH, GAP, MARGIN = 19.0, 1.6, 0.8  # em: of the card, between it and what it points at, around it
 SPARSE = 16  # one vertex of so many tells where the drawing is
 NAME = "Guide"
-TITLES: dict[GuideStep, str] = {
+TITLES: dict[TutorialStage, str] = {
     "handle": "Add a handle",
     "time": "Go to another frame",
     "pose": "Pose again",
@@ -48,11 +48,11 @@ class Callout:
 
         `places` has where things were drawn in the frame before, by their names.
         """
-        guide, project = session.guide, session.project
+        guide, project = session.tutorial, session.project
         if guide is None or guide.project is not project or project is None:
             return []
         viewport = imgui.internal.find_window_by_name("###Viewport")
-        shown = project.puppet.shown
+        shown = project.layer_runtime.shown
         if session.dialog is not None or viewport is None or shown is None:
             return []
         screen = ScreenMapping(session, project, shown, viewport.pos)
@@ -83,26 +83,26 @@ class Callout:
         self,
         session: Session,
         look: Look,
-        guide: Guide,
+        guide: TutorialState,
         lead: TutorialStep,
         screen: ScreenMapping,
         rooms: list[Rect],
     ) -> None:
         """Find the card's place, unless it has one for what it tells now."""
         project = screen.project
-        if self._key and (session.pointer or project.timing.gesture):
+        if self._key and (session.active_tool or project.timeline.gesture):
             return
         boxes = lead.uncovered
         corners = [corner for box in (*rooms, *boxes) for corner in box]
         sides = (side / 4 for corner in corners for side in corner)
         # While it plays, the card stays where it is.
         pose = None if project.playhead.since is not None else screen.shown.pose
-        key = (guide.step, lead.text, *self._size, pose, *map(round, sides))
+        key = (guide.stage, lead.text, *self._size, pose, *map(round, sides))
         if key == self._key:
             return
         self._key = key
         placement = screen.shown.placement
-        around = placement.on(screen.shown.positions[::SPARSE])
+        around = placement.apply(screen.shown.positions[::SPARSE])
         drawing = _pixels(screen, around)
         self._corner = find_free_corner(self._size, boxes, rooms, drawing, GAP * look.em)
 
@@ -113,15 +113,15 @@ def _pixels(screen: ScreenMapping, places: Complexes) -> Complexes:
     return np.array([complex(point.x, point.y) for point in points])
 
 
-def _contents(session: Session, look: Look, guide: Guide, text: str) -> list[Action]:
+def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> list[Action]:
     """Write the card; return what its buttons ask for."""
     actions: list[Action] = []
-    palette, steps = look.palette, guiding.STEPS
-    is_done = guide.step == "done"
+    palette, steps = look.palette, tutorials.STEPS
+    is_done = guide.stage == "done"
     with push_text_size(1.0, look.bold):
-        imgui.text(TITLES[guide.step])
+        imgui.text(TITLES[guide.stage])
     count = (
-        f"{len(steps)} steps done" if is_done else f"{steps.index(guide.step) + 1} of {len(steps)}"
+        f"{len(steps)} steps done" if is_done else f"{steps.index(guide.stage) + 1} of {len(steps)}"
     )
     width = WIDTH * look.em
     with push_text_size(SMALL):
@@ -136,13 +136,13 @@ def _contents(session: Session, look: Look, guide: Guide, text: str) -> list[Act
             actions.append(do(exporting.open_folder, exported.out.parent))
         imgui.same_line()
     elif not is_done:
-        _dots(look, steps.index(guide.step), len(steps))
+        _dots(look, steps.index(guide.stage), len(steps))
     words = "Close" if is_done else "Leave"
     style = imgui.get_style()
     button = imgui.calc_text_size(words).x + 2 * style.frame_padding.x
     imgui.same_line(imgui.get_cursor_start_pos().x + width - button)
     if imgui.button(f"{words}###leave"):
-        actions.append(do(guiding.leave))
+        actions.append(do(tutorials.end_tutorial))
     draw_tooltip("End the guide; what you made stays", BINDINGS["leave guide"].shown_keys)
     return actions
 

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Guide, Project, Session
-from app.editor.actions import exporting, guiding
+from app.editor import Project, Session, TutorialState
+from app.editor.actions import exporting, tutorials
 from app.ui.panel import is_in_front
 from app.ui.shortcuts import BINDINGS
 from app.ui.style import Look
@@ -40,20 +40,20 @@ class TutorialStep(NamedTuple):
 
 
 def find_tutorial_step(
-    session: Session, look: Look, guide: Guide, screen: ScreenMapping, places: Places
+    session: Session, look: Look, guide: TutorialState, screen: ScreenMapping, places: Places
 ) -> TutorialStep:
     """Return what is to be done next, and where.
 
     `places` has where things were drawn in the frame before, by their names.
     """
-    hindrance = _hindrance(session) if guide.step in {"handle", "pose"} else ""
+    hindrance = _hindrance(session) if guide.stage in {"handle", "pose"} else ""
     return TutorialStep(hindrance) if hindrance else _to_step(session, look, guide, screen, places)
 
 
 def _to_step(
-    session: Session, look: Look, guide: Guide, screen: ScreenMapping, places: Places
+    session: Session, look: Look, guide: TutorialState, screen: ScreenMapping, places: Places
 ) -> TutorialStep:
-    match guide.step:
+    match guide.stage:
         case "handle":
             return _to_handle(look, guide, screen)
         case "time":
@@ -82,28 +82,30 @@ def _to_step(
 
 def _hindrance(session: Session) -> str:
     """Return what is to be done before handles can be added and dragged; empty where they can."""
-    if not session.poses:
+    if not session.is_posing:
         return f"Something else than posing is in hand: {BINDINGS['pose'].shown_keys} goes back."
     if not session.overlays.handles:
         return f"The handles are hidden: {BINDINGS['handles'].shown_keys} shows them."
     return ""
 
 
-def _to_handle(look: Look, guide: Guide, screen: ScreenMapping) -> TutorialStep:
-    if guide.aim is None:
+def _to_handle(look: Look, guide: TutorialState, screen: ScreenMapping) -> TutorialStep:
+    if guide.handle_place is None:
         return TutorialStep(
             "Click on a part that is to stay where it is, then on one that is to move. Each click "
             "adds a handle."
         )
     return TutorialStep(
         "Click on the nose. The handles that are there already hold legs and body in place.",
-        _ring(look, screen, guide.aim),
+        _ring(look, screen, guide.handle_place),
         is_round=True,
     )
 
 
-def _to_pose(look: Look, guide: Guide, screen: ScreenMapping, places: Places) -> TutorialStep:
-    if screen.project.unkeyed is not None:
+def _to_pose(
+    look: Look, guide: TutorialState, screen: ScreenMapping, places: Places
+) -> TutorialStep:
+    if screen.project.unkeyed_pose is not None:
         insert = BINDINGS["insert key"]
         return TutorialStep(
             f"Auto-key is off, so that no key has this pose: {insert.label} "
@@ -111,33 +113,33 @@ def _to_pose(look: Look, guide: Guide, screen: ScreenMapping, places: Places) ->
             _box(places, "insert key"),
         )
     layer, handles = screen.shown.clip.layer, screen.shown.handle_positions
-    if guide.aim is None or guide.goal is None:
+    if guide.handle_place is None or guide.target_place is None:
         newest = _ring(look, screen, complex(handles[-1])) if len(handles) else None
         text = "Drag one of the handles. A key with the new pose makes itself."
         return TutorialStep(text, newest, is_round=True)
     near = {
-        abs(handle.position - guide.aim): complex(place)
+        abs(handle.position - guide.handle_place): complex(place)
         for handle, place in zip(layer.handles, handles, strict=False)
     }
     reach = REACH * look.em / screen.scale
-    held = near[min(near)] if near and min(near) < reach else guide.aim
+    held = near[min(near)] if near and min(near) < reach else guide.handle_place
     return TutorialStep(
         "Drag the nose down to the ground. A key with the new pose makes itself.",
         _ring(look, screen, held),
-        _ring(look, screen, guide.goal),
+        _ring(look, screen, guide.target_place),
         is_round=True,
     )
 
 
 def _to_export(session: Session, project: Project, places: Places) -> TutorialStep:
-    if exporting.is_under_way(session):
+    if exporting.is_export_under_way(session):
         return TutorialStep("The GIF is being made.")
     if not is_in_front("Export"):
         window = imgui.internal.find_window_by_name("###Export")
         tab = None if window is None else window.dc.dock_tab_item_rect
         at = None if tab is None else Rect(tab.min, tab.max)
         return TutorialStep("Open the tab Export.", at, anywhere=True)
-    if project.document.export.format != guiding.FORMAT:
+    if project.document.export.format != tutorials.FORMAT:
         return TutorialStep("Choose GIF as the format.", _box(places, "format"))
     return TutorialStep(
         "Click Export, and choose where the GIF goes.", _box(places, "start export")

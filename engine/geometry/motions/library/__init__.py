@@ -9,7 +9,7 @@ Imports: the forms of motions beside it.
 from engine.geometry.motions.library.bipeds import JUMP, NOD, RUN, WALK, WAVE
 from engine.geometry.motions.library.chains import SLITHER, WAG
 from engine.geometry.motions.library.four_legs import TROT
-from engine.geometry.motions.library.wholes import BREATHE, HOP, SWAY
+from engine.geometry.motions.library.whole_body import BREATHE, HOP, SWAY
 
 MOTIONS = {
     "walk": WALK,

@@ -1,8 +1,8 @@
 """What goes on two legs; and how all walk."""
 
-from engine.geometry.motions.curves import Curve, even
+from engine.geometry.motions.curves import Curve, even_curve
+from engine.geometry.motions.leg_chains import STANDING, LimbMotion
 from engine.geometry.motions.library.four_legs import WALK_ON_FOUR
-from engine.geometry.motions.limbs import STANDING, Limbs
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.steps import Gait
 
@@ -18,38 +18,38 @@ WALK = Motion(
     hint="One foot after the other, arms against legs",
     seconds=1.0,
     keys=24,
-    courses={
-        "biped-side": Limbs(
-            gait=Gait(stance=0.6, stride=0.8, lift=0.1, falls=LEFT_RIGHT, roll=25, gathered=0.1),
-            rise=even(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
+    templates={
+        "biped-side": LimbMotion(
+            gait=Gait(stance=0.6, stride=0.8, lift=0.1, landings=LEFT_RIGHT, roll=25, gathered=0.1),
+            rise=even_curve(0.0, -0.02, 0.0, 0.02, 0.0, -0.02, 0.0, 0.02),
             turns={
-                "chest": even(-3, -4, -3, -2, -3, -4, -3, -2),
-                "head": even(3, 5, 3, 1, 3, 5, 3, 1),
-                "elbow": even(-17, 0, 17, 0),
-                "hand": even(2, 5, 14, 8),
-                "tail": even(0, 6, 0, -6),
+                "chest": even_curve(-3, -4, -3, -2, -3, -4, -3, -2),
+                "head": even_curve(3, 5, 3, 1, 3, 5, 3, 1),
+                "elbow": even_curve(-17, 0, 17, 0),
+                "hand": even_curve(2, 5, 14, 8),
+                "tail": even_curve(0, 6, 0, -6),
             },
             needed=FEET,
         ),
-        "biped-front": Limbs(
+        "biped-front": LimbMotion(
             gait=Gait(
                 stance=0.6,
                 stride=0.3,
                 lift=0.1,
-                falls=LEFT_RIGHT,
+                landings=LEFT_RIGHT,
                 gathered=0.0,
-                treads=False,
+                is_treadmill=False,
                 straight=0.997,
             ),
-            rise=even(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
-            shift=even(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
+            rise=even_curve(0.0, -0.02, 0.0, 0.025, 0.0, -0.02, 0.0, 0.025),
+            shift=even_curve(0.0, 0.06, 0.06, 0.0, -0.06, -0.06),
             turns={
-                "hips": even(0, -3, -3, 0, 3, 3),
-                "chest": even(0, -1, -1, 0, 1, 1),
-                "head": even(0, 3, 3, 0, -3, -3),
-                "elbow": even(-6, 2, 10, 2),
-                "hand": even(0, 4, 12, 6),
-                "tail": even(0, 6, 0, -6),
+                "hips": even_curve(0, -3, -3, 0, 3, 3),
+                "chest": even_curve(0, -1, -1, 0, 1, 1),
+                "head": even_curve(0, 3, 3, 0, -3, -3),
+                "elbow": even_curve(-6, 2, 10, 2),
+                "hand": even_curve(0, 4, 12, 6),
+                "tail": even_curve(0, 6, 0, -6),
             },
             needed=FEET,
         ),
@@ -64,53 +64,55 @@ RUN = Motion(
     hint="Long steps, and a moment in the air between them",
     seconds=2 / 3,
     keys=24,
-    courses={
-        "biped-side": Limbs(
-            gait=Gait(stance=0.38, stride=1.15, lift=0.15, falls=LEFT_RIGHT, gathered=0.1, roll=30),
+    templates={
+        "biped-side": LimbMotion(
+            gait=Gait(
+                stance=0.38, stride=1.15, lift=0.15, landings=LEFT_RIGHT, gathered=0.1, roll=30
+            ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
             ),
             turns={
-                "chest": even(-9, -11, -9, -8, -9, -11, -9, -8),
-                "head": even(7, 9, 7, 6, 7, 9, 7, 6),
-                "elbow": even(-21, 0, 21, 0),
-                "hand": even(10, 13, 20, 15),
-                "tail": even(0, 9, 0, -9),
+                "chest": even_curve(-9, -11, -9, -8, -9, -11, -9, -8),
+                "head": even_curve(7, 9, 7, 6, 7, 9, 7, 6),
+                "elbow": even_curve(-21, 0, 21, 0),
+                "hand": even_curve(10, 13, 20, 15),
+                "tail": even_curve(0, 9, 0, -9),
             },
             needed=FEET,
         ),
-        "biped-front": Limbs(
+        "biped-front": LimbMotion(
             gait=Gait(
                 stance=0.36,
                 stride=0.5,
                 lift=0.2,
-                falls=LEFT_RIGHT,
+                landings=LEFT_RIGHT,
                 gathered=0.0,
-                treads=False,
+                is_treadmill=False,
                 straight=0.997,
             ),
             rise=Curve(
                 ((0.0, 0.0), (0.17, -0.05), (0.42, 0.05), (0.5, 0.0), (0.67, -0.05), (0.92, 0.05))
             ),
-            shift=even(0.0, 0.04, 0.04, 0.0, -0.04, -0.04),
+            shift=even_curve(0.0, 0.04, 0.04, 0.0, -0.04, -0.04),
             turns={
-                "hips": even(0, -3, -3, 0, 3, 3),
-                "chest": even(0, -1, -1, 0, 1, 1),
-                "head": even(0, 3, 3, 0, -3, -3),
-                "elbow": even(-4, 8, 22, 8),
-                "hand": even(6, 14, 28, 16),
-                "tail": even(0, 9, 0, -9),
+                "hips": even_curve(0, -3, -3, 0, 3, 3),
+                "chest": even_curve(0, -1, -1, 0, 1, 1),
+                "head": even_curve(0, 3, 3, 0, -3, -3),
+                "elbow": even_curve(-4, 8, 22, 8),
+                "hand": even_curve(6, 14, 28, 16),
+                "tail": even_curve(0, 9, 0, -9),
             },
             needed=FEET,
         ),
     },
 )
 
-_RAISED = even(0, 20, 38, 41, 38, 41, 38, 41, 38, 28, 8, 0)
-_SHAKEN = even(0, 18, 60, 30, 60, 30, 60, 30, 60, 30, 8, 0)
+_RAISED = even_curve(0, 20, 38, 41, 38, 41, 38, 41, 38, 28, 8, 0)
+_SHAKEN = even_curve(0, 18, 60, 30, 60, 30, 60, 30, 60, 30, 8, 0)
 _GREETING = {
-    "chest": even(0, 1, 2, 3, 2, 3, 2, 3, 2, 1, 0, 0),
-    "head": even(0, 2, 4, 2, 4, 2, 4, 2, 4, 2, 0, 0),
+    "chest": even_curve(0, 1, 2, 3, 2, 3, 2, 3, 2, 1, 0, 0),
+    "head": even_curve(0, 2, 4, 2, 4, 2, 4, 2, 4, 2, 0, 0),
 }
 WAVE = Motion(
     name="wave",
@@ -118,8 +120,8 @@ WAVE = Motion(
     hint="An arm goes up, waves and comes down",
     seconds=2.0,
     keys=24,
-    courses={
-        kind: Limbs(
+    templates={
+        kind: LimbMotion(
             turns=_GREETING,
             single={"elbow.R": _RAISED, "hand.R": _SHAKEN},
             needed=("hips",),
@@ -135,19 +137,19 @@ NOD = Motion(
     hint="The head says yes, twice",
     seconds=1.5,
     keys=24,
-    courses={
-        "biped-side": Limbs(
+    templates={
+        "biped-side": LimbMotion(
             turns={
-                "chest": even(0, -2, -1, -2, -1, 0),
-                "neck": even(0, -5, 1, -4, 1, 0),
-                "head": even(0, -5, -14, -4, 3, -4, -12, -4, 2, 1, 0, 0),
+                "chest": even_curve(0, -2, -1, -2, -1, 0),
+                "neck": even_curve(0, -5, 1, -4, 1, 0),
+                "head": even_curve(0, -5, -14, -4, 3, -4, -12, -4, 2, 1, 0, 0),
             },
             needed=("hips", "head"),
         ),
         # From the front a head that nods comes down and up again.
-        "biped-front": Limbs(
-            turns={"head": even(0, 1, 2, 1, 0, -1, -2, -1)},
-            rise=even(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
+        "biped-front": LimbMotion(
+            turns={"head": even_curve(0, 1, 2, 1, 0, -1, -2, -1)},
+            rise=even_curve(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
             gait=STANDING,
             needed=("hips", "head"),
         ),
@@ -155,12 +157,12 @@ NOD = Motion(
 )
 
 # Crouch, take off, fly, land, and come up.
-_LEAP = Limbs(
+_LEAP = LimbMotion(
     gait=Gait(
         stance=0.62,
         stride=0.0,
         lift=0.26,
-        falls=(("foot.L", 0.72), ("foot.R", 0.72)),
+        landings=(("foot.L", 0.72), ("foot.R", 0.72)),
         gathered=0.0,
         roll=16,
     ),
@@ -203,16 +205,16 @@ JUMP = Motion(
     hint="Crouch, leap, land and rise again",
     seconds=1.25,
     keys=15,
-    courses={"biped-side": _LEAP, "biped-front": _LEAP},
+    templates={"biped-side": _LEAP, "biped-front": _LEAP},
 )
 
 # As a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
-LEAPING = Limbs(
+LEAPING = LimbMotion(
     gait=Gait(
         stance=0.42,
         stride=0.75,
         lift=0.22,
-        falls=(("foot.L", 0.0), ("foot.R", 0.0)),
+        landings=(("foot.L", 0.0), ("foot.R", 0.0)),
         gathered=0.0,
         roll=20,
     ),

@@ -9,7 +9,7 @@ SLITHER = Motion(
     hint="A wave runs from the head to the tail",
     seconds=1.5,
     keys=12,
-    courses={"chain": Wave(degrees=32, waves=1.0, first=0.6)},
+    templates={"chain": Wave(degrees=32, waves=1.0, first=0.6)},
 )
 
 WAG = Motion(
@@ -18,5 +18,5 @@ WAG = Motion(
     hint="It is held at its first joint and swings, its tip last",
     seconds=1.0,
     keys=12,
-    courses={"chain": Wave(degrees=34, waves=0.35, first=0.15, held=True)},
+    templates={"chain": Wave(degrees=34, waves=0.35, first=0.15, held=True)},
 )

@@ -3,17 +3,17 @@
 In: in-betweens, and targets for handles during a segment.
 Out: h and q (`engine.deform.correction`) as few functions times series in time, folded into
 in-betweens.
-Imports: `engine.deform.correction`, `engine.interpolation.passage` and its series.
+Imports: `engine.deform.correction`, `engine.interpolation.keyframe_blend` and its series.
 """
 
-from engine.interpolation.added.pins.folded import (
-    FoldedCorrection as FoldedCorrection,
+from engine.interpolation.added.pins.evaluated import (
+    EvaluatedCorrection as EvaluatedCorrection,
     Mixing as Mixing,
     SpanBasis as SpanBasis,
 )
 from engine.interpolation.added.pins.pinning import (
-    BaseAt as BaseAt,
+    CorrectionBase as CorrectionBase,
     CorrectionSeries as CorrectionSeries,
-    pin as pin,
+    fit_pin_corrections as fit_pin_corrections,
 )
 from engine.interpolation.added.pins.targets import SegmentPins as SegmentPins

@@ -12,12 +12,12 @@ from engine.deform.correction import (
     PointCorrector,
     PointSolution,
     extremes,
-    largest_share,
-    limits_of,
-    solve,
+    frame_limits,
+    max_feasible_share,
+    solve_correction,
 )
 from engine.interpolation.added.pins.targets import SegmentPins
-from engine.interpolation.series import PiecewiseSeries, one, separate
+from engine.interpolation.series import PiecewiseSeries, constant_one, separate_variables
 from engine.maps import Bounds
 
 # Of the series and of what they leave out, where unknowns are about |h| and places over the size
@@ -27,7 +27,7 @@ SHORTEST = 2.0**-3  # pieces of time are not halved below this
 DEGREES = (8, 16)
 
 
-class BaseAt(NamedTuple):
+class CorrectionBase(NamedTuple):
     """An in-between that is to be corrected, at a time.
 
     Parameters
@@ -73,7 +73,7 @@ class CorrectionSeries:
         known = corrector.variables
         h, q = np.split(x, 2)
         return cls(
-            series=one(),
+            series=constant_one(),
             h=freeze((known.h @ h)[:, None]),
             q=freeze((known.q @ q)[:, None]),
             shifts=freeze(np.array([shift])),
@@ -85,9 +85,9 @@ class CorrectionSeries:
         return moved
 
 
-def pin(
+def fit_pin_corrections(
     corrector: PointCorrector,
-    base_at: Callable[[float], BaseAt],
+    base_at: Callable[[float], CorrectionBase],
     pins: SegmentPins,
     bounds: Bounds,
 ) -> CorrectionSeries:
@@ -107,7 +107,7 @@ def pin(
     solved: dict[float, PointSolution] = {}
     share = 1.0
     ends = [extremes(corrector, base_at(time).samples, known.nothing) for time in (0.0, 1.0)]
-    limits = limits_of(bounds, *ends)
+    limits = frame_limits(bounds, *ends)
 
     def at(time: float) -> Floats:
         nonlocal share
@@ -115,14 +115,14 @@ def pin(
         targets = pins.targets(time, base.places, base.anchor)
         near = min(solved, key=lambda other: abs(other - time), default=None)
         start = None if near is None else solved[near]
-        solved[time] = found = solve(corrector, base.nodes, targets, start, throw=False)
-        share = min(share, largest_share(corrector, base.samples, found.x, limits))
+        solved[time] = found = solve_correction(corrector, base.nodes, targets, start, throw=False)
+        share = min(share, max_feasible_share(corrector, base.samples, found.x, limits))
         return np.append(found.x, [found.shift.real / size, found.shift.imag / size])
 
     def values(times: Floats) -> Floats:
         return np.array([at(time) for time in times.tolist()]).T
 
-    forms, series = separate(
+    forms, series = separate_variables(
         values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
     )
     # One share for all of the segment: a limit that is reached for a moment makes no jolt.

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
-from engine.deform.correction import Targets
-from engine.geometry import best_rigid
+from engine.deform.correction import PointTargets
+from engine.geometry import fit_rigid
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -40,7 +40,7 @@ class SegmentPins:
     firmness: Floats
     is_anchored: bool
 
-    def targets(self, time: float, places: Complexes, anchor: complex) -> Targets:
+    def targets(self, time: float, places: Complexes, anchor: complex) -> PointTargets:
         """Return where handles are wanted that the base has at places (m,), and its anchor."""
         rest = 1.0 - time
         wanted = self.ends[0] + time * time * (3.0 - 2.0 * time) * (self.ends[1] - self.ends[0])
@@ -48,6 +48,6 @@ class SegmentPins:
         offsets = np.where(self.is_pinned, wanted - places, moving)
         fading = rest**3 * self.weights[0] + time**3 * self.weights[1]
         weights = np.where(self.is_pinned, 1.0, fading)
-        motion = best_rigid(places, offsets, weights, anchor if self.is_anchored else None)
-        rigid = motion.on(places) - places
-        return Targets(rigid + weights * (offsets - rigid), self.firmness, self.is_anchored)
+        motion = fit_rigid(places, offsets, weights, anchor if self.is_anchored else None)
+        rigid = motion.apply(places) - places
+        return PointTargets(rigid + weights * (offsets - rigid), self.firmness, self.is_anchored)

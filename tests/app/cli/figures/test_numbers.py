@@ -64,7 +64,7 @@ def test_figure_5_the_others_exceed_them(s_to_u, method):
 def test_figure_5_its_keyframe_is_certified(s_to_u):
     domain = s_to_u.shape.domain
     boundary = Boundary.sample(domain)
-    assert certify(s_to_u.second, boundary, s_to_u.bounds).certified
+    assert certify(s_to_u.second, boundary, s_to_u.bounds).is_certified
     assert s_to_u.bounds == Bounds(k=0.08, sigma_a=5.0, sigma_b=0.2)
 
 

@@ -87,9 +87,9 @@ def test_what_is_seen_is_zoomed_and_turned_counter_clockwise_around_the_centre()
     document = filmed([CameraKey(frame=0, centre=30 + 40j, zoom=2.0, turn=pi / 2)])
     seen = camera_at(document, 0).canvas_motion((200, 100))
     # What lies to the right of the centre is seen above it.
-    places = seen.on(np.array([30 + 40j, 35 + 40j]))
+    places = seen.apply(np.array([30 + 40j, 35 + 40j]))
     assert_allclose(places, [100 + 50j, 100 + 60j], rtol=0, atol=1e-12)
-    assert seen.back(100 + 60j) == pytest.approx(35 + 40j, abs=1e-12)
+    assert seen.apply_inverse(100 + 60j) == pytest.approx(35 + 40j, abs=1e-12)
 
 
 def test_in_a_loop_the_camera_comes_round():
@@ -127,11 +127,11 @@ def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
     layer = document.layers[0]
     motion = transform_at(document, layer, 8)
     assert abs(layer.pivot - CENTRE) < 1e-9
-    places = motion.on(np.array([layer.pivot, layer.pivot + 1]))
+    places = motion.apply(np.array([layer.pivot, layer.pivot + 1]))
     assert_allclose(places, layer.pivot + 10 + 5j + np.array([0, 1j]), rtol=0, atol=1e-9)
     assert abs(transform_at(document, layer, 3.7).factor) == pytest.approx(1, abs=1e-15)
     by_anchor = replace(layer, anchor=80 + 90j)
-    assert transform_at(document, by_anchor, 8).on(np.array([80 + 90j]))[0] == pytest.approx(
+    assert transform_at(document, by_anchor, 8).apply(np.array([80 + 90j]))[0] == pytest.approx(
         90 + 95j, abs=1e-9
     )
 

@@ -15,7 +15,7 @@ from app.document.queries.timeline import segment_time_at
 from app.document.settings import FrameRange
 from app.document.timing import HOLD, LINEAR, PRESETS, Easing
 from app.errors import LissomError
-from engine.interpolation import Joint
+from engine.interpolation import InteriorKnot
 
 EMPTY = disc_document()
 POSES = [random_pose(random.default_rng(seed), EMPTY) for seed in range(6)]
@@ -37,7 +37,7 @@ def ends(clip):
 
 def test_new_keys_between_others_are_passed_through():
     clip = keyed(0, 10, 30, 48)
-    one, other = Joint(10, 20), Joint(20, 18)
+    one, other = InteriorKnot(10, 20), InteriorKnot(20, 18)
     assert ends(clip) == [(1.0, one), (one, other), (other, 1.0)]
     frames = [[key.frame for key in transit.keys] for transit in pose_segments(clip)]
     assert frames == [[0, 10, 30], [0, 10, 30, 48], [10, 30, 48]]
@@ -62,7 +62,7 @@ def test_a_corner_and_a_stop_take_no_heed_of_other_keys():
 
 def test_in_a_loop_the_motion_passes_its_first_and_last_key():
     closing = keyed(0, 10, 30, loop=True)
-    joints = [Joint(18, 10), Joint(10, 20), Joint(20, 18)]
+    joints = [InteriorKnot(18, 10), InteriorKnot(10, 20), InteriorKnot(20, 18)]
     assert ends(closing) == [(joints[i], joints[(i + 1) % 3]) for i in range(3)]
     frames = [[key.frame for key in transit.keys] for transit in pose_segments(closing)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 0], [10, 30, 0, 10]]
@@ -93,17 +93,17 @@ def test_a_pose_that_is_given_twice_is_kept():
 
 def numbers(end):
     """Return how a key is passed as numbers."""
-    return astuple(end) if isinstance(end, Joint) else (end,)
+    return astuple(end) if isinstance(end, InteriorKnot) else (end,)
 
 
 @pytest.mark.parametrize(
     ("before", "after", "reached", "left"),
     [
-        ("in-out", "in-out", Joint(10, 20), Joint(10, 20)),
+        ("in-out", "in-out", InteriorKnot(10, 20), InteriorKnot(10, 20)),
         ("in-out", "linear", 1.0, 0.0),
         ("linear", "in", 0.0, 1.0),
-        ("in", "linear", *2 * [Joint(10, 20, end_pace=1 / 0.58)]),
-        ("linear", "out", *2 * [Joint(10, 20, start_pace=1 / 0.58)]),
+        ("in", "linear", *2 * [InteriorKnot(10, 20, end_pace=1 / 0.58)]),
+        ("linear", "out", *2 * [InteriorKnot(10, 20, start_pace=1 / 0.58)]),
     ],
 )
 def test_easings_beside_a_key_agree_on_its_velocity(before, after, reached, left):

@@ -27,13 +27,15 @@ def session(tmp_path):
 
 def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
     project, before = session.project, session.project.document
-    assert pasting.why_not(session, project, "as it is") == "Copy a pose or keys first."
+    assert (
+        pasting.paste_disabled_reason(session, project, "as it is") == "Copy a pose or keys first."
+    )
     go(session, 6)
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     bent = project.layer.key(6).pose
     for frame, frames in ((3, {0, 3, 6}), (0, {0, 6})):
         go(session, frame)
-        pasting.paste(session)
+        pasting.paste_copied(session)
         assert project.layer.key_frames == frames
         pose = project.layer.key(frame).pose
         assert (pose.phi is bent.phi, pose.psi is bent.psi) == (True, True)
@@ -44,9 +46,9 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
 
 
 def test_in_the_timeline_the_one_chosen_key_is_copied_wherever_the_playhead_is(session):
-    editing.choose_keys(session, frozenset({6}))
-    for session.in_timeline, frame in ((True, 6), (False, 0)):
-        copying.copy(session)
+    editing.select_keys(session, frozenset({6}))
+    for session.is_timeline_focused, frame in ((True, 6), (False, 0)):
+        copying.copy_pose_or_keys(session)
         assert session.copied[0].keys[0].pose is session.project.layer.key(frame).pose
 
 
@@ -54,10 +56,10 @@ def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     project = session.project
     editing.edit_layer(session, key_commands.set_easing, {0}, HOLD)
     before = project.document
-    editing.choose_keys(session, frozenset({0, 6}))
+    editing.select_keys(session, frozenset({0, 6}))
     copying.copy_keys(session)
     go(session, 4)
-    pasting.paste(session)
+    pasting.paste_copied(session)
     assert project.layer.key_frames == {0, 4, 6, 10}
     assert project.chosen == {4, 10}
     assert project.layer.key(4).pose is project.layer.key(0).pose
@@ -70,13 +72,13 @@ def test_several_keys_are_pasted_with_their_ways_and_distances(session):
 
 def test_only_the_selected_handles_take_what_was_copied(session):
     project = session.project
-    editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
+    editing.edit_document(session, handle_commands.add_handle(0, 40 + 45j))
     go(session, 6)
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     bent = project.layer.key(6).pose.targets
     go(session, 0)
-    assert "Select" in pasting.why_not_on_selected(session, project, "as it is")
-    editing.select(session, frozenset({1}))
+    assert "Select" in pasting.paste_on_selected_disabled_reason(session, project, "as it is")
+    editing.select_handles(session, frozenset({1}))
     pasting.paste_on_selected(session)
     settle(session)
     targets = project.layer.key(0).pose.targets
@@ -87,25 +89,25 @@ def test_only_the_selected_handles_take_what_was_copied(session):
 
 def test_an_in_between_is_copied_as_the_nearest_pose(session):
     go(session, 3)
-    between = session.project.puppet.shown.positions
-    copying.copy(session)
+    between = session.project.layer_runtime.shown.positions
+    copying.copy_pose_or_keys(session)
     settle(session)
     go(session, 0)
-    pasting.paste(session)
+    pasting.paste_copied(session)
     settle(session)
     size = np.ptp(between.real)
     np.testing.assert_allclose(
-        session.project.puppet.shown.positions, between, rtol=0, atol=0.02 * size
+        session.project.layer_runtime.shown.positions, between, rtol=0, atol=0.02 * size
     )
 
 
 def test_a_pose_is_pasted_with_the_handles_of_now(session):
     project = session.project
     go(session, 6)
-    copying.copy(session)
-    editing.edit(session, handle_commands.add_handle(0, 40 + 45j))
-    editing.edit(session, handle_commands.remove_handles(0, frozenset({0})))
-    pasting.paste(session)
+    copying.copy_pose_or_keys(session)
+    editing.edit_document(session, handle_commands.add_handle(0, 40 + 45j))
+    editing.edit_document(session, handle_commands.remove_handles(0, frozenset({0})))
+    pasting.paste_copied(session)
     pose = project.layer.key(6).pose
     assert set(pose.targets) == {1}
     assert project.layer.lags(pose)[1] == pytest.approx(0.0, abs=1e-9)
@@ -114,25 +116,25 @@ def test_a_pose_is_pasted_with_the_handles_of_now(session):
 def test_a_pose_is_proven_against_the_limits_of_now(session):
     project = session.project
     go(session, 6)
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     tighter = replace(NATURAL.bounds, sigma_a=1.01)
     editing.edit_layer(session, shape_commands.set_limits, tighter)
     go(session, 3)
-    pasting.paste(session)
+    pasting.paste_copied(session)
     layer = project.layer
     pose = layer.key(3).pose
     boundary = Boundary.sample(layer.domain)
     assert pose.certificate == certify(layer.map_of(pose), boundary, tighter)
-    assert not pose.certificate.certified
+    assert not pose.certificate.is_certified
 
 
 def test_a_pose_of_another_shape_cannot_be_pasted(session):
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     session.project = project_of(moving_document(cut_out=PARTED), BLANK, "other")
     before = session.project.document
     settle(session)
-    assert "no handle called" in pasting.why_not(session, session.project, "as it is")
-    pasting.paste(session)
+    assert "no handle called" in pasting.paste_disabled_reason(session, session.project, "as it is")
+    pasting.paste_copied(session)
     assert session.project.document is before
 
 
@@ -140,17 +142,17 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     project = session.project
     session.preferences = Preferences(auto_key=False)
     go(session, 6)
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     go(session, 0)
-    editing.select(session, frozenset({0}))
-    posing.nudge(session, 4j)
+    editing.select_handles(session, frozenset({0}))
+    posing.nudge_handles(session, 4j)
     settle(session)
     unkeyed = project.preview_pose
     assert unkeyed is not None
-    pasting.paste(session)
+    pasting.paste_copied(session)
     assert project.preview_pose is None
     editing.undo(session)
     assert project.preview_pose is unkeyed
     project.chosen = frozenset()
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     assert session.copied[0].keys[0].pose is unkeyed

@@ -29,24 +29,24 @@ def session(tmp_path):
 
 def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     project, before = session.project, session.project.document
-    editing.choose_keys(session, frozenset({0, 6}))
+    editing.select_keys(session, frozenset({0, 6}))
     copying.copy_keys(session)
     playback.scrub(session, 20)
-    pasting.paste(session, "flipped")
+    pasting.paste_copied(session, "flipped")
     settle(session)
     assert project.chosen == {20, 26}
     assert (project.layer.key(20).turns, project.layer.key(26).turns) == (-2, 1)
     assert dict(project.layer.key(20).depths) == {1: 1.0}
-    assert flipping.is_fresh(project)
-    editing.choose_keys(session, frozenset({20}))
-    assert not flipping.is_fresh(project)
+    assert flipping.can_flip_again(project)
+    editing.select_keys(session, frozenset({20}))
+    assert not flipping.can_flip_again(project)
     editing.undo(session)
     assert project.document is before
 
 
 def test_a_flip_that_comes_too_late_is_told(session):
-    copying.copy(session)
-    pasting.paste(session, "flipped")
+    copying.copy_pose_or_keys(session)
+    pasting.paste_copied(session, "flipped")
     editing.edit_layer(session, handle_commands.remove_handles, {0})
     before = session.project.document
     settle(session)

@@ -22,7 +22,7 @@ def session(tmp_path):
 
 def keep(session, frame):
     go(session, frame)
-    library.keep(session)
+    library.save_pose_to_library(session)
     settle(session)
     return session.project.layer.library[-1]
 
@@ -30,7 +30,7 @@ def keep(session, frame):
 def test_an_in_between_is_kept_as_the_nearest_pose(session):
     between = keep(session, 3)
     check_pose(session.project.layer, between.pose)
-    assert between.pose.certificate.certified
+    assert between.pose.certificate.is_certified
     assert session.project.layer.key_frames == {0, 6}
 
 
@@ -41,13 +41,13 @@ def test_a_blend_is_between_and_certified_and_its_beginning_is_not_forgotten(ses
     go(session, 0)
     first, before = project.layer.key(0).pose, project.document
     for now in (0.9, 1.0, 0.5, share):
-        library.blend(session, kept.name, now)
+        library.blend_library_pose(session, kept.name, now)
         settle(session)
-    library.end_blend(session)
+    library.end_pose_blend(session)
     settle(session)
     pose = project.layer.key(0).pose
     check_pose(project.layer, pose)
-    assert pose.certificate.certified
+    assert pose.certificate.is_certified
     for identity, target in pose.targets.items():
         one, other = (each.targets[identity].position for each in (first, kept.pose))
         assert target.position == pytest.approx((1 - share) * one + share * other)
@@ -61,9 +61,9 @@ def test_without_auto_key_a_blend_waits_to_be_inserted(session):
     session.preferences = Preferences(auto_key=False)
     go(session, 3)
     for share in (0.5, 1.0):
-        library.blend(session, kept.name, share)
+        library.blend_library_pose(session, kept.name, share)
         settle(session)
-        library.end_blend(session)
+        library.end_pose_blend(session)
         settle(session)
         assert project.layer.key_frames == {0, 6}
         assert project.preview_pose is not None
@@ -76,7 +76,7 @@ def test_without_auto_key_a_blend_waits_to_be_inserted(session):
 def test_names_are_not_given_twice(session):
     one, other = keep(session, 0), keep(session, 6)
     assert (one.name, other.name) == ("Pose 1", "Pose 2")
-    library.delete(session, "Pose 1")
+    library.delete_library_pose(session, "Pose 1")
     assert keep(session, 0).name == "Pose 3"
 
 
@@ -84,8 +84,8 @@ def test_picked_pose_is_that_of_one_layer_when_names_are_alike(session):
     project = session.project
     keep(session, 6)
     first, name = project.picked_pose
-    editing.edit(session, layer_commands.duplicate_layer(first))
+    editing.edit_document(session, layer_commands.duplicate_layer(first))
     second = project.document.layers[-1].id
     assert project.document.layer(second).library[0].name == name
-    library.apply(session, name, second)
+    library.apply_library_pose(session, name, second)
     assert project.picked_pose == (second, name)

@@ -17,15 +17,15 @@ from app.document import (
     handle_commands,
     key_commands,
     layer_commands,
-    material_commands,
+    stiffness_commands,
     track_commands,
 )
 from app.editor import layering
-from app.editor.actions import editing, material, playback, posing
+from app.editor.actions import editing, playback, posing, stiffness_editing
 from app.editor.actions.upkeep import maintain
-from app.editor.poses import copying, library, pasting, receiving
+from app.editor.poses import copying, library, paste_destinations, pasting
+from app.editor.poses.paste_destinations import NOTHING_COPIED
 from app.editor.poses.pasting import NOT_PASTED
-from app.editor.poses.receiving import NOTHING_COPIED
 from app.editor.session import CopiedKeys
 from app.editor.timeline_view import TrackRow
 
@@ -38,23 +38,23 @@ def walking(folder, document):
     height, width = document.size[1], document.size[0]
     session = session_of(first, folder, np.zeros((height, width, 4), np.uint8))
     for layer in document.layers[1:]:
-        editing.edit(session, layer_commands.add_layer(layer))
+        editing.edit_document(session, layer_commands.add_layer(layer))
     settle(session)
     (near,) = (each.id for each in document.layers if each.id == 0)
-    layering.choose(session, near)
+    layering.set_active_layer(session, near)
     return session
 
 
 def pull(session, name, **ways):
     """Pull handles of a layer, which is chosen then, at the present frame."""
-    layering.choose(session, identity(session, name))
+    layering.set_active_layer(session, identity(session, name))
     ids = {handle.name: handle.id for handle in session.project.layer.handles}
     settle(session)
     for handle, way in ways.items():
-        editing.select(session, frozenset({ids[handle]}))
-        posing.nudge(session, way)
+        editing.select_handles(session, frozenset({ids[handle]}))
+        posing.nudge_handles(session, way)
         settle(session)
-    editing.select(session, frozenset())
+    editing.select_handles(session, frozenset())
 
 
 def identity(session, name):
@@ -97,15 +97,15 @@ def close(one, other):
 
 def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
     project = session.project
-    copying.copy(session)
-    layering.choose(session, identity(session, "far leg"))
+    copying.copy_pose_or_keys(session)
+    layering.set_active_layer(session, identity(session, "far leg"))
     before = project.document
     go(session, 12)
-    pasting.paste(session)
+    pasting.paste_copied(session)
     settle(session)
     check_invariants(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
-    assert layer(session, "far leg").key(12).pose.certificate.certified
+    assert layer(session, "far leg").key(12).pose.certificate.is_certified
     assert project.chosen == {12}
     assert layer(session, "near leg").key_frames == {0}
     editing.undo(session)
@@ -114,16 +114,18 @@ def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
 
 def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     near, knee = identity(session, "near leg"), 1
-    editing.edit(session, key_commands.insert_key(near, 8, layer(session, "near leg").keys[0].pose))
-    editing.edit(session, key_commands.set_easing(near, {0}, PRESETS["in-out"]))
-    editing.edit(session, key_commands.set_tangent_mode(near, {8}, TangentMode.STOP))
-    editing.edit(session, key_commands.set_revolutions(near, {0}, 1))
-    editing.edit(session, layer_commands.key_depth(near, 0, knee, 0.5))
-    editing.choose_keys(session, frozenset({0, 8}))
+    editing.edit_document(
+        session, key_commands.insert_key(near, 8, layer(session, "near leg").keys[0].pose)
+    )
+    editing.edit_document(session, key_commands.set_easing(near, {0}, PRESETS["in-out"]))
+    editing.edit_document(session, key_commands.set_tangent_mode(near, {8}, TangentMode.STOP))
+    editing.edit_document(session, key_commands.set_revolutions(near, {0}, 1))
+    editing.edit_document(session, layer_commands.key_depth(near, 0, knee, 0.5))
+    editing.select_keys(session, frozenset({0, 8}))
     copying.copy_keys(session)
-    layering.choose(session, identity(session, "far leg"))
+    layering.set_active_layer(session, identity(session, "far leg"))
     go(session, 12)
-    pasting.paste(session)
+    pasting.paste_copied(session)
     settle(session)
     far = layer(session, "far leg")
     assert far.key_frames == {0, 12, 20}
@@ -135,13 +137,13 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
 
 def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(session):
     project = session.project
-    layering.choose(session, identity(session, "body"))
-    copying.copy_all(session)
+    layering.set_active_layer(session, identity(session, "body"))
+    copying.copy_all_poses(session)
     settle(session)
     before = project.document
     go(session, 12)
-    assert pasting.why_not(session, project, SWAPPED) == ""
-    pasting.paste(session, SWAPPED)
+    assert pasting.paste_disabled_reason(session, project, SWAPPED) == ""
+    pasting.paste_copied(session, SWAPPED)
     settle(session)
     near, far = near_and_far(session, 12)
     first_near, first_far = near_and_far(session, 0)
@@ -149,22 +151,26 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     close(near, first_far)
     body = layer(session, "body")
     assert body.key(12).pose.phi is body.key(0).pose.phi
-    assert {row: set(at) for row, at in project.chosen_of.items()} == {0: {12}, 1: {12}, 2: {12}}
+    assert {row: set(at) for row, at in project.selected_keys.items()} == {
+        0: {12},
+        1: {12},
+        2: {12},
+    }
     editing.undo(session)
     assert project.document is before
     # Once more is the step itself again.
     editing.redo(session)
-    copying.copy_all(session)
+    copying.copy_all_poses(session)
     go(session, 24)
-    pasting.paste(session, SWAPPED)
+    pasting.paste_copied(session, SWAPPED)
     settle(session)
     for name in ("near leg", "far leg"):
         close(ways(session, name, 24), ways(session, name, 0))
     # Poses bring no way to the next key.
     near = identity(session, "near leg")
-    editing.edit(session, key_commands.set_easing(near, {12}, PRESETS["in"]))
+    editing.edit_document(session, key_commands.set_easing(near, {12}, PRESETS["in"]))
     go(session, 12)
-    pasting.paste(session)
+    pasting.paste_copied(session)
     settle(session)
     assert layer(session, "near leg").key(12).easing == PRESETS["in"]
 
@@ -174,11 +180,11 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     document = Document(layers=(mirrored, leg("leg.L", 0)), size=(240, 200))
     session = walking(tmp_path, document)
     pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
-    editing.edit(session, key_commands.set_revolutions(0, {0}, 2))
-    editing.choose_keys_of(session, {0: frozenset({0}), 2: frozenset({0})})
+    editing.edit_document(session, key_commands.set_revolutions(0, {0}, 2))
+    editing.select_keys_in_rows(session, {0: frozenset({0}), 2: frozenset({0})})
     copying.copy_keys(session)
     go(session, 12)
-    pasting.paste(session, FLIPPED)
+    pasting.paste_copied(session, FLIPPED)
     settle(session)
     assert layer(session, "leg.R").key(12).turns == -2
     was = ways(session, "leg.L", 0)
@@ -189,11 +195,11 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
 
 def test_one_layer_gives_its_pose_to_its_partner_where_sides_exchange(session):
     project = session.project
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     go(session, 12)
-    (landing,) = receiving.landings(session, project, SWAPPED)
+    (landing,) = paste_destinations.find_paste_destinations(session, project, SWAPPED)
     assert landing.layer.name == "far leg"
-    pasting.paste(session, SWAPPED)
+    pasting.paste_copied(session, SWAPPED)
     settle(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     assert layer(session, "near leg").key_frames == {0}
@@ -202,17 +208,17 @@ def test_one_layer_gives_its_pose_to_its_partner_where_sides_exchange(session):
 def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
     project = session.project
     for name, to in (("near leg", "Spielbein"), ("far leg", "Standbein")):
-        layering.rename(session, identity(session, name), to)
-    copying.copy_all(session)
+        layering.rename_layer(session, identity(session, name), to)
+    copying.copy_all_poses(session)
     go(session, 12)
-    assert "Nothing changes sides" in pasting.why_not(session, project, SWAPPED)
+    assert "Nothing changes sides" in pasting.paste_disabled_reason(session, project, SWAPPED)
     before = project.document
-    pasting.paste(session, SWAPPED)
+    pasting.paste_copied(session, SWAPPED)
     settle(session)
     assert project.document is before
-    pasting.set_pairs(session, "L/R, Spielbein/Standbein")
-    assert pasting.why_not(session, project, SWAPPED) == ""
-    pasting.paste(session, SWAPPED)
+    pasting.set_mirror_names(session, "L/R, Spielbein/Standbein")
+    assert pasting.paste_disabled_reason(session, project, SWAPPED) == ""
+    pasting.paste_copied(session, SWAPPED)
     settle(session)
     close(ways(session, "Standbein", 12), ways(session, "Spielbein", 0))
     assert project.document.pairs == (("L", "R"), ("Spielbein", "Standbein"))
@@ -227,40 +233,40 @@ def test_a_handle_whose_partner_takes_over_from_it_takes_nothing_over_from_itsel
         )
     )
     left, right, foot = (handle.id for handle in both.handles)
-    assert receiving.common_handles(one, both, PAIRS, SWAPPED) == {right: left, foot: foot}
+    assert paste_destinations.match_handles(one, both, PAIRS, SWAPPED) == {right: left, foot: foot}
     other = replace(one, id=7)
-    assert receiving.common_handles(other, both, PAIRS, PLAIN) == {left: left, foot: foot}
-    assert receiving.common_handles(both, one, PAIRS, SWAPPED) == {left: right, foot: foot}
+    assert paste_destinations.match_handles(other, both, PAIRS, PLAIN) == {left: left, foot: foot}
+    assert paste_destinations.match_handles(both, one, PAIRS, SWAPPED) == {left: right, foot: foot}
 
 
 def test_why_nothing_can_be_pasted_is_said(session):
     project = session.project
-    assert pasting.why_not(session, project, PLAIN) == NOTHING_COPIED
-    copying.copy(session)
-    layering.choose(session, identity(session, "body"))
+    assert pasting.paste_disabled_reason(session, project, PLAIN) == NOTHING_COPIED
+    copying.copy_pose_or_keys(session)
+    layering.set_active_layer(session, identity(session, "body"))
     before = project.document
-    assert pasting.why_not(session, project, PLAIN) == (
+    assert pasting.paste_disabled_reason(session, project, PLAIN) == (
         "“body” has no handle called hip, knee or foot."
     )
     for way in (PLAIN, SWAPPED, FLIPPED):
-        pasting.paste(session, way)
+        pasting.paste_copied(session, way)
     settle(session)
     assert project.document is before
-    layering.stand_still(session, identity(session, "body"))
+    layering.make_still(session, identity(session, "body"))
     settle(session)
-    assert "still picture" in pasting.why_not(session, project, PLAIN)
+    assert "still picture" in pasting.paste_disabled_reason(session, project, PLAIN)
 
 
 def test_layers_without_a_common_name_are_left_out_and_told(session):
     far = identity(session, "far leg")
     for handle in layer(session, "far leg").handles:
         command = handle_commands.rename_handle(far, handle.id, f"point {handle.id}")
-        editing.edit(session, command)
-    copying.copy_all(session)
+        editing.edit_document(session, command)
+    copying.copy_all_poses(session)
     go(session, 12)
     # What remains are layers that only take back their own.
-    assert pasting.why_not(session, session.project, SWAPPED) != ""
-    pasting.paste(session, FLIPPED)
+    assert pasting.paste_disabled_reason(session, session.project, SWAPPED) != ""
+    pasting.paste_copied(session, FLIPPED)
     settle(session)
     assert layer(session, "body").key_frames == {0, 12}
     assert layer(session, "far leg").key_frames == {0}
@@ -270,19 +276,21 @@ def test_layers_without_a_common_name_are_left_out_and_told(session):
 
 def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
     far = identity(session, "far leg")
-    editing.edit(session, handle_commands.add_handle(far, 74 + 120j + FAR.shift, name="shin"))
+    editing.edit_document(
+        session, handle_commands.add_handle(far, 74 + 120j + FAR.shift, name="shin")
+    )
     settle(session)
     go(session, 24)
     pull(session, "far leg", shin=10 + 6j)
-    layering.choose(session, identity(session, "near leg"))
+    layering.set_active_layer(session, identity(session, "near leg"))
     go(session, 0)
-    copying.copy(session)
-    layering.choose(session, far)
+    copying.copy_pose_or_keys(session)
+    layering.set_active_layer(session, far)
     go(session, 12)
-    shown = session.project.puppet.shown
+    shown = session.project.layer_runtime.shown
     names = [handle.name for handle in shown.clip.layer.handles]
     here = complex(shown.handle_positions[names.index("shin")])
-    pasting.paste(session)
+    pasting.paste_copied(session)
     settle(session)
     shin = next(each for each in layer(session, "far leg").handles if each.name == "shin")
     wished = layer(session, "far leg").key(12).pose.targets[shin.id].position
@@ -294,11 +302,11 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
 
 
 def test_selected_handles_alone_take_over_from_another_layer(session):
-    copying.copy(session)
-    layering.choose(session, identity(session, "far leg"))
+    copying.copy_pose_or_keys(session)
+    layering.set_active_layer(session, identity(session, "far leg"))
     go(session, 0)
     foot = next(each.id for each in session.project.layer.handles if each.name == "foot")
-    editing.select(session, frozenset({foot}))
+    editing.select_handles(session, frozenset({foot}))
     pasting.paste_on_selected(session)
     settle(session)
     now, was = ways(session, "far leg", 0), ways(session, "near leg", 0)
@@ -307,26 +315,26 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
 
 
 def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
-    editing.select(session, frozenset({2}))
-    posing.nudge(session, 13 + 3j)
+    editing.select_handles(session, frozenset({2}))
+    posing.nudge_handles(session, 13 + 3j)
     (promised,) = session.project.pulls
     while promised.kept is None:
         maintain(session)
         assert session.jobs.settle()
         session.jobs.deliver()
     assert not promised.is_settled
-    copying.copy(session)
-    layering.choose(session, identity(session, "far leg"))
-    pasting.paste(session)
+    copying.copy_pose_or_keys(session)
+    layering.set_active_layer(session, identity(session, "far leg"))
+    pasting.paste_copied(session)
     settle(session)
     # What was copied has come to rest in the copy, too.
     close(ways(session, "far leg", 0), ways(session, "near leg", 0))
 
 
 def test_a_layer_that_changes_meanwhile_is_told(session):
-    copying.copy(session)
-    layering.choose(session, identity(session, "far leg"))
-    pasting.paste(session)
+    copying.copy_pose_or_keys(session)
+    layering.set_active_layer(session, identity(session, "far leg"))
+    pasting.paste_copied(session)
     editing.edit_layer(session, handle_commands.remove_handles, {0})
     before = session.project.document
     settle(session)
@@ -336,34 +344,34 @@ def test_a_layer_that_changes_meanwhile_is_told(session):
 
 def test_poses_of_a_library_are_offered_to_layers_with_the_same_names(session):
     project = session.project
-    library.keep(session)
+    library.save_pose_to_library(session)
     settle(session)
     near = identity(session, "near leg")
-    layering.choose(session, identity(session, "body"))
-    assert library.offers(project) == []
-    layering.choose(session, identity(session, "far leg"))
-    ((owner, kept),) = library.offers(project)
+    layering.set_active_layer(session, identity(session, "body"))
+    assert library.list_library_poses(project) == []
+    layering.set_active_layer(session, identity(session, "far leg"))
+    ((owner, kept),) = library.list_library_poses(project)
     assert (owner.id, kept.name) == (near, "Pose 1")
-    library.apply_at(session, kept.name, 12, near)
+    library.apply_library_pose_at(session, kept.name, 12, near)
     settle(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     assert playback.current_frame(session, project) == 12
     assert project.history.undo_label == "Use pose"
     go(session, 0)
-    library.blend(session, kept.name, 0.5, near)
+    library.blend_library_pose(session, kept.name, 0.5, near)
     settle(session)
-    library.end_blend(session)
+    library.end_pose_blend(session)
     settle(session)
     half = {name: way / 2 for name, way in ways(session, "near leg", 0).items()}
     close(ways(session, "far leg", 0), half)
 
 
 def test_keys_of_several_layers_come_back_by_name_in_another_project(session, tmp_path):
-    copying.copy_all(session)
+    copying.copy_all_poses(session)
     other = walking(tmp_path, walker())
     other.copied = session.copied
     go(other, 6)
-    pasting.paste(other)
+    pasting.paste_copied(other)
     settle(other)
     close(ways(other, "near leg", 6), ways(session, "near leg", 0))
     (one,) = [each for each in session.copied if each.layer.name == "near leg"]
@@ -378,9 +386,9 @@ def test_handles_of_one_layer_are_swapped_within_it(tmp_path):
         (body,) = scene.layers
     session = session_of(Document(layers=(body,)), tmp_path, np.zeros((200, 240, 4), np.uint8))
     pull(session, "body", **{"near hand": 6 + 10j})
-    copying.copy(session)
+    copying.copy_pose_or_keys(session)
     go(session, 12)
-    pasting.paste(session, SWAPPED)
+    pasting.paste_copied(session, SWAPPED)
     settle(session)
     now = ways(session, "body", 12)
     # All of it has turned by an eighth by the pull, which takes the hands along, 80 pixels apart.
@@ -399,8 +407,8 @@ def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
     targets = {each.id: Target(position=turn * each.position) for each in body.handles}
     pose = replace(key.pose, targets=targets, phi=turn * body.domain.cage)
     copied = CopiedKeys(body, (replace(key, pose=pose),))
-    landing = receiving.landing_on(scene, copied, body, SWAPPED)
-    wished = landing.carriage(SWAPPED).transfer_targets(body, pose)
+    landing = paste_destinations.find_paste_destination(scene, copied, body, SWAPPED)
+    wished = landing.pose_transfer(SWAPPED).transfer_targets(body, pose)
     for handle in body.handles:
         assert wished[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
 
@@ -411,13 +419,13 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
     foot = 2
     for frame, place in ((0, 4 + 2j), (6, -3 + 5j)):
         command = track_commands.put_track_key(near, foot, frame, place, velocity=1 + 2j)
-        editing.edit(session, command)
+        editing.edit_document(session, command)
     settle(session)
-    editing.choose_keys_of(session, {TrackRow(near, foot): frozenset({0, 6})})
+    editing.select_keys_in_rows(session, {TrackRow(near, foot): frozenset({0, 6})})
     copying.copy_keys(session)
     go(session, 12)
     before = session.project.document
-    pasting.paste(session, way)
+    pasting.paste_copied(session, way)
     settle(session)
     track = layer(session, "far leg").track_of(foot)
     assert [key.frame for key in track.keys] == [12, 18]
@@ -428,23 +436,23 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
         assert abs(key.place) == pytest.approx(abs(wanted[0]))
         if not mirrors:
             assert [key.place, key.velocity] == pytest.approx(wanted)
-    assert session.project.chosen_of == {TrackRow(far, foot): frozenset({12, 18})}
+    assert session.project.selected_keys == {TrackRow(far, foot): frozenset({12, 18})}
     editing.undo(session)
     assert session.project.document is before
 
 
 def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_them(session):
     near, far, body = (identity(session, name) for name in ("near leg", "far leg", "body"))
-    layering.choose_all(session, near, far)
-    copying.copy(session)
+    layering.select_layers(session, near, far)
+    copying.copy_pose_or_keys(session)
     settle(session)
     assert {each.layer.id for each in session.copied} == {near, far}
-    layering.choose(session, near)
-    copying.copy(session)
+    layering.set_active_layer(session, near)
+    copying.copy_pose_or_keys(session)
     go(session, 12)
-    layering.choose_all(session, near, far, body)
+    layering.select_layers(session, near, far, body)
     before = session.project.document
-    pasting.paste(session)
+    pasting.paste_copied(session)
     settle(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     close(ways(session, "near leg", 12), ways(session, "near leg", 0))
@@ -458,14 +466,14 @@ def test_pairs_of_the_document_tell_partners_of_handles_too(session):
     names = ("hip", "Spielknie", "Standknie")
     for handle, name in enumerate(names):
         editing.edit_layer(session, handle_commands.rename_handle, handle, name)
-    pasting.set_pairs(session, "L/R, Spielknie/Standknie")
-    editing.select(session, frozenset({1}))
+    pasting.set_mirror_names(session, "L/R, Spielknie/Standknie")
+    editing.select_handles(session, frozenset({1}))
     editing.select_mirrored(session)
     assert session.project.selected == {2}
-    editing.edit(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
+    editing.edit_document(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
     pairs = session.project.document.pairs
     editing.edit_layer(session, track_commands.mirror_track, 1, pairs)
     assert session.project.layer.track_of(2).keys[0].place == -4 + 2j
-    editing.edit_layer(session, material_commands.add_bone, (0, 1), 5.0)
-    material.mirror(session)
+    editing.edit_layer(session, stiffness_commands.add_bone, (0, 1), 5.0)
+    stiffness_editing.mirror_stiffness(session)
     assert [bone.ends for bone in session.project.layer.bones] == [(0, 1), (0, 2)]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.editor.tools.entry import ERASE, TypedWay
+from app.editor.tools.numeric_entry import ERASE, NumericEntry
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ from app.editor.tools.entry import ERASE, TypedWay
     ],
 )
 def test_what_is_typed_makes_a_number(typed, value):
-    entry = TypedWay()
+    entry = NumericEntry()
     for character in typed:
         entry.type(character)
     assert entry.value == value
@@ -47,6 +47,6 @@ def test_what_is_typed_makes_a_number(typed, value):
     ],
 )
 def test_a_way_is_as_long_as_was_typed_and_keeps_to_the_axis(typed, offset, way):
-    entry = TypedWay()
+    entry = NumericEntry()
     entry.type(typed)
-    assert entry.way(offset) == pytest.approx(way)
+    assert entry.constrain_offset(offset) == pytest.approx(way)

@@ -9,9 +9,9 @@ from sessions import session_of, settle
 from app.document import NATURAL, RUBBERY
 from app.document.commands import handle_commands, shape_commands, stiffness_commands
 from app.editor.actions import editing, playback, posing
-from app.editor.actions.posing.stopping import STOPPED_AT_LIMIT
+from app.editor.actions.posing.reach_limit import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
-from app.editor.tools import Spot, pointing
+from app.editor.tools import PointerHit, tool_pointer
 from engine.geometry import diameter
 
 MOVES = 12  # of the pointer, a picture for each
@@ -96,10 +96,10 @@ def picture(session):
 def drag(session, identity, way, *, rests=15):
     """Drag a handle some way, and hold it there for some pictures."""
     start = complex(where(session.project)[0][identity])
-    editing.select(session, frozenset({identity}))
-    pointing.press(session, Spot(place=start, handle=identity))
+    editing.select_handles(session, frozenset({identity}))
+    tool_pointer.press_pointer(session, PointerHit(place=start, handle=identity))
     for share in np.linspace(0, 1, MOVES + 1)[1:]:
-        pointing.move(session, start + share * way)
+        tool_pointer.move_pointer(session, start + share * way)
         picture(session)
     for _ in range(rests):
         picture(session)
@@ -121,7 +121,7 @@ def per_mille(session, lengths):
 def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     project = session.project
     hand, asked, before = drag_too_far(session)
-    pointing.end(session, asked)
+    tool_pointer.release_pointer(session, asked)
     _, released = where(project)
     settle(session)
     after, rests = where(project)
@@ -137,7 +137,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     name = project.layer.handle(hand).name
     assert toast.text == STOPPED_AT_LIMIT.format(who=name, its="its")
     # All of that is one step, and the pose is found again from its own wishes.
-    posing.pull_again(session, {}, gesture=object())
+    posing.solve_pose_again(session, {}, gesture=object())
     settle(session)
     assert per_mille(session, where(project)[1] - rests) < 1
     editing.undo(session)
@@ -150,7 +150,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
 def test_loosen_pulls_once_more_to_where_the_hand_went(session):
     project = session.project
     hand, asked, _ = drag_too_far(session, rests=5)
-    pointing.end(session, asked)
+    tool_pointer.release_pointer(session, asked)
     settle(session)
     short = abs(where(project)[0][hand] - asked)
     playback.scrub(session, 10)
@@ -168,7 +168,7 @@ def test_loosen_pulls_once_more_to_where_the_hand_went(session):
 def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
     project = session.project
     hand, asked, before = drag_too_far(session, rests=0)
-    pointing.end_insisting(session, asked)
+    tool_pointer.release_pointer_forced(session, asked)
     settle(session)
     after, _ = where(project)
     assert project.layer.key(0).pose.targets[hand].position == asked
@@ -181,11 +181,11 @@ def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
 def test_the_next_drag_does_not_pull_on_at_what_the_hand_has_left(session, rests):
     project = session.project
     hand, asked, before = drag_too_far(session, rests=rests)
-    pointing.end(session, asked)
+    tool_pointer.release_pointer(session, asked)
     for _ in range(rests):
         picture(session)
     other, way = project.layer.handles[1].id, 0.03 * diameter(project.layer.domain.outline)
-    pointing.end(session, drag(session, other, way, rests=rests))
+    tool_pointer.release_pointer(session, drag(session, other, way, rests=rests))
     settle(session)
     after, _ = where(project)
     rest = [i for i in before if i not in (hand, other)]
@@ -198,7 +198,7 @@ def test_a_drag_within_reach_is_wanted_where_it_was_let_go(session):
     project = session.project
     hand, out = outwards(project)
     asked = drag(session, hand, -0.05 * out)
-    pointing.end(session, asked)
+    tool_pointer.release_pointer(session, asked)
     settle(session)
     assert project.layer.key(0).pose.targets[hand].position == asked
     assert per_mille(session, where(project)[0][hand] - asked) < 1
@@ -212,7 +212,7 @@ def test_a_pose_that_rests_when_the_hand_lets_go_is_kept(session):
     asked = drag(session, hand, -0.05 * out, rests=40)
     assert project.pull.is_at_rest
     phi = project.layer.key(0).pose.phi
-    pointing.end(session, asked)
+    tool_pointer.release_pointer(session, asked)
     maintain(session)
     assert not project.pending
     assert project.layer.key(0).pose.phi is phi
@@ -229,7 +229,7 @@ def test_a_joint_that_gave_in_is_wanted_where_it_came_to(tmp_path):
     session = session_of(document, tmp_path, picture)
     project = session.project
     asked = drag(session, 2, 160j)
-    pointing.end(session, asked)
+    tool_pointer.release_pointer(session, asked)
     settle(session)
     joint, targets = where(project)[0][1], project.layer.key(0).pose.targets
     assert abs(joint - 100 - 40j) > 2
@@ -244,10 +244,10 @@ def test_all_handles_together_take_the_whole_drawing_along(session):
     _, before = where(project)
     handles = [handle.id for handle in project.layer.handles]
     start = complex(where(project)[0][handles[0]])
-    editing.select(session, frozenset(handles))
-    pointing.press(session, Spot(place=start, handle=handles[0]))
-    pointing.move(session, start + way)
-    pointing.end(session, start + way)
+    editing.select_handles(session, frozenset(handles))
+    tool_pointer.press_pointer(session, PointerHit(place=start, handle=handles[0]))
+    tool_pointer.move_pointer(session, start + way)
+    tool_pointer.release_pointer(session, start + way)
     settle(session)
     assert per_mille(session, where(project)[1] - before - way) < 1
     assert not session.toasts

@@ -11,7 +11,7 @@ from app.document.commands import handle_commands, shape_commands
 from app.editor import layering
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
-from app.editor.tools import Spot, moving, pointing
+from app.editor.tools import PointerHit, move_tool, tool_pointer
 from app.storage import Preferences
 from app.ui.viewport.marks import find_off_target
 
@@ -34,7 +34,7 @@ def blob():
 def pulled(blob, tmp_path_factory):
     """A blob with two handles, one of which is pulled beyond its reach, at frame 0."""
     session = session_of(blob, tmp_path_factory.mktemp("pulled"))
-    posing.wish(session, {1: replace(target(session, 1), position=RIGHT + 70)})
+    posing.set_targets(session, {1: replace(target(session, 1), position=RIGHT + 70)})
     settle(session)
     return session.project.document
 
@@ -53,13 +53,13 @@ def target(session, identity):
 
 
 def drag(session, way=WAY, *, end=True, **held):
-    spot = Spot(place=BESIDE, **held)
-    pointing.press(session, spot)
+    spot = PointerHit(place=BESIDE, **held)
+    tool_pointer.press_pointer(session, spot)
     for share in (0.3, 0.7, 1.0):
-        pointing.move(session, spot.place + share * way)
+        tool_pointer.move_pointer(session, spot.place + share * way)
         maintain(session)
     if end:
-        pointing.end(session, spot.place + way)
+        tool_pointer.release_pointer(session, spot.place + way)
     maintain(session)
 
 
@@ -93,30 +93,30 @@ def test_a_drag_from_beside_moves_all_of_it_in_one_step(session):
 @pytest.mark.parametrize("at", [{"handle": 0}, {"on_shape": True}, {}])
 def test_with_the_tool_it_does_so_from_anywhere(session, at):
     before = pose_of(session)
-    moving.take_up(session)
+    move_tool.toggle_move_tool(session)
     drag(session, **at)
     assert is_moved(session, pose_of(session), before, WAY)
     assert len(session.project.layer.handles) == 2
-    moving.pose(session)
-    pointing.press(session, Spot(place=LEFT, handle=0))
+    move_tool.return_to_posing(session)
+    tool_pointer.press_pointer(session, PointerHit(place=LEFT, handle=0))
     assert type(session.pointer).__name__ == "Pulling"
 
 
 def test_ctrl_click_still_sets_the_anchor(session):
-    moving.take_up(session)
-    pointing.press(session, Spot(place=LEFT + 5j, on_shape=True, ctrl=True))
+    move_tool.toggle_move_tool(session)
+    tool_pointer.press_pointer(session, PointerHit(place=LEFT + 5j, on_shape=True, ctrl=True))
     assert session.project.layer.anchor is not None
 
 
 def test_escape_in_the_middle_takes_it_back(session):
     project, document = session.project, session.project.document
-    before = find_off_target(project, project.puppet.shown)
+    before = find_off_target(project, project.layer_runtime.shown)
     assert before
     drag(session, end=False, ctrl=True, shift=True)
     assert project.document is not document
-    marked = find_off_target(project, project.puppet.shown)
+    marked = find_off_target(project, project.layer_runtime.shown)
     assert marked == pytest.approx({i: place + WAY for i, place in before.items()})
-    pointing.cancel(session)
+    tool_pointer.cancel_tool(session)
     settle(session)
     assert project.document is document
     assert not project.pending
@@ -124,10 +124,10 @@ def test_escape_in_the_middle_takes_it_back(session):
 
 def test_numbers_and_axes_are_typed(session):
     before = pose_of(session)
-    moving.take_up(session)
-    pointing.press(session, Spot(place=LEFT))
-    pointing.type_in(session, "y40")
-    pointing.end(session, LEFT)
+    move_tool.toggle_move_tool(session)
+    tool_pointer.press_pointer(session, PointerHit(place=LEFT))
+    tool_pointer.type_in_tool(session, "y40")
+    tool_pointer.release_pointer(session, LEFT)
     settle(session)
     # Pixels are counted downwards.
     assert is_moved(session, pose_of(session), before, -40j)
@@ -136,7 +136,7 @@ def test_numbers_and_axes_are_typed(session):
 def test_each_arrow_is_a_step(session):
     project, before, document = session.project, pose_of(session), session.project.document
     for step in (1, 10j, -1):
-        moving.nudge(session, step)
+        move_tool.nudge_layer(session, step)
         maintain(session)
     assert is_moved(session, pose_of(session), before, 10j)
     for _ in range(3):
@@ -150,16 +150,16 @@ def joined(blob, tmp_path):
     session = session_of(blob, tmp_path)
     session.project.history.do(shape_commands.set_anchor(0, LEFT))
     settle(session)
-    layering.duplicate(session, 0)
-    layering.hang(session, 1, 0)
-    layering.choose(session, 1)
+    layering.duplicate_layer(session, 0)
+    layering.attach_layer(session, 1, 0)
+    layering.set_active_layer(session, 1)
     settle(session)
     return session
 
 
 def places_of(session, layer):
     """Where all points of a layer are in the scene."""
-    shown = session.project.puppets[layer].shown
+    shown = session.project.layer_runtimes[layer].shown
     return shown.placement.on(shown.positions)
 
 
@@ -170,31 +170,31 @@ def test_a_layer_moves_what_it_hangs_on(joined):
     assert project.active == 0
     for layer in (0, 1):
         np.testing.assert_allclose(places_of(joined, layer), before[layer] + WAY, atol=1e-3)
-    pointing.cancel(joined)
+    tool_pointer.cancel_tool(joined)
     settle(joined)
     assert project.active == 1
     np.testing.assert_allclose(places_of(joined, 1), before[1], atol=1e-3)
-    moving.nudge(joined, 4)
+    move_tool.nudge_layer(joined, 4)
     settle(joined)
     assert project.active == 0
     np.testing.assert_allclose(places_of(joined, 1), before[1] + 4, atol=1e-3)
 
 
 def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
-    layering.lock(joined, 0)
+    layering.toggle_layers_locked(joined, 0)
     document = joined.project.document
     drag(joined, ctrl=True, shift=True)
-    moving.nudge(joined, 1)
+    move_tool.nudge_layer(joined, 1)
     assert joined.project.document is document
     assert "is locked" in joined.toasts[-1].text
 
 
 def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):
     session = session_of(blob, tmp_path)
-    layering.duplicate(session, 0)
-    layering.choose(session, 0)
+    layering.duplicate_layer(session, 0)
+    layering.set_active_layer(session, 0)
     settle(session)
-    moving.take_up(session)
+    move_tool.toggle_move_tool(session)
     before = places_of(session, 0)
     drag(session, layer=1, on_shape=True)
     settle(session)
@@ -205,7 +205,7 @@ def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):
 
 def test_an_arrow_is_undone_before_it_is_seen(session):
     project, before, document = session.project, pose_of(session), session.project.document
-    moving.nudge(session, 10)
+    move_tool.nudge_layer(session, 10)
     editing.undo(session)
     assert project.document is document
     editing.redo(session)
@@ -230,31 +230,31 @@ def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
     playback.seek(session, 3)
     if is_there:
         settle(session)
-    middle = project.puppet.shown.handle_positions.mean()
+    middle = project.layer_runtime.shown.handle_positions.mean()
     drag(session, ctrl=True, shift=True)
     settle(session)
     frames = [key.frame for key in project.layer.keys]
     assert frames == ([0, 3, 6] if auto_key else [0, 6])
-    assert (project.unkeyed is None) == auto_key
+    assert (project.unkeyed_pose is None) == auto_key
     if is_there:
-        moved = project.puppet.shown.handle_positions.mean()
+        moved = project.layer_runtime.shown.handle_positions.mean()
         assert abs(moved - middle - WAY) < 0.01 * abs(WAY)
     editing.undo(session)
     assert [key.frame for key in project.layer.keys] == [0, 6]
-    assert project.unkeyed is None
+    assert project.unkeyed_pose is None
 
 
 def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     """The hand lets a handle go, and moves all of it before the pose has come to rest."""
     session = session_of(blob, tmp_path)
     wished = {1: replace(target(session, 1), position=RIGHT + 12j)}
-    posing.wish(session, wished)
+    posing.set_targets(session, wished)
     settle(session)
     rested = pose_of(session)
     editing.undo(session)
-    posing.wish(session, wished)
+    posing.set_targets(session, wished)
     maintain(session)
-    assert session.jobs.settle()
+    assert session.jobs.wait_until_idle()
     session.jobs.deliver()
     assert session.project.pending
     drag(session, ctrl=True, shift=True)
@@ -267,7 +267,7 @@ def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
 
 def test_a_handle_is_pulled_on_after_that(session):
     drag(session, ctrl=True, shift=True)
-    posing.wish(session, {0: replace(target(session, 0), position=LEFT + WAY + 5)})
+    posing.set_targets(session, {0: replace(target(session, 0), position=LEFT + WAY + 5)})
     settle(session)
     assert abs(target(session, 0).position - (LEFT + WAY + 5)) < 1e-9
     assert abs(target(session, 1).position - (RIGHT + 70 + WAY)) < 1e-9

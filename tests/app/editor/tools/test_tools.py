@@ -9,10 +9,10 @@ from animations import round_document
 from sessions import session_of, settle
 
 from app.document.commands import handle_commands, scene_commands
-from app.editor import BoxMark, SweepMark
+from app.editor import BoxOverlay, RotationOverlay
 from app.editor.actions import editing, playback, posing
 from app.editor.actions.upkeep import maintain
-from app.editor.tools import TOOLS, Spot, pointing
+from app.editor.tools import TOOLS, PointerHit, tool_pointer
 from app.storage import Preferences
 
 LEFT, RIGHT, FREE = 40 + 45j, 80 + 45j, 60 + 60j
@@ -27,7 +27,7 @@ def session(tmp_path):
     session = session_of(document, tmp_path)
     session.project.history.do(scene_commands.set_fps(12))
     session.project.history.undo()
-    editing.select(session, frozenset({0}))
+    editing.select_handles(session, frozenset({0}))
     settle(session)
     return session
 
@@ -41,9 +41,9 @@ def frames(session, count=2):
 
 
 def drag(session, spot, *places):
-    pointing.press(session, spot)
+    tool_pointer.press_pointer(session, spot)
     for place in places:
-        pointing.move(session, place)
+        tool_pointer.move_pointer(session, place)
         frames(session)
 
 
@@ -52,9 +52,9 @@ def state(project):
     return project.document, unkeyed, project.selected, project.chosen, project.pull
 
 
-AT_LEFT, AT_RIGHT = Spot(place=LEFT, handle=0), Spot(place=RIGHT, handle=1)
-ON_SHAPE, BESIDE = Spot(place=FREE, on_shape=True), Spot(place=5 + 5j)
-ON_RING = Spot(place=LEFT + 20, on_shape=True, on_ring=True)
+AT_LEFT, AT_RIGHT = PointerHit(place=LEFT, handle=0), PointerHit(place=RIGHT, handle=1)
+ON_SHAPE, BESIDE = PointerHit(place=FREE, on_shape=True), PointerHit(place=5 + 5j)
+ON_RING = PointerHit(place=LEFT + 20, on_shape=True, on_ring=True)
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ ON_RING = Spot(place=LEFT + 20, on_shape=True, on_ring=True)
     ],
 )
 def test_a_press_is_for_one_tool(session, spot, name):
-    pointing.press(session, spot)
+    tool_pointer.press_pointer(session, spot)
     assert type(session.pointer).__name__ == name
 
 
@@ -93,15 +93,15 @@ def test_whatever_a_press_began_is_taken_back_wholly(session, auto_key, most_key
             before = state(project)
             drag(session, replace(spot, **held), spot.place + 6, spot.place + 9j)
             assert session.pointer is not None, (spot, held)
-            pointing.cancel(session)
+            tool_pointer.cancel_tool(session)
             frames(session)
             assert state(project) == before, (spot, held)
             assert session.pointer is None
             # What could be done again still can.
             assert project.history.redo_label == "Set frames per second"
             # The hand goes on, and lets go.
-            pointing.move(session, spot.place + 20)
-            pointing.end(session, spot.place + 20)
+            tool_pointer.move_pointer(session, spot.place + 20)
+            tool_pointer.release_pointer(session, spot.place + 20)
             frames(session)
             assert state(project) == before, (spot, held)
 
@@ -109,7 +109,7 @@ def test_whatever_a_press_began_is_taken_back_wholly(session, auto_key, most_key
 def test_a_press_on_the_shape_that_is_dragged_is_one_step(session):
     project, first = session.project, session.project.document
     drag(session, ON_SHAPE, FREE + 8, FREE + 8 + 8j)
-    pointing.end(session, FREE + 8 + 8j)
+    tool_pointer.release_pointer(session, FREE + 8 + 8j)
     settle(session)
     assert len(project.layer.handles) == 3
     target = project.layer.keys[0].pose.targets[2].position
@@ -122,8 +122,8 @@ def test_a_press_on_the_shape_that_is_dragged_is_one_step(session):
 
 def test_undo_before_the_solver_has_begun_takes_the_new_handle_back(session):
     project, first = session.project, session.project.document
-    pointing.press(session, ON_SHAPE)
-    pointing.move(session, FREE + 8)
+    tool_pointer.press_pointer(session, ON_SHAPE)
+    tool_pointer.move_pointer(session, FREE + 8)
     assert len(project.layer.handles) == 3
     editing.undo(session)
     assert project.document is first
@@ -133,16 +133,16 @@ def test_undo_before_the_solver_has_begun_takes_the_new_handle_back(session):
 
 def test_selected_handles_are_pulled_together(session):
     project = session.project
-    editing.select(session, frozenset({0, 1}))
+    editing.select_handles(session, frozenset({0, 1}))
     drag(session, AT_RIGHT, RIGHT + 6j)
-    pointing.end(session, RIGHT + 6j)
+    tool_pointer.release_pointer(session, RIGHT + 6j)
     settle(session)
     targets = project.layer.keys[0].pose.targets
     assert [targets[i].position for i in (0, 1)] == pytest.approx([LEFT + 6j, RIGHT + 6j])
     # One that is not selected alone.
-    editing.select(session, frozenset({0}))
-    drag(session, Spot(place=RIGHT + 6j, handle=1), RIGHT)
-    pointing.end(session, RIGHT)
+    editing.select_handles(session, frozenset({0}))
+    drag(session, PointerHit(place=RIGHT + 6j, handle=1), RIGHT)
+    tool_pointer.release_pointer(session, RIGHT)
     settle(session)
     targets = project.layer.keys[0].pose.targets
     assert [targets[i].position for i in (0, 1)] == pytest.approx([LEFT + 6j, RIGHT])
@@ -152,8 +152,10 @@ def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
     end = RIGHT + 15j * np.exp(0.2j)
     drag(session, replace(AT_RIGHT, alt=True), RIGHT + 15j, end)
     (mark,) = session.pointer.marks
-    assert mark == SweepMark(handle=1, turn=pytest.approx(0.2), swept=pytest.approx(0.2))
-    pointing.end(session, end)
+    assert mark == RotationOverlay(
+        handle=1, angle=pytest.approx(0.2), swept_angle=pytest.approx(0.2)
+    )
+    tool_pointer.release_pointer(session, end)
     settle(session)
     target = session.project.layer.keys[0].pose.targets[1]
     assert target.rotation == pytest.approx(0.2)
@@ -161,19 +163,19 @@ def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
 
 def test_a_click_with_alt_deletes_and_one_on_the_ring_does_not(session):
     for spot, left in ((ON_RING, 2), (replace(AT_LEFT, alt=True), 1)):
-        pointing.press(session, spot)
-        pointing.end(session, spot.place)
+        tool_pointer.press_pointer(session, spot)
+        tool_pointer.release_pointer(session, spot.place)
         assert len(session.project.layer.handles) == left
 
 
 def test_the_anchor_goes_to_where_it_is_set_and_back_by_a_second_click(session):
     project = session.project
     for anchor in (RIGHT, None):
-        pointing.press(session, replace(AT_RIGHT, ctrl=True))
-        pointing.end(session, RIGHT)
+        tool_pointer.press_pointer(session, replace(AT_RIGHT, ctrl=True))
+        tool_pointer.release_pointer(session, RIGHT)
         assert project.layer.anchor == anchor
-    pointing.press(session, replace(ON_SHAPE, ctrl=True))
-    pointing.end(session, FREE)
+    tool_pointer.press_pointer(session, replace(ON_SHAPE, ctrl=True))
+    tool_pointer.release_pointer(session, FREE)
     assert project.layer.anchor == pytest.approx(FREE)
 
 
@@ -186,11 +188,11 @@ def test_a_box_selects_what_is_in_it(session, shift):
         (RIGHT + 5 + 5j, 5 + 5j, {0, 1}),
         (5 + 5j, 10 + 10j, set()),
     ):
-        editing.select(session, frozenset({0}))
-        pointing.press(session, Spot(place=corner, shift=shift))
-        pointing.move(session, opposite)
-        assert session.pointer.marks == (BoxMark(corner=corner, opposite=opposite),)
-        pointing.end(session, opposite)
+        editing.select_handles(session, frozenset({0}))
+        tool_pointer.press_pointer(session, PointerHit(place=corner, shift=shift))
+        tool_pointer.move_pointer(session, opposite)
+        assert session.pointer.marks == (BoxOverlay(corner=corner, opposite=opposite),)
+        tool_pointer.release_pointer(session, opposite)
         assert session.project.selected == inside | kept
 
 
@@ -199,10 +201,10 @@ def test_a_playhead_that_leaves_a_drag_does_not_leave_it_half_taken_back(session
     project, first = session.project, session.project.document
     drag(session, AT_RIGHT, RIGHT + 6j)
     playback.scrub(session, 10)
-    pointing.move(session, RIGHT + 9j)
+    tool_pointer.move_pointer(session, RIGHT + 9j)
     frames(session)
     assert project.layer.key_frames == {0, 10}
-    pointing.cancel(session)
+    tool_pointer.cancel_tool(session)
     settle(session)
     assert project.document is first
 
@@ -213,8 +215,8 @@ def test_handles_that_go_while_they_are_dragged_are_let_be(session):
         posing.remove_handles(session, frozenset({1}))
         settle(session)
         before = session.project.document
-        pointing.move(session, RIGHT + 20)
-        pointing.end(session, RIGHT + 20)
+        tool_pointer.move_pointer(session, RIGHT + 20)
+        tool_pointer.release_pointer(session, RIGHT + 20)
         settle(session)
         assert session.project.document is before
         editing.undo(session)
@@ -229,10 +231,10 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
     for hint in hints:
         held = dict.fromkeys(filter(None, hint.key.split("+")), True)
         there = ON_RING if "its ring" in hint.how else spot
-        pointing.press(session, replace(there, **held))
+        tool_pointer.press_pointer(session, replace(there, **held))
         named = type(session.pointer)
         assert hint in named.hints(session, session.project, spot)
-        pointing.cancel(session)
+        tool_pointer.cancel_tool(session)
 
 
 def wish(session, identity=0):
@@ -242,15 +244,15 @@ def wish(session, identity=0):
 
 def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
     drag(session, AT_LEFT, LEFT + 3)
-    pointing.type_in(session, "4")
-    pointing.type_in(session, "0")
+    tool_pointer.type_in_tool(session, "4")
+    tool_pointer.type_in_tool(session, "0")
     assert [mark.text for mark in session.pointer.marks] == ["40 px"]
-    pointing.move(session, LEFT + 6j)
+    tool_pointer.move_pointer(session, LEFT + 6j)
     assert wish(session).position == pytest.approx(LEFT + 40j)
-    pointing.type_in(session, "y")
+    tool_pointer.type_in_tool(session, "y")
     assert [mark.text for mark in session.pointer.marks] == ["Y 40 px"]
     assert wish(session).position == pytest.approx(LEFT - 40j)
-    pointing.end(session, LEFT)
+    tool_pointer.release_pointer(session, LEFT)
     assert wish(session).position == pytest.approx(LEFT - 40j)
     editing.undo(session)
     assert session.project.history.undo_label is None
@@ -259,19 +261,19 @@ def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
 def test_a_handle_that_was_only_pressed_goes_where_it_is_typed_to(session):
     drag(session, AT_LEFT)
     for character in "x-5":
-        pointing.type_in(session, character)
-    pointing.end(session, LEFT)
+        tool_pointer.type_in_tool(session, character)
+    tool_pointer.release_pointer(session, LEFT)
     assert wish(session).position == pytest.approx(LEFT - 5)
 
 
 def test_turning_takes_degrees_and_goes_in_steps(session):
     drag(session, ON_RING, LEFT + 20 + 1j)
-    pointing.move_in_steps(session, LEFT + 20 * np.exp(1j * np.radians(38)))
+    tool_pointer.move_pointer_in_steps(session, LEFT + 20 * np.exp(1j * np.radians(38)))
     assert wish(session).rotation == pytest.approx(np.radians(45))
-    pointing.move(session, LEFT + 20 * np.exp(1j * np.radians(38)))
+    tool_pointer.move_pointer(session, LEFT + 20 * np.exp(1j * np.radians(38)))
     assert wish(session).rotation == pytest.approx(np.radians(38))
-    pointing.type_in(session, "-12.5")
-    pointing.move(session, LEFT + 20j)
+    tool_pointer.type_in_tool(session, "-12.5")
+    tool_pointer.move_pointer(session, LEFT + 20j)
     assert wish(session).rotation == pytest.approx(np.radians(-12.5))
-    pointing.end(session, LEFT + 20j)
+    tool_pointer.release_pointer(session, LEFT + 20j)
     assert wish(session).rotation == pytest.approx(np.radians(-12.5))

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.domain.meshing.depth import in_depth_order, spread_depth
+from engine.domain.meshing.depth import sort_by_depth, spread_depth
 from engine.domain.meshing.triangulation import triangulate
 
 SQUARE = np.array([0, 1, 1 + 1j, 1j])
@@ -61,13 +61,13 @@ def test_without_points_nothing_is_in_front():
     mesh = triangulate(SQUARE, 1_000)
     depths = spread_depth(mesh, np.array([], complex), [], [])
     assert_array_equal(depths, 0.0)
-    assert_array_equal(in_depth_order(mesh, depths), mesh.triangles)
+    assert_array_equal(sort_by_depth(mesh, depths), mesh.triangles)
 
 
 def test_what_is_deeper_is_painted_earlier_and_the_rest_stays_in_order():
     mesh = triangulate(U, 8_000)
     depths = spread(mesh, 0.2 + 1.8j, 0.8) - spread(mesh, 0.8 + 1.8j, 0.8)
-    ordered = in_depth_order(mesh, depths)
+    ordered = sort_by_depth(mesh, depths)
     assert not ordered.flags.writeable
     assert_array_equal(np.unique(ordered, axis=0), np.unique(mesh.triangles, axis=0))
     middles = depths[ordered].mean(axis=1)

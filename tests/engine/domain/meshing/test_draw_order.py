@@ -6,7 +6,7 @@ from numpy.testing import assert_array_equal
 from overlaps import overlaps
 from shapes import regular_polygon
 
-from engine.domain.meshing.draw_order import in_order_of, with_limbs_on_top
+from engine.domain.meshing.draw_order import copy_draw_order, order_branches_on_top
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry.polygon import deepest_point, signed_area
@@ -59,7 +59,7 @@ def bent(points, bends):
 
 def test_triangles_come_in_the_order_of_their_way_from_the_centre():
     mesh = triangulate(U, 2000)
-    ordered = with_limbs_on_top(mesh, 0.5 + 4j)
+    ordered = order_branches_on_top(mesh, 0.5 + 4j)
     assert_array_equal(ordered.vertices, mesh.vertices)
     assert_array_equal(np.unique(ordered.triangles, axis=0), np.unique(mesh.triangles, axis=0))
     middles = ordered.vertices[ordered.triangles].mean(axis=1)
@@ -74,7 +74,7 @@ def test_triangles_come_in_the_order_of_their_way_from_the_centre():
 @pytest.mark.parametrize("bends", BENDS)
 def test_of_two_limbs_one_covers_the_other_wherever_they_cross(bends):
     outline = star([4.0, 4.5, 5.5, 4.1, 5.0])
-    mesh = with_limbs_on_top(triangulate(outline, 3000), 0j)
+    mesh = order_branches_on_top(triangulate(outline, 3000), 0j)
     arms = arms_of(mesh.vertices[mesh.triangles].mean(axis=1))
     pairs, overlap = overlaps(bent(mesh.vertices, bends), mesh.triangles)
     assert len(pairs) > 0
@@ -92,8 +92,8 @@ def test_of_two_limbs_one_covers_the_other_wherever_they_cross(bends):
 
 def test_the_order_of_limbs_is_the_same_in_each_pose_and_from_fine_to_coarse():
     outline = star([3.0] * ARMS)
-    fine = with_limbs_on_top(triangulate(outline, 8000), 0j)
-    coarse = in_order_of(triangulate(outline, 1500), fine)
+    fine = order_branches_on_top(triangulate(outline, 8000), 0j)
+    coarse = copy_draw_order(triangulate(outline, 1500), fine)
     orders = []
     for mesh in (fine, coarse):
         arms = arms_of(mesh.vertices[mesh.triangles].mean(axis=1))
@@ -109,7 +109,7 @@ def test_the_order_of_limbs_is_the_same_in_each_pose_and_from_fine_to_coarse():
 def test_a_tyre_covers_the_wheel_that_it_is_pulled_over():
     arc = np.exp(1j * np.linspace(*SLOT, 60))
     slot = np.concatenate([INSIDE * arc, TYRE * arc[::-1]])
-    mesh = with_limbs_on_top(triangulate(regular_polygon(180), 6000, holes=[slot]), 0.6j)
+    mesh = order_branches_on_top(triangulate(regular_polygon(180), 6000, holes=[slot]), 0.6j)
 
     def on_tyre(points, turns):
         return (np.abs(points) > TYRE - 1e-3) & (np.abs(np.angle(points / 1j)) < turns)
@@ -127,7 +127,7 @@ def test_a_tyre_covers_the_wheel_that_it_is_pulled_over():
 
 def test_the_ways_around_a_hole_are_two_limbs():
     outline, hole = regular_polygon(40), 0.6 * regular_polygon(30)[::-1]
-    ordered = with_limbs_on_top(triangulate(outline, 2000, holes=[hole]), 0.8)
+    ordered = order_branches_on_top(triangulate(outline, 2000, holes=[hole]), 0.8)
     turns = np.angle(ordered.vertices[ordered.triangles].mean(axis=1))
     # Less where they begin and where they meet.
     sides = [
@@ -142,7 +142,7 @@ def test_the_ways_around_a_hole_are_two_limbs():
 
 def test_what_is_plump_is_no_limb():
     square = np.array([0, 1, 1 + 1j, 1j])
-    mesh = with_limbs_on_top(triangulate(square, 2000), 0.5 + 0.5j)
+    mesh = order_branches_on_top(triangulate(square, 2000), 0.5 + 0.5j)
     ways = np.abs(mesh.vertices[mesh.triangles].mean(axis=1) - (0.5 + 0.5j))
     assert np.corrcoef(np.arange(len(ways)), ways)[0, 1] > 0.95
 
@@ -150,7 +150,7 @@ def test_what_is_plump_is_no_limb():
 def test_triangles_stay_counter_clockwise():
     square = np.array([0, 1, 1 + 1j, 1j])
     mesh = Mesh(vertices=square, triangles=np.array([[2, 3, 0], [0, 1, 2]], dtype=np.int32))
-    assert_array_equal(np.sort(with_limbs_on_top(mesh, 0).areas()), np.sort(mesh.areas()))
+    assert_array_equal(np.sort(order_branches_on_top(mesh, 0).areas()), np.sort(mesh.areas()))
 
 
 def test_the_deepest_point_of_a_rectangle_is_on_its_middle_line():

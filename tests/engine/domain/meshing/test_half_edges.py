@@ -6,7 +6,7 @@ from shapes import points_inside_disc
 
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint, following, preceding
 from engine.domain.meshing.mesh import signed_areas, smallest_angles
-from engine.domain.meshing.refinement import refine
+from engine.domain.meshing.refinement import refine_mesh
 from engine.domain.meshing.smoothing import smooth_mesh
 from engine.geometry.polygon import as_xy
 
@@ -137,7 +137,7 @@ def test_a_walk_goes_straight_and_not_around_what_hides_its_target() -> None:
 @pytest.mark.parametrize(("smallest", "most"), [(20.0, 36), (28.0, 90)])
 def test_refinement_leaves_no_small_angle_and_is_sparing(smallest: float, most: int) -> None:
     mesh = square_with(np.array([0.02 + 0.01j, 0.021 + 0.012j]))
-    refine(mesh, smallest)
+    refine_mesh(mesh, smallest)
     assert_consistent(mesh, 0.25)
     assert smallest_angles(mesh.points, mesh.triangles).min() >= smallest
     assert mesh.count <= most
@@ -148,7 +148,7 @@ def test_refinement_leaves_no_small_angle_and_is_sparing(smallest: float, most: 
 
 def test_smoothing_improves_the_mean_and_keeps_corners_and_border() -> None:
     mesh = square_with(points_inside_disc(0.24, 300, 3) + 0.25 + 0.25j)
-    refine(mesh, 20.0)
+    refine_mesh(mesh, 20.0)
     before = smallest_angles(mesh.points, mesh.triangles)
     smooth_mesh(mesh, 4, 5)
     after = smallest_angles(mesh.points, mesh.triangles)

@@ -14,7 +14,7 @@ from engine.geometry.polygon import (
     as_xy,
     contains,
     diameter,
-    edges,
+    edge_vectors,
     is_simple,
     signed_area,
 )
@@ -23,7 +23,7 @@ from engine.geometry.polygon import (
 def subdivided(corners: list[complex], pieces: int) -> Complexes:
     """Cut every edge of a polygon into equal pieces: many collinear vertices."""
     polygon = np.array(corners, dtype=np.complex128)
-    return (polygon[:, None] + np.outer(edges(polygon), np.arange(pieces) / pieces)).ravel()
+    return (polygon[:, None] + np.outer(edge_vectors(polygon), np.arange(pieces) / pieces)).ravel()
 
 
 def star(points: int, inner: float) -> Complexes:
@@ -98,8 +98,8 @@ def uneven_polygons(draw: st.DrawFn) -> Complexes:
     gap = draw(st.sampled_from([1e-3, 1e-2])) * diameter(polygon)
     rng = np.random.default_rng(len(polygon))
     tilt = 1 + 0.3j * rng.standard_normal(len(polygon))
-    near = polygon + gap * tilt * edges(polygon) / np.abs(edges(polygon))
-    assume(np.all(np.abs(edges(polygon)) > 3 * gap))
+    near = polygon + gap * tilt * edge_vectors(polygon) / np.abs(edge_vectors(polygon))
+    assume(np.all(np.abs(edge_vectors(polygon)) > 3 * gap))
     outline = np.column_stack([polygon, near]).ravel()
     assume(is_simple(outline))
     return outline
@@ -127,7 +127,7 @@ SHAPES = {
 
 
 def interior_angles(outline: Complexes) -> Floats:
-    along = edges(outline)
+    along = edge_vectors(outline)
     return np.degrees(np.angle(-np.roll(along, 1) / along)) % 360
 
 
@@ -162,8 +162,8 @@ def assert_conforming(outline: Complexes, mesh: Mesh, holes: tuple[Complexes, ..
         corner = np.flatnonzero(np.isin(loop, corners))
         np.testing.assert_array_equal(np.array(loop)[corner], corners)
         edge = np.searchsorted(corner, np.arange(len(loop)), side="right") - 1
-        offset = (vertices[loop] - polygon[edge]) * edges(polygon)[edge].conj()
-        height = np.abs(offset.imag / np.abs(edges(polygon)[edge]))
+        offset = (vertices[loop] - polygon[edge]) * edge_vectors(polygon)[edge].conj()
+        height = np.abs(offset.imag / np.abs(edge_vectors(polygon)[edge]))
         assert height.max() < 1e-12 * (diameter(outline) + np.abs(outline).max())
         first, walked = first + len(polygon), walked + len(loop)
     assert walked == border.sum()

@@ -11,7 +11,7 @@ from shapes import regular_polygon, star_polygons
 from engine.arrays import Complexes
 from engine.domain.outline.cage import CLOSE_OUTLINE, offset_cage
 from engine.errors import EngineError
-from engine.geometry.polygon import distance_to_boundary, edges
+from engine.geometry.polygon import distance_to_boundary, edge_vectors
 
 
 def comb(gap: float) -> Complexes:
@@ -30,7 +30,7 @@ def test_edges_stay_parallel_where_there_is_room() -> None:
     outline = np.array([0, 2, 2 + 1j, 1 + 0.6j, 1j])
     cage = offset_cage(outline, 0.1)
     check_cage(outline, cage)
-    turn = np.angle(edges(cage) / edges(outline))
+    turn = np.angle(edge_vectors(cage) / edge_vectors(outline))
     assert_allclose(turn, 0, rtol=0, atol=1e-12)
 
 

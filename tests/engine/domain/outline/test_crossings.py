@@ -7,33 +7,33 @@ from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon, star_polygons
 
 from engine.arrays import Complexes
-from engine.domain.outline.crossings import edges_that_cross, edges_that_meet
+from engine.domain.outline.crossings import find_crossing_edges, find_meeting_edges
 from engine.domain.outline.gaps import empty_disc_radius
 from engine.geometry import distance_to_boundary
 
 
 @given(polygon=star_polygons())
 def test_a_simple_polygon_crosses_nothing(polygon: Complexes) -> None:
-    assert not edges_that_cross(polygon).any()
-    assert not any(edges.any() for edges in edges_that_meet(polygon, 2 * polygon))
+    assert not find_crossing_edges(polygon).any()
+    assert not any(edges.any() for edges in find_meeting_edges(polygon, 2 * polygon))
 
 
 def test_both_edges_of_a_crossing_are_told_and_no_other() -> None:
     bow = np.array([0, 2 + 2j, 2, 2j, -1 + 1j])  # 0 to 1 crosses 2 to 3
-    assert_array_equal(edges_that_cross(bow), [True, False, True, False, False])
+    assert_array_equal(find_crossing_edges(bow), [True, False, True, False, False])
 
 
 def test_a_vertex_on_an_edge_meets_it() -> None:
     touching = np.array([0, 4, 4 + 4j, 2 + 0j, 4j])
-    assert edges_that_cross(touching)[[0, 2, 3]].all()
+    assert find_crossing_edges(touching)[[0, 2, 3]].all()
 
 
 def test_edges_of_two_polygons_meet() -> None:
     square = np.array([0, 2, 2 + 2j, 2j])
-    own, other = edges_that_meet(square, square + 1)
+    own, other = find_meeting_edges(square, square + 1)
     assert_array_equal(own, [True, True, True, False])
     assert_array_equal(other, [True, False, True, True])
-    own, other = edges_that_meet(square, 0.5 * square + 1)  # one corner of it stands out
+    own, other = find_meeting_edges(square, 0.5 * square + 1)  # one corner of it stands out
     assert own.tolist() == [True, True, False, False]
 
 

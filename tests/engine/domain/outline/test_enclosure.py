@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from engine.arrays import Bytes, Complexes
 from engine.domain.outline import enclosure, fitting
-from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose
+from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose_subject
 from engine.domain.outline.fitting import Candidates
 from engine.domain.picture.mask import subject_mask
 from engine.domain.picture.parts import FRAGMENTED
@@ -19,7 +19,7 @@ from engine.geometry.polygon import as_xy, contains, signed_area
 
 
 def outlined(rgba: Bytes, detail: Detail = "normal") -> Enclosure:
-    return enclose(subject_mask(rgba).mask, detail=detail)
+    return enclose_subject(subject_mask(rgba).mask, detail=detail)
 
 
 # Painted when a test asks for them.
@@ -56,7 +56,7 @@ PICTURES = {
 @pytest.mark.parametrize("name", PICTURES)
 def test_outline_and_cage_are_sound(name: str) -> None:
     mask = subject_mask(PICTURES[name]()).mask
-    check_outline(mask, enclose(mask, detail="normal"))
+    check_outline(mask, enclose_subject(mask, detail="normal"))
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_outline_and_cage_are_sound(name: str) -> None:
 )
 def test_outlines_of_every_detail_are_sound(name: str, detail: Detail) -> None:
     mask = subject_mask(PICTURES[name]()).mask
-    check_outline(mask, enclose(mask, detail=detail))
+    check_outline(mask, enclose_subject(mask, detail=detail))
 
 
 strokes = st.tuples(
@@ -93,13 +93,13 @@ def test_random_unions_of_strokes(
     mask = pictures.capsules(size, ends)[..., 3] > 0
     rows, columns = np.nonzero(mask)
     if len(rows) and max(np.ptp(rows), np.ptp(columns)) >= 7:
-        check_outline(mask, enclose(mask, detail=detail))
+        check_outline(mask, enclose_subject(mask, detail=detail))
 
 
 def test_points_are_pixels_of_the_picture_with_y_up() -> None:
     mask = np.zeros((100, 300), dtype=np.bool_)
     mask[10:30, 200:280] = True  # near the upper right corner
-    points = enclose(mask, detail="normal").outline
+    points = enclose_subject(mask, detail="normal").outline
     margin = 0.8  # pixels: the least one of small subjects
     assert_allclose(points.real.min(), 200 - margin, rtol=0, atol=0.2)
     assert_allclose(points.real.max(), 280 + margin, rtol=0, atol=0.2)
@@ -112,7 +112,7 @@ def test_the_margin_is_what_the_detail_says() -> None:
     rows, columns = np.nonzero(mask)
     tree = cKDTree(np.column_stack([columns + 0.5, mask.shape[0] - rows - 0.5]))
     for detail, share in (("coarse", 0.012), ("normal", 0.006), ("fine", 0.003)):
-        points = enclose(mask, detail=detail).outline  # type: ignore[arg-type]
+        points = enclose_subject(mask, detail=detail).outline  # type: ignore[arg-type]
         distance, _ = tree.query(as_xy(points))
         assert_allclose(distance - 0.5, share * diagonal(mask), rtol=0, atol=0.6)
 
@@ -123,7 +123,7 @@ def test_the_margin_is_what_the_detail_says() -> None:
 )
 def test_limbs_a_few_pixels_apart_stay_separate(gap: int, size: int) -> None:
     mask = pictures.limbs(gap, size)[..., 3] > 0
-    outline = enclose(mask, detail="normal")
+    outline = enclose_subject(mask, detail="normal")
     check_outline(mask, outline)
     for share in (0.5, 0.7, 0.88):
         middle = size // 2 + gap / 2 + 1j * (size - share * size)
@@ -137,7 +137,9 @@ def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
     assert not contains(wide.outline, centre).any()
     assert contains(shut.outline, centre).all()
     assert len(shut.holes) == 1
-    filled = enclose(subject_mask(pictures.ring(mouth=0)).mask, detail="normal", holes="fill")
+    filled = enclose_subject(
+        subject_mask(pictures.ring(mouth=0)).mask, detail="normal", holes="fill"
+    )
     assert filled.notices == ("1 hole filled, 30.9% of the subject",)
 
 
@@ -151,7 +153,7 @@ def test_parts_are_joined_by_the_shortest_bridges() -> None:
     mask = np.zeros((200, 400), dtype=np.bool_)
     for left in (20, 150, 340):
         mask[80:120, left : left + 40] = True
-    outline = enclose(mask, detail="normal")
+    outline = enclose_subject(mask, detail="normal")
     check_outline(mask, outline)
     assert outline.notices == ("3 parts joined by invisible bridges",)
     # Each bridge is as straight and narrow as it can be.
@@ -185,10 +187,10 @@ def test_icons_get_smooth_sides() -> None:
 def test_pictures_of_many_megapixels_are_outlined_alike(scale: int) -> None:
     rgba = np.kron(pictures.blob(250, 7), np.ones((scale, scale, 1), dtype=np.uint8))
     mask = subject_mask(rgba).mask
-    outline = enclose(mask, detail="normal")
+    outline = enclose_subject(mask, detail="normal")
     small = outlined(pictures.blob(250, 7))
     few = mask[:: scale // 2, :: scale // 2]
-    check_outline(few, enclose(few, detail="normal"))
+    check_outline(few, enclose_subject(few, detail="normal"))
     rows, columns = np.nonzero(mask & ~ndimage.binary_erosion(mask))
     assert contains(outline.outline, columns + 0.5 + 1j * (mask.shape[0] - rows - 0.5)).all()
     assert_allclose(
@@ -200,7 +202,7 @@ def test_hairlines_of_large_pictures_are_not_lost() -> None:
     mask = np.zeros((3000, 3000), dtype=np.bool_)
     mask[1400:1600, 1400:1600] = True
     mask[1501, 100:2900] = mask[100:2900, 1503] = True
-    check_outline(mask, enclose(mask, detail="normal"))
+    check_outline(mask, enclose_subject(mask, detail="normal"))
 
 
 def test_an_intricate_drawing_keeps_to_few_vertices() -> None:

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, Complexes
 from engine.domain import build_domain, require_domain
-from engine.domain.outline import Detail, Enclosure, enclose
+from engine.domain.outline import Detail, Enclosure, enclose_subject
 from engine.domain.picture import subject_mask
 from engine.domain.picture.cut_out import CutOut
 from engine.geometry import Hole, contains, signed_area
@@ -37,7 +37,7 @@ def keyhole() -> Booleans:
 
 
 def kept(mask: Booleans, detail: Detail = "normal") -> Enclosure:
-    return enclose(mask, detail=detail, holes="keep")
+    return enclose_subject(mask, detail=detail, holes="keep")
 
 
 def check_holes(mask: Booleans, enclosure: Enclosure, *, most: int = 200) -> None:
@@ -87,7 +87,7 @@ def test_large_holes_are_kept(mask: Booleans, count: int, detail: Detail) -> Non
 @pytest.mark.parametrize("name", ["ring", "plate"])
 def test_what_lies_around_the_holes_is_the_same_whether_they_are_kept_or_filled(name) -> None:
     mask = {"ring": pictures.ring()[..., 3] > 0, "plate": plate((120, 150, 60))}[name]
-    keeping, filling = kept(mask), enclose(mask, detail="normal", holes="fill")
+    keeping, filling = kept(mask), enclose_subject(mask, detail="normal", holes="fill")
     assert_array_equal(keeping.outline, filling.outline)
     assert_array_equal(keeping.cage, filling.cage)
     assert filling.holes == ()
@@ -118,7 +118,7 @@ def test_bubbles_in_a_soft_contour_are_no_holes() -> None:
     enclosure = kept(soft > 0.03)
     assert (enclosure.holes, enclosure.notices) == ((), ())
     assert kept(soft > 0.03, "fine").notices == ()
-    assert enclose(soft > 0.03, detail="normal", holes="fill").notices == ()
+    assert enclose_subject(soft > 0.03, detail="normal", holes="fill").notices == ()
     # A hole that is seen is told, as ever.
     y, x = np.mgrid[:side, :side] - side // 2
     told = kept((soft > 0.03) & (np.hypot(x, y) > 0.013 * side)).notices

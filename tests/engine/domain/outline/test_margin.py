@@ -10,7 +10,7 @@ from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.gaps import half_gaps
 from engine.domain.outline.margin import MarginCurve, curve_at_margin, distance_field
 from engine.domain.outline.simplify import choose_vertices
-from engine.geometry.polygon import contains, edges, is_simple
+from engine.geometry.polygon import contains, edge_vectors, is_simple
 
 
 def curve_around(
@@ -161,5 +161,5 @@ def test_a_polygon_that_turns_back_is_fitted_again() -> None:
     )
     polygon = fit_polygon(Candidates.on(curve, 141.0), np.array([-10 + 0j]))
     assert polygon is not None
-    along = edges(polygon)
+    along = edge_vectors(polygon)
     assert np.abs(np.degrees(np.angle(along / np.roll(along, 1)))).max() <= 160

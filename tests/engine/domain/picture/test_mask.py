@@ -224,10 +224,10 @@ def test_a_point_treats_what_is_enclosed_the_other_way() -> None:
         # Where holes are filled, the one that is not has to be named to what fills them.
         (GREEN, "fill", ring, (150 + 140j, elsewhere)),
     ):
-        cut_out = CutOut(holes=holes, swapped=(150 + 140j, elsewhere))
+        cut_out = CutOut(holes=holes, toggled_holes=(150 + 140j, elsewhere))
         subject = subject_mask(pictures.on_plain(pictures.painted(ring), colour), cut_out)
         assert_array_equal(subject.mask, wanted)
-        assert subject.swapped == left
+        assert subject.toggled_holes == left
 
 
 def test_lines_on_coloured_paper_enclose_their_drawing() -> None:

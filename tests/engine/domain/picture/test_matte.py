@@ -12,7 +12,7 @@ from scipy import ndimage
 from engine.arrays import Bytes, Floats
 from engine.domain.build import texture as painted_texture
 from engine.domain.picture.mask import subject_mask
-from engine.domain.picture.matte import matted
+from engine.domain.picture.matte import matte_picture
 
 INK = (40, 90, 160)
 # Subject and background: dark on white, light on black, and two that differ in hue above all.
@@ -149,7 +149,7 @@ def test_a_whole_picture_stays_opaque() -> None:
 def test_the_subject_may_touch_the_picture_s_sides() -> None:
     truth = disc(2.0)[36:, 10:]
     rgba = painted(truth, INK, (255, 255, 255))
-    result = matted(rgba, subject_mask(rgba).mask)
+    result = matte_picture(rgba, subject_mask(rgba).mask)
     edge = (truth > 0) & (truth < 1)
     assert np.abs(result[..., 3] / 255 - truth)[edge].mean() < 0.02
 
@@ -157,7 +157,7 @@ def test_the_subject_may_touch_the_picture_s_sides() -> None:
 def test_masks_without_an_edge_change_nothing() -> None:
     rgba = painted(disc(1.0), INK, (255, 255, 255))
     for subject in (np.zeros(rgba.shape[:2], np.bool_), np.ones(rgba.shape[:2], np.bool_)):
-        assert_array_equal(matted(rgba, subject), rgba)
+        assert_array_equal(matte_picture(rgba, subject), rgba)
 
 
 def test_noise_hides_no_edge_and_is_none_of_the_subject() -> None:
@@ -183,7 +183,7 @@ def test_a_mask_on_a_busy_photograph_has_a_soft_edge_and_no_holes() -> None:
     rgb = 120 + 0.3 * x[..., None] + grain
     rgba = np.dstack([np.clip(rgb, 0, 255), np.full(truth.shape, 255)]).astype(np.uint8)
     kept = truth > 0.5
-    alpha = matted(rgba, kept)[..., 3] / 255
+    alpha = matte_picture(rgba, kept)[..., 3] / 255
     assert alpha[ndimage.binary_erosion(kept, iterations=3)].min() > 0.8
     assert alpha[ndimage.binary_dilation(kept, iterations=2) == 0].max() < 0.1
     # Whatever the colours happen to be: nowhere far from what the mask alone would tell.
@@ -193,7 +193,7 @@ def test_a_mask_on_a_busy_photograph_has_a_soft_edge_and_no_holes() -> None:
 def test_what_is_cut_by_hand_from_one_colour_is_not_eaten() -> None:
     rgba = np.full((120, 120, 4), 255, dtype=np.uint8)
     kept = disc(1.0, 120) > 0.5
-    alpha = matted(rgba, kept)[..., 3]
+    alpha = matte_picture(rgba, kept)[..., 3]
     assert (alpha[ndimage.binary_erosion(kept, iterations=2)] == 255).all()
     assert (alpha[~ndimage.binary_dilation(kept)] == 0).all()
 

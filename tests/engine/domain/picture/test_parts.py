@@ -90,9 +90,9 @@ def test_a_hole_is_filled_and_told_with_its_size(size: int, told: str) -> None:
     piece = join_parts(mask, diagonal(mask))
     assert piece.mask[50:220, 50:217].all()
     assert piece.notices == ()
-    assert piece.told_filled([1]) == (f"1 hole filled, {told} of the subject",)
-    assert piece.told_filled([1], "for a reason")[0].endswith("of the subject, for a reason")
-    assert piece.told_filled([]) == ()
+    assert piece.filled_notice([1]) == (f"1 hole filled, {told} of the subject",)
+    assert piece.filled_notice([1], "for a reason")[0].endswith("of the subject, for a reason")
+    assert piece.filled_notice([]) == ()
 
 
 def test_pits_as_small_as_specks_are_filled_and_not_told() -> None:
@@ -114,7 +114,7 @@ def test_holes_are_numbered_by_their_size() -> None:
     assert piece.hole_areas.tolist() == [1600, 400, 100]
     assert [piece.holes[row, 105] for row in (65, 110, 165)] == [3, 1, 2]
     assert_array_equal(piece.mask, mask | (piece.holes > 0))
-    assert piece.told_filled([2, 3]) == ("2 holes filled, the largest 1.4% of the subject",)
+    assert piece.filled_notice([2, 3]) == ("2 holes filled, the largest 1.4% of the subject",)
 
 
 def test_holes_that_bridges_enclose_are_filled() -> None:

@@ -7,7 +7,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from engine.errors import EngineError
 from engine.geometry.kinematics import fit_keys
-from engine.geometry.kinematics.recordings import TOLERANCE, FittedKeys, key_motion
+from engine.geometry.kinematics.recordings import TOLERANCE, FittedKeys, evaluate_keys
 
 
 def moves(times, targets, seconds=0.9):
@@ -28,7 +28,7 @@ def recorded(seconds, *, rate=80, noise=1.0, seed=0):
 
 def missed(keys, times, places):
     inside = (times >= keys.frames[0]) & (times <= keys.frames[-1])
-    return np.abs(key_motion(keys, times[inside]) - places[inside]).max()
+    return np.abs(evaluate_keys(keys, times[inside]) - places[inside]).max()
 
 
 def drawn(*frames, seed=0):
@@ -42,7 +42,7 @@ def test_the_motion_is_the_hermite_spline_of_places_and_velocities():
     keys = drawn(3, 4, 9, 11, 30)
     times = np.random.default_rng(0).uniform(3, 30, 300)
     expected = CubicHermiteSpline(*keys)(times)
-    assert_allclose(key_motion(keys, times), expected, rtol=0, atol=1e-10)
+    assert_allclose(evaluate_keys(keys, times), expected, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize(("tolerance", "most"), [(3.0, 8), (5.0, 7), (30.0, 4)])
@@ -71,7 +71,7 @@ def test_no_key_could_be_left_out(seed):
         rest = np.delete(frames, key)
         # All at once, by a dense matrix: the motion of one number at 1 and all others at 0.
         columns = [
-            key_motion(FittedKeys(rest, *column), times)
+            evaluate_keys(FittedKeys(rest, *column), times)
             for column in np.eye(2 * len(rest)).reshape(-1, 2, len(rest))
         ]
         matrix = np.array(columns).T
@@ -82,7 +82,7 @@ def test_no_key_could_be_left_out(seed):
 def test_what_keys_made_is_found_again():
     made = drawn(0, 6, 12, 24, 36, 48)
     times = np.linspace(0, 48, 400)
-    places = key_motion(made, times)
+    places = evaluate_keys(made, times)
     found = fit_keys(times, places, 1e-3)
     assert len(found.frames) <= len(made.frames) + 2
     assert missed(found, times, places) <= 1e-3
@@ -117,7 +117,7 @@ def test_a_hand_that_rests_leaves_the_handle_where_it_is():
     times = np.arange(0, 120, 0.4)
     there, back = 30 * np.clip((times - 20) / 15, 0, 1), 30 * np.clip((times - 80) / 15, 0, 1)
     places = np.round(there - back) + 7j
-    rests = key_motion(fit_keys(times, places, 1.5), np.linspace(45, 70, 200))
+    rests = evaluate_keys(fit_keys(times, places, 1.5), np.linspace(45, 70, 200))
     assert np.abs(rests - (30 + 7j)).max() < 1.5
     keys = fit_keys(times, np.full(len(times), 3 + 4j), 1.5)
     assert_array_equal(keys.frames, [0, 119])
@@ -149,7 +149,7 @@ def test_a_spike_costs_keys_around_it_only():
     places[200] += 200
     keys = fit_keys(times, places, 3.0)
     away = np.abs(times - times[200]) > 4
-    assert np.abs(key_motion(keys, times[away]) - places[away]).max() <= 3.0
+    assert np.abs(evaluate_keys(keys, times[away]) - places[away]).max() <= 3.0
     assert len(keys.frames) <= usual + 16
 
 
@@ -175,7 +175,7 @@ def test_in_a_gap_of_the_recording_the_way_is_straight():
     keys = fit_keys(times, places, 2.0)
     gap = np.linspace(times[33], times[34], 100)
     straight = np.interp(gap, times[33:35], places[33:35])
-    assert np.abs(key_motion(keys, gap) - straight).max() < 3.0
+    assert np.abs(evaluate_keys(keys, gap) - straight).max() < 3.0
 
 
 @pytest.mark.parametrize(

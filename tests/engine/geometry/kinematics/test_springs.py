@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 from engine.errors import EngineError
-from engine.geometry.kinematics import swing, turn_arm
-from engine.geometry.kinematics.springs import FADE, GONE, WIDEST, flow
+from engine.geometry.kinematics import simulate_spring, turn_arm
+from engine.geometry.kinematics.springs import FADE_FRAMES, INVISIBLE, WIDEST, oscillator_flow
 
 DAMPINGS = [0.0, 1e-9, 0.2, 1 - 1e-9, 1.0, 1 + 1e-9, 1.7, 100.0]
 
@@ -51,7 +51,7 @@ def integrated(q, fps, frequency, damping, times):
 @pytest.mark.parametrize("frequency", [0.05, 1.6, 20.0])
 def test_a_swing_is_that_of_the_differential_equation(frequency, damping):
     q, times = walk(10), np.sort(np.random.default_rng(1).uniform(0, 9, 60))
-    found = swing(q, 24, frequency=frequency, damping=damping).at(times)
+    found = simulate_spring(q, 24, frequency=frequency, damping=damping).at(times)
     expected = integrated(q, 24, frequency, damping, times)
     assert np.abs(expected).max() > 1
     assert_allclose(found, expected, rtol=0, atol=1e-6)
@@ -61,11 +61,13 @@ def test_a_swing_is_that_of_the_differential_equation(frequency, damping):
 def test_flows_follow_each_other_as_one_and_never_grow(damping):
     rng = np.random.default_rng(2)
     first, second = rng.exponential(3, (2, 50))
-    flows = flow(first, damping), flow(second, damping)
-    assert_allclose(flows[0] @ flows[1], flow(first + second, damping), rtol=0, atol=1e-12)
+    flows = oscillator_flow(first, damping), oscillator_flow(second, damping)
+    assert_allclose(
+        flows[0] @ flows[1], oscillator_flow(first + second, damping), rtol=0, atol=1e-12
+    )
     assert np.linalg.norm(flows[0], 2, axis=(1, 2)).max() <= 1 + 1e-13
     # (o, ȯ/ω) changes by ωh (ȯ/ω, −o − 2ζ ȯ/ω).
-    little = flow(np.array(1e-7), damping) - np.eye(2)
+    little = oscillator_flow(np.array(1e-7), damping) - np.eye(2)
     assert_allclose(little / 1e-7, [[0, 1], [-1, -2 * damping]], rtol=1e-4, atol=1e-6)
 
 
@@ -73,7 +75,10 @@ def test_nothing_jumps_where_damping_becomes_critical():
     angles = np.linspace(0, 30, 31)
     for less, more in ((1 - 1e-12, 1), (1, 1 + 1e-12), (1 - 1e-7, 1 + 1e-7)):
         assert_allclose(
-            flow(angles, less), flow(angles, more), rtol=0, atol=1e-5 * (more - less > 1e-9) + 1e-11
+            oscillator_flow(angles, less),
+            oscillator_flow(angles, more),
+            rtol=0,
+            atol=1e-5 * (more - less > 1e-9) + 1e-11,
         )
 
 
@@ -83,7 +88,7 @@ def test_nothing_jumps_where_damping_becomes_critical():
 def test_nothing_overflows(frequency, damping, loop):
     q = circle(48)
     times = np.linspace(0, 48, 500)
-    offsets = swing(q, 24, frequency=frequency, damping=damping, loop=loop).at(times)
+    offsets = simulate_spring(q, 24, frequency=frequency, damping=damping, loop=loop).at(times)
     assert np.isfinite(offsets).all()
     # A driven swing is at most so much larger than its drive.
     assert np.abs(offsets).max() < 1e3 * np.abs(q).max()
@@ -94,11 +99,11 @@ def test_nothing_overflows(frequency, damping, loop):
 def test_a_loop_closes(damping, count):
     q = walk(count + 1, seed=3)
     q[-1] = q[0]
-    spring = swing(q, 24, frequency=1.6, damping=damping, loop=True)
+    spring = simulate_spring(q, 24, frequency=1.6, damping=damping, loop=True)
     first, last = spring.states[0], spring.states[-1]
     # Where the last frame leads to is where the first one begins, before its own impulse.
     jump = (q[1] - q[0] - (q[-1] - q[-2])) / spring.angle
-    reached = flow(np.array(spring.angle), damping) @ last
+    reached = oscillator_flow(np.array(spring.angle), damping) @ last
     assert_allclose(reached - [0, jump], first, rtol=0, atol=1e-12 * max(1, np.abs(q).max()))
     times = np.linspace(0, count, 37)
     assert_allclose(spring.at(times + 5 * count), spring.at(times), rtol=0, atol=1e-9)
@@ -110,14 +115,14 @@ def test_a_loop_is_where_many_rounds_from_rest_lead_to():
     q = np.append(q, q[0])
     rounds = np.append(np.tile(q[:-1], 30), q[0])
     times = np.linspace(0, 24, 100)
-    loop = swing(q, 24, frequency=2, damping=0.2, loop=True).at(times)
-    long = swing(rounds, 24, frequency=2, damping=0.2).at(29 * 24 + times)
+    loop = simulate_spring(q, 24, frequency=2, damping=0.2, loop=True).at(times)
+    long = simulate_spring(rounds, 24, frequency=2, damping=0.2).at(29 * 24 + times)
     assert_allclose(loop, long, rtol=0, atol=1e-9)
 
 
 def test_every_frame_rate_sees_one_motion():
     q = walk(49, seed=5)
-    spring = swing(q, 24, frequency=3, damping=0.25, lag=1.3)
+    spring = simulate_spring(q, 24, frequency=3, damping=0.25, lag=1.3)
     seconds = {fps: np.arange(2 * fps + 1) / fps for fps in (24, 25, 60)}
     fine = np.unique(np.concatenate(list(seconds.values())))
     known = dict(zip(fine, spring.at(24 * fine), strict=True))
@@ -131,7 +136,9 @@ def test_every_frame_rate_sees_one_motion():
 @pytest.mark.parametrize("loop", [False, True])
 def test_lag_shifts_all_of_it_in_time(loop):
     q = circle(24)
-    prompt, late = (swing(q, 24, frequency=2, damping=0.3, lag=lag, loop=loop) for lag in (0, 2.75))
+    prompt, late = (
+        simulate_spring(q, 24, frequency=2, damping=0.3, lag=lag, loop=loop) for lag in (0, 2.75)
+    )
     times = np.linspace(3, 24, 50)
     assert_allclose(late.at(times), prompt.at(times - 2.75), rtol=0, atol=1e-12)
     if not loop:
@@ -146,7 +153,7 @@ def still_after(q, count):
 def test_a_swing_ends_in_a_fade_and_is_nothing_until_the_base_moves_again(loop):
     there = still_after(100 * np.linspace(0, 1, 6) ** 2 * (1 + 1j), 120)
     q = np.concatenate([there, still_after(there[::-1][120:], 150)])
-    spring = swing(q, 24, frequency=2, damping=0.2, loop=loop)
+    spring = simulate_spring(q, 24, frequency=2, damping=0.2, loop=loop)
     times = np.linspace(0, len(q) - 1, 20 * (len(q) - 1) + 1)
     offsets = spring.at(times)
     resting = (offsets == 0) & (times > 0)
@@ -155,12 +162,12 @@ def test_a_swing_ends_in_a_fade_and_is_nothing_until_the_base_moves_again(loop):
     assert 30 < ended < again - 20
     assert resting[(times > ended + 0.1) & (times <= again)].all()
     assert not resting[(times > again + 0.1) & (times < again + 20)].any()
-    assert np.abs(offsets[(times > ended - FADE) & (times < again)]).max() < GONE
-    assert np.abs(offsets[(times < ended - FADE - 30)]).max() > 10
+    assert np.abs(offsets[(times > ended - FADE_FRAMES) & (times < again)]).max() < INVISIBLE
+    assert np.abs(offsets[(times < ended - FADE_FRAMES - 30)]).max() > 10
     assert resting[-100:].all()
     # The fade begins and ends at whole frames, and nothing kinks in it.
     assert ended == pytest.approx(round(ended), abs=0.11)
-    fades = (times > ended - FADE - 2) & (times < ended + 2)
+    fades = (times > ended - FADE_FRAMES - 2) & (times < ended + 2)
     slopes = np.gradient(offsets[fades], times[1])
     assert np.abs(np.diff(slopes)).max() < 0.02 * np.abs(slopes).max() + 2e-4
 
@@ -181,31 +188,31 @@ def test_where_a_loop_begins_is_no_matter(still, radius, damping, fades):
     count = len(q)
     times = np.linspace(0, count, 12 * count + 1)
     settings = {"frequency": 3, "damping": damping, "loop": True}
-    spring = swing(np.append(q, q[0]), 24, **settings)
+    spring = simulate_spring(np.append(q, q[0]), 24, **settings)
     assert (spring.fading >= 0).any() == fades
     whole = np.arange(count)
     assert_allclose(spring.at(whole - 1e-9), spring.at(whole), rtol=0, atol=1e-6)
     offsets = spring.at(times)
     for shift in range(1, count):
         moved = np.roll(q, shift)
-        shifted = swing(np.append(moved, moved[0]), 24, **settings).at(times + shift)
+        shifted = simulate_spring(np.append(moved, moved[0]), 24, **settings).at(times + shift)
         assert_allclose(shifted, offsets, rtol=0, atol=1e-12)
 
 
 def test_zeros_of_a_swing_do_not_end_it():
     # It sets out once, so that the offset is 0 every half of a second's swing of 12 frames.
-    spring = swing(10.0 * np.arange(61), 24, frequency=2, damping=0.0)
+    spring = simulate_spring(10.0 * np.arange(61), 24, frequency=2, damping=0.0)
     assert_allclose(spring.at(np.arange(0, 61, 6)), 0, rtol=0, atol=1e-12)
     assert_allclose(np.abs(spring.at(np.arange(3, 61, 6))), 60 / np.pi, rtol=1e-12)
 
 
 def test_a_base_that_moves_on_within_the_fade_lets_it_swing_on():
     q = still_after(np.array([0, 100.0]), 100)
-    quiet = swing(q, 24, frequency=2, damping=0.2)
+    quiet = simulate_spring(q, 24, frequency=2, damping=0.2)
     ended = int(np.flatnonzero(~quiet.states.any(axis=1))[1])
     disturbed = q.copy()
     disturbed[ended - 2 :] += 1
-    spring = swing(disturbed, 24, frequency=2, damping=0.2)
+    spring = simulate_spring(disturbed, 24, frequency=2, damping=0.2)
     assert (spring.fading[: ended - 2] < 0).all()
     assert np.abs(spring.at(ended - 2.5)) > 0
 
@@ -216,11 +223,13 @@ def test_a_base_at_rest_or_at_one_pace_leaves_exactly_nothing(loop, damping):
     times = np.linspace(0, 30, 301)
     rng = np.random.default_rng(6)
     rest = 700 + 300j + 1e-13 * rng.normal(size=31)  # but for rounding
-    assert not swing(rest, 24, frequency=2, damping=damping, loop=loop).at(times).any()
-    assert not swing([5j], 24, frequency=2, damping=damping, loop=loop).at(times).any()
+    assert not simulate_spring(rest, 24, frequency=2, damping=damping, loop=loop).at(times).any()
+    assert not simulate_spring([5j], 24, frequency=2, damping=damping, loop=loop).at(times).any()
     if loop:
         pace = 3 * np.arange(31)
-        assert not swing(pace, 24, frequency=2, damping=damping, loop=True).at(times).any()
+        assert (
+            not simulate_spring(pace, 24, frequency=2, damping=damping, loop=True).at(times).any()
+        )
 
 
 @pytest.mark.parametrize("loop", [False, True])
@@ -228,17 +237,20 @@ def test_it_moves_and_turns_with_the_world_and_grows_with_its_strength(loop):
     q, times = walk(25, seed=7), np.linspace(0, 24, 200)
     q[-1] = q[0]
     settings = {"frequency": 2.0, "damping": 0.3, "loop": loop}
-    offsets = swing(q, 24, **settings).at(times)
-    turned = swing(np.exp(1j) * q + 70 - 20j, 24, **settings).at(times)
+    offsets = simulate_spring(q, 24, **settings).at(times)
+    turned = simulate_spring(np.exp(1j) * q + 70 - 20j, 24, **settings).at(times)
     assert_allclose(turned, np.exp(1j) * offsets, rtol=0, atol=1e-10)
-    assert_allclose(swing(q, 24, strength=2.5, **settings).at(times), 2.5 * offsets, rtol=1e-12)
-    assert not swing(q, 24, strength=0, **settings).at(times).any()
+    assert_allclose(
+        simulate_spring(q, 24, strength=2.5, **settings).at(times), 2.5 * offsets, rtol=1e-12
+    )
+    assert not simulate_spring(q, 24, strength=0, **settings).at(times).any()
 
 
 def test_a_limit_is_soft_and_never_reached():
     q, times = walk(25, seed=8), np.linspace(0, 24, 400)
     free, held = (
-        swing(q, 24, frequency=2, damping=0.1, limit=limit).at(times) for limit in (np.inf, 12)
+        simulate_spring(q, 24, frequency=2, damping=0.1, limit=limit).at(times)
+        for limit in (np.inf, 12)
     )
     assert np.abs(free).max() > 24
     assert 10 < np.abs(held).max() < 12
@@ -249,8 +261,8 @@ def test_what_drives_an_arm_is_what_is_across_it():
     """Where the arm does not turn that is a part of what moves its end freely."""
     q, times, arm = walk(25, seed=9), np.linspace(0, 24, 100), 3 + 40j
     settings = {"frequency": 2, "damping": 0.3}
-    arcs = swing(q, 24, roots=q - arm, **settings).at(times)
-    free = swing(q, 24, **settings).at(times)
+    arcs = simulate_spring(q, 24, roots=q - arm, **settings).at(times)
+    free = simulate_spring(q, 24, **settings).at(times)
     assert_allclose(arcs, (free * np.conj(arm)).imag / abs(arm), rtol=0, atol=1e-9)
     assert np.abs(arcs).max() > 1
 
@@ -260,7 +272,7 @@ def test_an_arm_swings_in_axes_that_turn_with_it():
     fps, frequency, damping, count = 480, 2.0, 0.2, 480
     seconds = np.arange(count + 1) / fps
     turn = 3 * np.sin(np.pi * seconds) ** 4
-    found = swing(
+    found = simulate_spring(
         80 * np.exp(1j * turn), fps, frequency=frequency, damping=damping, roots=0 * turn
     ).at(np.arange(count + 1))
     omega = 2 * np.pi * frequency
@@ -278,10 +290,12 @@ def test_an_arm_swings_in_axes_that_turn_with_it():
 def test_an_arm_that_turns_at_one_pace_does_not_swing():
     q = 50 * np.exp(2j * np.pi * np.arange(31) / 30)
     settings = {"frequency": 2.0, "damping": 0.2, "loop": True}
-    assert not swing(10 + q, 24, roots=np.full(31, 10), **settings).at(np.arange(30)).any()
-    assert np.abs(swing(10 + q, 24, **settings).at(np.arange(30))).min() > 1
+    assert (
+        not simulate_spring(10 + q, 24, roots=np.full(31, 10), **settings).at(np.arange(30)).any()
+    )
+    assert np.abs(simulate_spring(10 + q, 24, **settings).at(np.arange(30))).min() > 1
     # Nor one that has no length.
-    assert not swing(q, 24, roots=q, **settings).at(np.arange(30)).any()
+    assert not simulate_spring(q, 24, roots=q, **settings).at(np.arange(30)).any()
 
 
 @pytest.mark.parametrize("arc", [-1e6, -3.0, 0.0, 1e-9, 20.0, 1e6])
@@ -315,9 +329,9 @@ def test_a_turned_arm_keeps_its_length_and_turns_so_far_at_most(arc):
 def test_what_no_spring_can_do_is_refused_in_words(changes, words):
     given = {"places": circle(24), "fps": 24.0, "frequency": 2.0, "damping": 0.2} | changes
     with pytest.raises(EngineError, match=words):
-        swing(**given)
+        simulate_spring(**given)
 
 
 def test_a_time_that_is_no_time_is_refused():
     with pytest.raises(EngineError, match="not finite"):
-        swing(circle(24), 24, frequency=2, damping=0.2).at([1.0, np.nan])
+        simulate_spring(circle(24), 24, frequency=2, damping=0.2).at([1.0, np.nan])

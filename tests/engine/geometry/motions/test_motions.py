@@ -9,18 +9,18 @@ from bodies import body
 from numpy.testing import assert_allclose
 
 from engine.errors import EngineError
-from engine.geometry.motions import MOTIONS, Body, Parameters, kind_named
+from engine.geometry.motions import MOTIONS, Body, Parameters, find_kind
 
 USUAL = Parameters()
 FITTING = [(name, kind) for name, motion in MOTIONS.items() for kind in motion.kinds]
-TRAVELLING = [each for each in FITTING if MOTIONS[each[0]].course(each[1]).travels]
+TRAVELLING = [each for each in FITTING if MOTIONS[each[0]].template_for(each[1]).can_travel]
 SIZE = 240.0  # pixels: about that of the bodies
 each_motion = pytest.mark.parametrize(("name", "kind"), FITTING)
 each_gait = pytest.mark.parametrize(("name", "kind"), TRAVELLING)
 
 
 def places(name, kind, shares, parameters=USUAL, of=None):
-    moments = MOTIONS[name].moments(of or body(kind), parameters, list(shares))
+    moments = MOTIONS[name].poses_at(of or body(kind), parameters, list(shares))
     return {joint: np.array([each.places[joint] for each in moments]) for joint in moments[0][0]}
 
 
@@ -51,7 +51,7 @@ def test_limbs_keep_their_lengths(name, kind):
 @each_gait
 def test_planted_feet_have_one_ground_speed(name, kind):
     shares = np.linspace(0, 1, 121)
-    moments = MOTIONS[name].moments(body(kind), USUAL, shares.tolist())
+    moments = MOTIONS[name].poses_at(body(kind), USUAL, shares.tolist())
     seen, steps = set(), []
     for before, after in pairwise(moments):
         for foot in before.standing & after.standing:
@@ -77,7 +77,7 @@ def test_nobody_crouches_for_long_steps():
 def test_travelling_plants_feet_and_gets_on_by_a_stride(name, kind):
     travelling = Parameters(travel=True)
     shares = np.linspace(0, 2, 161)
-    moments = MOTIONS[name].moments(body(kind), travelling, shares.tolist())
+    moments = MOTIONS[name].poses_at(body(kind), travelling, shares.tolist())
     for before, after in pairwise(moments):
         for foot in before.standing & after.standing:
             assert_allclose(after.places[foot], before.places[foot], atol=1e-9 * SIZE)
@@ -149,9 +149,9 @@ def test_legs_of_one_drawing_never_pass_through_each_other():
 def test_what_does_not_fit_is_refused(name, kind, joints, parameters, said):
     rest = body(kind)
     if joints is not None:
-        rest = Body(kind=kind_named(kind), joints=joints, box=rest.box)
+        rest = Body(kind=find_kind(kind), joints=joints, box=rest.box)
     with pytest.raises(EngineError, match=said):
-        MOTIONS[name].moments(rest, parameters, [0.0])
+        MOTIONS[name].poses_at(rest, parameters, [0.0])
 
 
 def test_parameters_have_ranges():
@@ -159,6 +159,6 @@ def test_parameters_have_ranges():
         with pytest.raises(EngineError, match=next(iter(given))):
             Parameters(**given)
     with pytest.raises(EngineError, match="there is no kind 'centaur'"):
-        kind_named("centaur")
+        find_kind("centaur")
     with pytest.raises(EngineError, match="'chain' has no joint 'wing'"):
-        Body(kind=kind_named("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))
+        Body(kind=find_kind("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))

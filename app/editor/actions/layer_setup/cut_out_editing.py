@@ -1,0 +1,205 @@
+"""Cutting the subject out of its picture by hand: colour, brush, knife, mask and holes."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.document import shape_commands
+from app.editor.action import do
+from app.editor.actions import editing
+from app.editor.error_reports import run_job
+from app.editor.project import Project
+from app.editor.session import CutTool, Session, with_project
+from app.editor.work import JobKind
+from app.storage import (
+    check_writable,
+    cut_picture,
+    decode_mask,
+    encode_mask,
+    read_file,
+    write_atomically,
+)
+from engine.domain import CUT_WIDTH, CutLine, Mask, Stroke
+from engine.geometry import box_diagonal, distance_to_segments
+
+WRITING = JobKind("Saving the mask", "The mask was not saved")
+MASKS = (".png",)
+PANEL = "Cut-out"  # has the settings of the brush
+SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
+BRUSH_STEP = 1.25
+FIRST_BRUSH = 0.03  # of the picture's longer side
+BESIDE = 1.25  # widths of a slit: a handle that is nearer to the knife's line may be in it
+DROP = 2  # pixels around the one that is picked whose colour counts
+
+
+@with_project
+def toggle_cut_tool(session: Session, project: Project, tool: CutTool | None) -> None:
+    """Take a tool in hand that cuts out; None, or the same one again, goes back to posing."""
+    if session.active_tool is None:
+        session.cutting = None if tool == session.cutting else tool
+        session.material = project.motion_setup = None
+        session.panel_to_focus = PANEL if session.cutting else session.panel_to_focus
+
+
+def toggle_cut_brush(session: Session) -> None:
+    """Begin to cut out with the brush that removes; let a brush in hand do the opposite."""
+    toggle_cut_tool(session, "keep" if session.cutting == "remove" else "remove")
+
+
+@with_project
+def enlarge_brush(session: Session, project: Project) -> None:
+    """Make the brush larger."""
+    set_brush_radius(session, brush_radius(project) * BRUSH_STEP)
+
+
+@with_project
+def shrink_brush(session: Session, project: Project) -> None:
+    """Make the brush smaller."""
+    set_brush_radius(session, brush_radius(project) / BRUSH_STEP)
+
+
+@with_project
+def set_brush_radius(_: Session, project: Project, radius: float) -> None:
+    """Set the radius of the brush, in pixels of the picture."""
+    project.brush = min(max(radius, SMALLEST_BRUSH), LARGEST_BRUSH)
+
+
+def brush_radius(project: Project) -> float:
+    """Return the radius of the brush, in pixels of the picture."""
+    if project.brush is not None:
+        return project.brush
+    return max(4.0, FIRST_BRUSH * max(project.layer.picture.size))
+
+
+@with_project
+def change_cut_out(session: Session, project: Project, /, **changes: Any) -> None:
+    """Give the cut-out other values of its fields."""
+    cut_out = replace(project.layer.cut_out, **changes)
+    editing.edit_layer(session, shape_commands.set_cut_out, cut_out)
+
+
+def set_background_tolerance(session: Session, tolerance: int) -> None:
+    """Set by how many levels the background may vary."""
+    change_cut_out(session, tolerance=tolerance)
+
+
+def set_background(session: Session, background: Any) -> None:
+    """Set what is removed: "auto", "none", or a colour. A mask that was loaded goes."""
+    change_cut_out(session, background=background, mask=None)
+
+
+def set_enclosed_removed(session: Session, enclosed: Any) -> None:
+    """Set whether parts inside go that have the background's colour."""
+    change_cut_out(session, enclosed=enclosed)
+
+
+@with_project
+def pick_background_colour(session: Session, project: Project, place: complex) -> None:
+    """Take the colour of the picture at a place for the background's."""
+    rgba = project.layer_runtime.picture.rgba
+    height, width = rgba.shape[:2]
+    point = place - project.layer.corner
+    row, column = int(height - point.imag), int(point.real)
+    if not (0 <= row < height and 0 <= column < width):
+        return
+    around = rgba[
+        max(0, row - DROP) : row + DROP + 1, max(0, column - DROP) : column + DROP + 1, :3
+    ]
+    red, green, blue = (int(level) for level in np.median(around.reshape(-1, 3), axis=0))
+    set_background(session, (red, green, blue))
+
+
+def cut_with_brush(session: Session, stroke: Stroke) -> None:
+    """Keep or remove what a stroke covers."""
+    editing.edit_layer(session, shape_commands.cut_with_brush, stroke)
+
+
+@with_project
+def cut_with_knife(session: Session, project: Project, slit: CutLine) -> None:
+    """Part what touches along a line of the knife, which may go through no handle."""
+    layer = project.layer
+    width = CUT_WIDTH * box_diagonal(layer.domain.outline)
+    for handle in layer.handles:
+        if _away_from(slit, handle.position - layer.corner) < BESIDE * width:
+            session.show_notice(
+                f"The knife's line goes through {handle.name}. Draw it beside, or move the handle.",
+                tone="error",
+            )
+            return
+    editing.edit_layer(session, shape_commands.cut_with_line, slit)
+
+
+@with_project
+def remove_knife_cut(session: Session, project: Project, place: complex, reach: float) -> None:
+    """Take away the line of the knife that is nearest to a place, and no farther than `reach`."""
+    slits = project.layer.cut_out.cut_lines
+    away = [_away_from(slit, place - project.layer.corner) for slit in slits]
+    if min(away, default=np.inf) <= reach:
+        nearest = away.index(min(away))
+        change_cut_out(session, slits=slits[:nearest] + slits[nearest + 1 :])
+
+
+def _away_from(slit: CutLine, point: complex) -> float:
+    """Return how far a point of the picture is from a line of the knife."""
+    return float(distance_to_segments(np.array([point]), slit.points[:-1], slit.points[1:]).min())
+
+
+@with_project
+def toggle_hole(session: Session, project: Project, place: complex) -> None:
+    """Keep the hole at a place that would be filled, or fill one that would be kept."""
+    holes, point = project.layer_runtime.cut.value.holes, place - project.layer.corner
+    number = holes.number_at(point) if holes is not None else 0
+    if holes is None or not number:
+        return
+    swapped = project.layer.cut_out.toggled_holes
+    others = tuple(other for other in swapped if holes.number_at(other) != number)
+    # Its middle, not the point at its rim where the click may have been.
+    named = (*swapped, holes.middles[number])
+    change_cut_out(session, swapped=others if len(others) < len(swapped) else named)
+
+
+def clear_cut_out_strokes(session: Session) -> None:
+    """Take away all strokes, the knife's lines and the mask."""
+    change_cut_out(session, strokes=(), slits=(), mask=None)
+
+
+def ask_mask_to_load(session: Session) -> None:
+    """Ask which mask to load."""
+    session.ask_file("Load a mask", MASKS, lambda path: do(load_mask, path))
+
+
+@with_project
+def load_mask(session: Session, project: Project, path: Path) -> None:
+    """Read a mask on the worker; it takes the place of the background and of all strokes."""
+    identity = project.active
+
+    def take(mask: Mask) -> None:
+        if session.project is project and project.active == identity:
+            change_cut_out(session, mask=mask, strokes=())
+
+    kind = JobKind("Loading the mask", f"{path.name} cannot be loaded")
+    run_job(session, kind, lambda: decode_mask(read_file(path), path.name), take)
+
+
+@with_project
+def ask_mask_to_save(session: Session, project: Project) -> None:
+    """Ask where to save the mask."""
+    name = f"{project.name} mask.png"
+    session.ask_file("Save the mask", MASKS, lambda path: do(save_mask, path), name=name)
+
+
+@with_project
+def save_mask(session: Session, project: Project, path: Path) -> None:
+    """Write what is kept as a black and white picture."""
+    picture, cut_out = project.layer_runtime.picture, project.layer.cut_out
+    check_writable(path, sources=project.sources)
+
+    def work() -> None:
+        content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))
+        write_atomically(path, lambda file: file.write(content))
+
+    run_job(
+        session, WRITING, work, lambda _: session.show_notice(f"Saved {path.name}.", tone="good")
+    )

@@ -1,0 +1,196 @@
+"""Other bounds and another domain: the worker solves the keys again, one job for each."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+
+from app.document import Target, relax_limits, shape_commands
+from app.editor import pending_changes
+from app.editor.action import do
+from app.editor.actions import editing, posing
+from app.editor.error_reports import as_sentence, report_failure
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import JobKind, Promise
+from app.solving import KeyResolver, step_resolver
+from engine.maps import Bounds
+
+SOLVING_KEYS = JobKind("Solving the keys")
+REST = 0.5  # seconds after which a brush is taken to rest
+
+
+@with_project
+def preview_limits(_: Session, project: Project, bounds: Bounds) -> None:
+    """Try bounds while their knob is dragged; nothing is solved yet."""
+    project.previewed_limits = bounds
+
+
+@with_project
+def set_limits(session: Session, project: Project, bounds: Bounds) -> None:
+    """Set the bounds; keys that are outside of them are solved again."""
+    project.previewed_limits = bounds
+    cancel_solving_keys(session)
+    pending_changes.run_when_idle(session, do(_set_limits, bounds), "Limits")
+
+
+@with_project
+def _set_limits(session: Session, project: Project, bounds: Bounds) -> None:
+    project.previewed_limits = None
+    certificates = [pose.certificate for pose in project.layer.poses]
+    if all(bounds.allow(k=c.k, sigma_a=c.sigma_a, sigma_b=c.sigma_b) for c in certificates):
+        editing.edit_layer(session, shape_commands.set_limits, bounds)
+    elif bounds != project.layer.bounds:
+        begin_solving_keys(
+            session, KeyResolver(before=project.layer, bounds=bounds, solves_all=False)
+        )
+
+
+@with_project
+def relax_limits_and_solve(
+    session: Session, project: Project, asked: Mapping[int, Target] | None = None
+) -> None:
+    """Allow the next looser stretch, and pull the pose that is shown to its targets again.
+
+    Handles that a hand could not bring to where they were asked are pulled there once more.
+    """
+    bounds = relax_limits(project.layer.bounds)
+    if bounds is None:
+        return
+    cancel_solving_keys(session)
+    gesture = object()
+    # What was allowed still is, so that no key has to be solved again.
+    project.history.do(shape_commands.set_limits(project.active, bounds), gesture=gesture)
+    posing.solve_pose_again(session, asked or {}, gesture=gesture)
+
+
+@with_project
+def relax_motion_limits(session: Session, project: Project) -> None:
+    """Allow the next looser stretch on the way between the keys; poses stay as they are."""
+    bounds = relax_limits(project.layer.bounds)
+    if bounds is not None:
+        cancel_solving_keys(session)
+        project.history.do(shape_commands.set_limits(project.active, bounds))
+
+
+def set_limit(session: Session, bounds: Bounds, name: str, value: float) -> None:
+    """Set one of the bounds to a number that was typed in.
+
+    Raises
+    ------
+    EngineError
+        If it bounds nothing, or everything.
+    """
+    set_limits(session, replace(bounds, **{name: value}))
+
+
+def solve_keys_again(session: Session) -> None:
+    """Pull every key's handles to their places again, within the bounds of now."""
+    pending_changes.run_when_idle(session, do(_solve_keys_again), "Solve again")
+
+
+@with_project
+def _solve_keys_again(session: Session, project: Project) -> None:
+    begin_solving_keys(session, KeyResolver(before=project.layer, bounds=project.layer.bounds))
+
+
+def rebuild_mesh(session: Session) -> None:
+    """Find the outline and build the mesh again; handles stay, keys are solved again."""
+    pending_changes.run_when_idle(session, do(_rebuild_mesh), "Rebuild")
+
+
+@with_project
+def _rebuild_mesh(session: Session, project: Project) -> None:
+    layer, meshing = project.layer, project.meshing or project.layer.meshing
+    begin_solving_keys(session, KeyResolver(before=layer, bounds=layer.bounds, meshing=meshing))
+
+
+@with_project
+def rebuild_changed_cut_out(session: Session, project: Project) -> None:
+    """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
+    stale = project.stale_layer
+    if stale is None:
+        project.stale = None
+        return
+    if project.stale is None or project.stale[0] is not stale:
+        project.stale = stale, session.clock()
+    is_busy = session.active_tool is not None or project.pending
+    if not is_busy and session.clock() - project.stale[1] >= REST:
+        renewal = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
+        _go_on(session, project, renewal)
+
+
+def _follows_cut_out(renewal: KeyResolver) -> bool:
+    """Tell whether a domain is rebuilt only because its cut-out has changed."""
+    return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
+
+
+@with_project
+def cancel_solving_keys(session: Session, project: Project) -> None:
+    """Give up what is being solved or rebuilt."""
+    session.jobs.drop(SOLVING_KEYS)
+    if project.key_resolver is not None and _follows_cut_out(project.key_resolver):
+        project.unbuildable = project.key_resolver.before
+    project.pending = [promise for promise in project.pending if not promise.key_resolver]
+
+
+@with_project
+def begin_solving_keys(session: Session, project: Project, renewal: KeyResolver) -> None:
+    """Begin what replaces a layer's poses, in place of what is under way."""
+    cancel_solving_keys(session)
+    _go_on(session, project, renewal)
+
+
+def _go_on(session: Session, project: Project, renewal: KeyResolver) -> None:
+    if renewal.before not in project.document.layers:
+        if _follows_cut_out(renewal):
+            return  # and begins anew
+        session.show_notice(
+            "The keys were not posed again: the project changed meanwhile. Start again."
+        )
+        return
+    if renewal.is_over:
+        _accept(session, project, renewal)
+        return
+    picture = project.layer_runtimes[renewal.before.id].picture.rgba
+
+    def failed(error: Exception) -> None:
+        if renewal.replaces_picture:
+            report_failure(session, "The picture was not replaced", error)
+            return
+        builds = renewal.meshing is not None
+        if builds:
+            project.unbuildable = renewal.before
+        report_failure(session, f"The {'mesh was' if builds else 'limits were'} not changed", error)
+
+    pending_changes.begin_pending_change(
+        session,
+        project,
+        SOLVING_KEYS,
+        lambda: step_resolver(renewal, picture),
+        partial(_go_on, session, project),
+        failed,
+        promise=Promise(label=SOLVING_KEYS.label, key_resolver=renewal),
+    )
+
+
+def _accept(session: Session, project: Project, renewal: KeyResolver) -> None:
+    if _follows_cut_out(renewal):
+        project.history.extend_step(renewal.command)
+    else:
+        gesture = object()
+        project.history.do(renewal.command, gesture=gesture)
+        if renewal.new_layer is not None:
+            project.history.set_preview_pose(None, gesture=gesture)
+            project.meshing = None
+    if renewal.replaces_picture:
+        editing.update_layer_runtimes(project)
+    for number, notice in enumerate(renewal.notices):
+        # After every stroke: what was said of the one before is no news any more.
+        session.show_notice(as_sentence(notice), topic=f"rebuilt {number}")
+    if renewal.unsolved:
+        poses = "pose" if len(renewal.unsolved) == 1 else "poses"
+        session.show_notice(
+            f"The {poses} {', '.join(renewal.unsolved)} could not be brought within the limits. "
+            "Move the handles there nearer to the drawing, or undo.",
+            tone="error",
+        )

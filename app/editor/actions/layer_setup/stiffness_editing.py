@@ -1,0 +1,160 @@
+"""Making parts of a layer stiff or soft: a brush, bones, and what handles' names suggest."""
+
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from app.document import bone_region, brushed_stiffness, stiffness_commands
+from app.document.rig import Bone
+from app.editor.actions import editing, playback, posing
+from app.editor.actions.layer_setup import cut_out_editing
+from app.editor.project import Project
+from app.editor.session import MaterialTool, Session, with_project
+from app.errors import LissomError
+from engine.errors import EngineError
+from engine.geometry import distance_to_boundary
+
+# The brushes, and whether they make parts stiffer or softer; None takes that back.
+BRUSHES: Mapping[str | None, bool | None] = {"stiff": True, "soft": False, "normal": None}
+WEAKEST, STRONGEST, SOFTEST = 1.5, 100.0, 30.0  # of the brush and of bones
+FIRST_BRUSH = 0.1  # of the picture's longer side: it is to reach the edge of a limb
+AROUND = 2.0  # times as far around a handle as it is away from the outline
+# By which factor the words in handles' names make the parts around them stiff.
+SUGGESTED = (
+    ({"head", "face", "skull", "hand", "fist", "shoe", "boot", "foot", "hoof", "paw"}, 10.0),
+    ({"tail", "trunk", "tentacle", "hair", "scarf", "ribbon", "cape"}, 0.2),
+)
+
+
+@with_project
+def toggle_stiffness_tool(session: Session, project: Project, tool: MaterialTool | None) -> None:
+    """Take a tool in hand that changes the material; None, or the same again, goes back to pose."""
+    if session.active_tool is None:
+        playback.stop_playback(session)
+        session.material = None if tool == session.material else tool
+        session.cutting, session.moves, project.motion_setup = None, False, None
+        if project.brush is None:
+            cut_out_editing.set_brush_radius(session, FIRST_BRUSH * max(project.layer.picture.size))
+
+
+def set_stiffness_strength(session: Session, strength: float) -> None:
+    """Set how many times as stiff the brush makes what it covers, or as soft."""
+    session.strength = min(max(strength, WEAKEST), STRONGEST)
+
+
+def set_brush_softness(session: Session, softness: float) -> None:
+    """Set over which part of the brush's radius its effect becomes less."""
+    session.softness = min(max(softness, 0.0), 1.0)
+
+
+@with_project
+def paint_stiffness(session: Session, project: Project, places: Sequence[complex]) -> None:
+    """Make what a stroke covers stiff or soft, or take that back; `places` are shown ones."""
+    shown, tool = project.layer_runtime.shown, session.material
+    if shown is None or tool is None:
+        return
+    at = np.array(places, dtype=np.complex128)
+    rest = (
+        shown.mesh.locate(at, shown.positions)
+        .positions_on(shown.mesh.domain.mesh.vertices)
+        .tolist()
+    )
+    radius = cut_out_editing.brush_radius(project)
+    amount = {"stiff": session.strength, "soft": 1 / min(session.strength, SOFTEST)}.get(tool, 1.0)
+    _, is_reached = brushed_stiffness(
+        project.layer, rest, radius=radius, amount=amount, softness=session.softness
+    )
+    if not is_reached:
+        session.show_notice(
+            "The brush reaches no outline there. Make it larger, or brush nearer to the edge.",
+            topic="material",
+        )
+        return
+    command = stiffness_commands.paint_stiffness(
+        project.active, rest, radius=radius, amount=amount, softness=session.softness
+    )
+    editing.edit_document(session, command)
+
+
+def clear_stiffness(session: Session) -> None:
+    """Take back all that is painted."""
+    editing.edit_layer(session, stiffness_commands.clear_stiffness)
+
+
+@with_project
+def mirror_stiffness(session: Session, project: Project) -> None:
+    """Give both sides of the mirror axis what one of them has."""
+    editing.edit_layer(session, stiffness_commands.mirror_stiffness, project.document.pairs)
+
+
+@with_project
+def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
+    """Put a bone between two handles, or tell why there can be none."""
+    try:
+        project.history.do(stiffness_commands.add_bone(project.active, ends))
+    except (EngineError, LissomError) as error:
+        session.show_notice(str(error), tone="error", topic="material")
+
+
+@with_project
+def add_bone_between_selected(session: Session, project: Project) -> None:
+    """Put a bone between the two handles that are selected."""
+    if len(project.selected_handles) == 2:
+        first, second = sorted(project.selected_handles)
+        add_bone(session, (first, second))
+
+
+def remove_bone(session: Session, ends: tuple[int, int]) -> None:
+    """Take the bone between two handles away."""
+    editing.edit_layer(session, stiffness_commands.remove_bone, ends)
+
+
+def set_bone_stiffness(session: Session, ends: tuple[int, int], amount: float) -> None:
+    """Set how stiff a bone is."""
+    editing.edit_layer(session, stiffness_commands.set_bone_stiffness, ends, amount)
+
+
+def set_bones_visible(session: Session, *, shown: bool) -> None:
+    """Show the bones, or hide them: they act either way."""
+    editing.edit_layer(session, stiffness_commands.set_bones_visible, shown=shown)
+
+
+def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str:
+    """Return why there can be no bone between two handles; empty where there can be one."""
+    layer = project.layer
+    try:
+        bone_region(layer, Bone(ends=ends), layer.domain.outline)
+    except (EngineError, LissomError) as error:
+        return str(error)
+    return ""
+
+
+@with_project
+def suggest_stiffness(session: Session, project: Project) -> None:
+    """Make heads, hands and feet stiff and tails and trunks soft, by the names of their handles."""
+    layer, gesture, done = project.layer, object(), list[str]()
+    for handle in layer.handles:
+        words = set(re.findall("[a-z]+", handle.name.lower()))
+        amount = next((by for names, by in SUGGESTED if words & names), None)
+        if amount is None:
+            continue
+        outline, *holes = layer.domain.loops
+        (depth,) = distance_to_boundary(outline, np.array([handle.position]), holes).tolist()
+        command = stiffness_commands.paint_stiffness(
+            project.active, [handle.position], radius=AROUND * depth, amount=amount, softness=0.5
+        )
+        project.history.do(command, gesture=gesture)
+        done.append(handle.name)
+    if done:
+        session.show_notice(f"By their names: {', '.join(done)}.", topic="material")
+    else:
+        session.show_notice(
+            "No handle is called after a head, hand, foot, tail or the like: name them first.",
+            topic="material",
+        )
+
+
+def solve_shown_pose_again(session: Session) -> None:
+    """Let the pose that is shown follow its wishes once more, with the material as it is now."""
+    posing.solve_pose_again(session, {}, gesture=object())

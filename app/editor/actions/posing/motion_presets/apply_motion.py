@@ -1,0 +1,182 @@
+"""Giving a motion: the worker solves key after key, and the layer has them in one step of undo."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+
+from app.document import RUBBERY, Command, Document
+from app.editor import pending_changes
+from app.editor.action import do
+from app.editor.actions import playback
+from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.error_reports import report_failure
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import JobKind, MotionJob, MotionSetup, Promise
+from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
+
+GIVING = JobKind("Giving the motion", "The motion was not given", "hand")
+MOST_TOLD = 3  # joints that are out of reach
+
+
+@with_project
+def apply_motion_preset(session: Session, project: Project) -> None:
+    """Give the layer the motion that is drafted, as soon as the document has settled."""
+    draft = project.motion_setup
+    if draft is not None and not preset_setup.apply_motion_disabled_reason(project):
+        preset_setup.close_motion_setup(session)
+        pending_changes.run_when_idle(session, do(_begin, draft), "Give a motion")
+
+
+@with_project
+def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
+    if draft.layer not in project.layer_runtimes:
+        return
+    before = project.document.layer(draft.layer)
+    if before.domain is not draft.domain:
+        session.show_notice(
+            "The motion was not given: the drawing has another shape by now. Start again."
+        )
+        return
+    base = _without(project.document, draft)
+    errand = MotionJob(setup=draft, before=before, base=base)
+    order = _motion_request(draft, is_first=not before.motions)
+    _step(session, project, errand, partial(start_motion_solve, base, before.id, order))
+
+
+def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
+    """Return what the solver is asked for; what is stiff and the limits are as after the first."""
+    return MotionRequest(
+        motion=draft.motion,
+        kind=draft.kind,
+        joints=draft.joints,
+        parameters=draft.parameters,
+        first=draft.first,
+        repeat_count=draft.rounds,
+        facing=draft.facing,
+        # Its own handles go where its joints were dragged.
+        handles={} if draft.applied_motion is None else draft.applied_motion.joints,
+        stiff=is_first,
+        bones=draft.bones,
+        limits=RUBBERY.bounds if is_first else None,
+    )
+
+
+def _without(document: Document, draft: MotionSetup) -> Document:
+    """Return a document without the motion that a draft takes the place of.
+
+    What it blended in from stays, and one key that is replaced, where there is no other.
+    """
+    given, layer = draft.applied_motion, document.layer(draft.layer)
+    if given is None:
+        return document
+    kept = [key for key in layer.keys if not given.first <= key.frame <= given.last]
+    if given.start > given.first or not kept:
+        kept = [key for key in layer.keys if key in kept or key.frame == given.first]
+    bones = layer.bones
+    if not draft.bones:
+        limbs = preset_setup.limb_joint_handles(given)
+        bones = tuple(bone for bone in bones if limbs.isdisjoint(bone.ends))
+    return document.with_layer(
+        replace(
+            layer,
+            keys=tuple(kept) or layer.keys[:1],
+            cycles=tuple(each for each in layer.cycles if each.first != given.start),
+            motions=tuple(each for each in layer.motions if each is not given),
+            bones=bones,
+        )
+    )
+
+
+def _step(
+    session: Session, project: Project, errand: MotionJob, work: Callable[[], MotionSolve]
+) -> None:
+    """Let the worker take a step."""
+
+    def failed(error: Exception) -> None:
+        project.motion_setup = project.motion_setup or errand.setup
+        report_failure(session, GIVING.complaint, error)
+
+    def arrived(giving: MotionSolve) -> None:
+        _go_on(session, project, replace(errand, solve=giving))
+
+    promise = Promise(label=GIVING.label, motion_job=errand)
+    pending_changes.begin_pending_change(
+        session, project, GIVING, work, arrived, failed, promise=promise
+    )
+
+
+def _go_on(session: Session, project: Project, errand: MotionJob) -> None:
+    """Take the next step, or let the layer have the motion."""
+    if errand.solve is not None and not errand.solve.is_over:
+        _step(session, project, errand, partial(step_motion_solve, errand.solve))
+    elif errand.solve is not None:
+        _accept(session, project, errand, errand.solve)
+
+
+def _accept(session: Session, project: Project, errand: MotionJob, giving: MotionSolve) -> None:
+    """Let the layer have the motion, and play it; where it changed meanwhile, say so."""
+    before, draft = errand.before, errand.setup
+    if before not in project.document.layers:
+        session.show_notice("The motion was not given: the drawing was posed or changed meanwhile.")
+        project.motion_setup = project.motion_setup or draft
+        return
+    gesture, command = object(), giving.command
+    change = Command(command.label, lambda document: command(_without(document, draft)))
+    project.history.do(change, gesture=gesture)
+    unkeyed = project.history.preview_pose
+    if unkeyed is not None and unkeyed.layer == before.id:
+        project.history.set_preview_pose(None, gesture=gesture)
+    _show_unreached_joints(session, giving)
+    if session.active_tool is None:
+        playback.scrub(session, giving.applied.first)
+        playback.toggle_play(session)
+
+
+def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
+    """Tell which joints are out of reach, and offer a size at which none is."""
+    if not giving.target_errors:
+        return
+    parts = [f"{name} by {lag:.0f} px" for name, (lag, _) in giving.target_errors.items()]
+    told = ", ".join(parts[:MOST_TOLD])
+    if len(parts) > MOST_TOLD:
+        told += f" and {len(parts) - MOST_TOLD} more"
+    text = f"Some joints fall short of the motion, held back by the limits: {told}."
+    size = giving.reachable_size
+    if size is None:
+        session.show_notice(text, topic="motion")
+        return
+    session.show_notice(
+        text,
+        topic="motion",
+        label=f"Use size {size:.2f}",
+        action=do(apply_motion_at_size, giving.before.id, giving.applied.first, size),
+    )
+
+
+@with_project
+def apply_motion_at_size(
+    session: Session, project: Project, layer: int, first: int, size: float
+) -> None:
+    """Give a motion that begins at a frame again, at another size."""
+    found = project.document.layer(layer) if layer in project.layer_runtimes else None
+    given = next((each for each in found.motions if each.first == first), None) if found else None
+    if found is None or given is None:
+        session.show_notice("That motion is not there any more.")
+        return
+    draft = preset_setup.setup_of_applied_motion(found, given)
+    parameters = replace(draft.parameters, size=size)
+    pending_changes.run_when_idle(
+        session, do(_begin, replace(draft, parameters=parameters)), "Give a motion"
+    )
+
+
+@with_project
+def cancel_motion_job(session: Session, project: Project) -> None:
+    """Give up the motion that is on its way; its draft is there again."""
+    errand = project.motion_job
+    if errand is not None:
+        session.jobs.drop(GIVING)
+        project.pending = [promise for promise in project.pending if not promise.motion_job]
+        if errand.before.id == project.active:
+            project.motion_setup = project.motion_setup or errand.setup

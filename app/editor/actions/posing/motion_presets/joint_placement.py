@@ -1,0 +1,163 @@
+"""Where the joints of a body are: found, dragged, left out, put back and mirrored."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from app.document import Layer
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import MotionSetup
+from engine.domain import suggest_joints
+from engine.geometry import diameter
+from engine.geometry.motions import find_kind, other_side
+
+NEAR = 0.035  # of the diameter: so near to a joint a handle is one
+# Where a joint that was not found is put: so far from the joint that it hangs on, in heights.
+BELOW = 0.12
+BESIDE: Mapping[str, complex] = {
+    "chest": 2j,
+    "neck": 1j,
+    "head": 1.5j,
+    "tail": -1.0,
+    "shoulder": 0.7,
+    "elbow": 1.0 - 0.5j,
+    "hand": 0.7 - 0.7j,
+    "hip": 0.4 - 0.2j,
+    "knee": 0.3 - 1j,
+    "foot": -1j,
+}
+
+
+def find_joints(layer: Layer, kind: str) -> dict[str, complex]:
+    """Return the joints of a kind in a layer: its handles where these are, or by their names."""
+    body = find_kind(kind)
+    joints = dict(suggest_joints(layer.domain.loops, body))
+    near = NEAR * diameter(layer.domain.outline)
+    named = {h.name: h.position for h in layer.handles if h.name in body.parents}
+    free = [h.position for h in layer.handles if h.name not in named]
+    for name, place in joints.items():
+        nearest = min(free, key=lambda at: abs(at - place), default=None)
+        if name not in named and nearest is not None and abs(nearest - place) <= near:
+            joints[name] = nearest
+            free.remove(nearest)
+    joints |= named
+    return {name: joints[name] for name in body.parents if name in joints}
+
+
+@with_project
+def select_joint(_: Session, project: Project, name: str | None) -> None:
+    """Let a joint be the one that is touched."""
+    if project.motion_setup is not None:
+        project.motion_setup = replace(project.motion_setup, selected_joint=name)
+
+
+@with_project
+def move_joint(_: Session, project: Project, name: str, place: complex) -> None:
+    """Put a joint at a place of the drawing at rest."""
+    if project.motion_setup is not None:
+        project.motion_setup = project.motion_setup.with_joints(
+            {**project.motion_setup.joints, name: place}, name
+        )
+
+
+@with_project
+def move_shown_joint(session: Session, project: Project, name: str, place: complex) -> None:
+    """Put a joint where the drawing is shown at a place, or nearest to it."""
+    shown = project.layer_runtime.shown
+    if shown is not None:
+        found = shown.mesh.locate(np.array([place]), shown.positions)
+        move_joint(session, name, complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0]))
+
+
+def shown_joint_places(project: Project) -> dict[str, complex]:
+    """Return where the joints of the draft are in what is shown, by their names."""
+    draft, shown = project.motion_setup, project.layer_runtime.shown
+    if draft is None or shown is None or not draft.joints:
+        return {}
+    rest = np.array(list(draft.joints.values()), dtype=np.complex128)
+    places = shown.mesh.locate(rest, shown.mesh.domain.mesh.vertices).positions_on(shown.positions)
+    return dict(zip(draft.joints, places.tolist(), strict=True))
+
+
+@with_project
+def exclude_joint(_: Session, project: Project, name: str) -> None:
+    """Leave a joint out, as what is not there."""
+    if project.motion_setup is not None and name in project.motion_setup.joints:
+        project.motion_setup = project.motion_setup.without(name)
+
+
+@with_project
+def include_joint(session: Session, project: Project, name: str) -> None:
+    """Put a joint where it was found, or else beside what it hangs on."""
+    draft = project.motion_setup
+    if draft is not None and name not in draft.joints:
+        place = draft.suggested.get(name)
+        move_joint(session, name, _beside(draft, name) if place is None else place)
+
+
+@with_project
+def reset_joints(_: Session, project: Project) -> None:
+    """Put all joints back where they were found."""
+    if project.motion_setup is not None:
+        project.motion_setup = project.motion_setup.with_joints(project.motion_setup.suggested)
+
+
+@with_project
+def mirror_joints(session: Session, project: Project) -> None:
+    """Put the joints of one side where those of the other one are, seen in a mirror.
+
+    The side is that of the joint that was touched last, or the left one.
+    """
+    draft = project.motion_setup
+    if draft is None:
+        return
+    side = mirrored_side(draft)
+    axis = _axis(draft)
+    joints, outside = dict(draft.joints), []
+    for name, place in draft.joints.items():
+        if name.endswith(f".{side}"):
+            mirrored = complex(2 * axis - place.real, place.imag)
+            (nearest,) = _inside(draft, mirrored)
+            joints[other_side(name)] = nearest
+            outside += [other_side(name)] if nearest != mirrored else []
+    project.motion_setup = draft.with_joints(joints, draft.selected_joint)
+    if outside:
+        session.show_notice(f"The mirrored places of {', '.join(outside)} are beside the drawing.")
+
+
+def mirrored_side(draft: MotionSetup) -> str:
+    """Return the side that is mirrored onto the other one."""
+    name = draft.selected_joint or ""
+    return name[-1] if name.endswith((".L", ".R")) else "L"
+
+
+def _axis(draft: MotionSetup) -> float:
+    """Return x of the body's middle: of its joints that are on neither side."""
+    middle = [at.real for name, at in draft.joints.items() if name in {"hips", "chest", "head"}]
+    outline = draft.domain.outline.real
+    return float(np.mean(middle) if middle else (outline.min() + outline.max()) / 2)
+
+
+def _inside(draft: MotionSetup, *places: complex) -> list[complex]:
+    """Return places on the drawing that are nearest to some."""
+    nearest: list[complex] = draft.domain.nearest(np.array(places, dtype=np.complex128)).tolist()
+    return nearest
+
+
+def _beside(draft: MotionSetup, name: str) -> complex:
+    """Return where a joint may be that was not found: as the other side's, or near its parent."""
+    kind, joints = draft.body_kind, draft.joints
+    outline = draft.domain.outline
+    twin = joints.get(other_side(name))
+    if twin is not None and kind.name == "biped-front":
+        return _inside(draft, complex(2 * _axis(draft) - twin.real, twin.imag))[0]
+    reach = BELOW * float(np.ptp(outline.imag))
+    if twin is not None and other_side(name) != name:
+        return _inside(draft, twin + 0.4 * reach)[0]
+    before = kind.parent(name, joints)
+    joint, _, side = name.partition(".")
+    start = joints[before] if before else complex(np.mean(outline))
+    step = BESIDE.get(joint, 1.0)
+    return _inside(draft, start + reach * complex(-step.conjugate() if side == "R" else step))[0]

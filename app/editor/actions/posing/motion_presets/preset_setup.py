@@ -1,0 +1,236 @@
+"""A motion that is about to be given: which one, to what kind of body, and how."""
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any
+
+from app.document import AppliedMotion, Layer, is_motion_unedited
+from app.editor.actions import playback
+from app.editor.actions.posing.motion_presets.joint_placement import find_joints
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import MotionSetup
+from engine.domain import guess_kind
+from engine.geometry.motions import MOTIONS, Parameters
+
+MOST_ROUNDS = 50
+PANEL = "Motion"
+LINKS = 6
+
+
+def motion_disabled_reason(_: Session, project: Project) -> str:
+    """Return why the layer that is posed can be given no motion; empty where it can."""
+    layer = project.layer
+    if layer.still:
+        return f"{layer.name} is a still picture: there is no shape on it to be moved."
+    if layer.locked:
+        return f"{layer.name} is locked: unlock it in the list of layers first."
+    return ""
+
+
+@with_project
+def begin_motion_setup(session: Session, project: Project) -> None:
+    """Draft a motion for the layer that is posed: the one that it has at this frame, or a new one.
+
+    What is drafted already is shown.
+    """
+    session.panel_to_focus = PANEL
+    if (
+        project.motion_setup is not None
+        or project.motion_job is not None
+        or session.active_tool is not None
+    ):
+        return
+    playback.stop_playback(session)
+    session.cutting = session.material = None
+    session.moves = session.records = False
+    project.selected_handles = frozenset()
+    frame = playback.current_frame(session, project)
+    here = [each for each in project.layer.motions if each.first <= frame < each.last]
+    if here:
+        project.motion_setup = setup_of_applied_motion(project.layer, here[-1])
+    else:
+        project.motion_setup = _put_away(project, frame) or _new(project.layer, frame)
+    # It has hints of its own.
+    session.tutorial = None
+
+
+@with_project
+def edit_applied_motion(session: Session, project: Project, given: AppliedMotion) -> None:
+    """Draft a motion that the layer was given once more, to give it in another way."""
+    if given in project.layer.motions:
+        playback.scrub(session, given.first)
+        begin_motion_setup(session)
+
+
+@with_project
+def append_motion(session: Session, project: Project, given: AppliedMotion) -> None:
+    """Draft another motion, to follow one that the layer was given; joints stay as they are."""
+    draft = project.motion_setup
+    if draft is None:
+        playback.scrub(session, given.last)
+        begin_motion_setup(session)
+    elif given in project.layer.motions:
+        playback.scrub(session, given.last)
+        project.motion_setup = replace(draft, applied_motion=None, first=given.last)
+
+
+def _put_away(project: Project, frame: int) -> MotionSetup | None:
+    """Return the draft that was put away last, if it was of the same shape, and a first motion."""
+    draft, layer = project.last_motion_setup, project.layer
+    if draft is None or layer.motions or draft.applied_motion is not None:
+        return None
+    is_same = (draft.layer, draft.domain) == (layer.id, layer.domain)
+    return replace(draft, first=frame, past=(), selected_joint=None) if is_same else None
+
+
+def _new(layer: Layer, frame: int) -> MotionSetup:
+    """Return what a layer is given that has nothing at a frame: as the last one, or as it seems.
+
+    Joints of the motion before are those of this one.
+    """
+    earlier = [each for each in layer.motions if each.first <= frame]
+    if earlier:
+        draft = setup_of_applied_motion(layer, earlier[-1])
+        return replace(draft, applied_motion=None, first=frame, parameters=Parameters(), rounds=1)
+    kind = guess_kind(layer.domain.loops)
+    joints = find_joints(layer, kind.name)
+    return MotionSetup(
+        layer=layer.id,
+        domain=layer.domain,
+        kind=kind.name,
+        motion=_first_motion(kind.name, joints),
+        joints=joints,
+        suggested=joints,
+        first=frame,
+    )
+
+
+def setup_of_applied_motion(layer: Layer, given: AppliedMotion) -> MotionSetup:
+    """Return the draft by which a layer was given a motion."""
+    there = {handle.id: handle.position for handle in layer.handles}
+    names = given.joints.items()
+    joints = {name: there[handle] for name, handle in names if handle in there}
+    ends = {handle for bone in layer.bones for handle in bone.ends}
+    return MotionSetup(
+        layer=layer.id,
+        domain=layer.domain,
+        kind=given.kind,
+        motion=given.motion,
+        joints=joints if given.kind != "anything" else {},
+        suggested=find_joints(layer, given.kind),
+        parameters=given.parameters,
+        rounds=given.repeat_count,
+        facing=given.facing,
+        bones=not ends.isdisjoint(limb_joint_handles(given)),
+        first=given.first,
+        applied_motion=given,
+    )
+
+
+def limb_joint_handles(given: AppliedMotion) -> set[int]:
+    """Return the ids of the handles that are joints of limbs, or links of a chain."""
+    return {handle for name, handle in given.joints.items() if "." in name}
+
+
+def _first_motion(kind: str, joints: Collection[str]) -> str:
+    """Return the first motion that fits a kind and its joints, one that gets on before others.
+
+    Along few links, as of a fish, no wave runs: it wags its tail.
+    """
+    if kind == "chain" and len(joints) < LINKS:
+        return "wag"
+    fitting = [name for name, motion in MOTIONS.items() if kind in motion.templates]
+    possible = [name for name in fitting if {*MOTIONS[name].template_for(kind).needed} <= {*joints}]
+    getting_on = [name for name in possible if MOTIONS[name].template_for(kind).can_travel]
+    return (getting_on or possible or fitting)[0]
+
+
+@with_project
+def set_body_kind(_: Session, project: Project, kind: str) -> None:
+    """Take the drawing for another kind of body; its joints are those that it had, or suggested."""
+    draft = project.motion_setup
+    if draft is None or kind == draft.kind:
+        return
+    others = {**draft.others, draft.kind: draft.joints}
+    suggested = find_joints(project.layer, kind)
+    joints = others.get(kind, suggested)
+    fits = kind in MOTIONS[draft.motion].templates
+    project.motion_setup = replace(
+        draft,
+        kind=kind,
+        joints=joints,
+        suggested=suggested,
+        others=others,
+        motion=draft.motion if fits else _first_motion(kind, joints),
+        facing=None,
+        selected_joint=None,
+        past=(),
+    )
+
+
+@with_project
+def set_motion_preset(_: Session, project: Project, motion: str) -> None:
+    """Choose what it is to do; only what has steps travels."""
+    draft = project.motion_setup
+    if draft is not None and draft.kind in MOTIONS[motion].templates:
+        travels = draft.parameters.travel and MOTIONS[motion].template_for(draft.kind).can_travel
+        parameters = replace(draft.parameters, travel=travels)
+        project.motion_setup = replace(draft, motion=motion, parameters=parameters)
+
+
+@with_project
+def set_motion_parameters(_: Session, project: Project, /, **values: Any) -> None:
+    """Set how it is to be done: speed, size, energy, mirrored, start, travel."""
+    if project.motion_setup is not None:
+        parameters = replace(project.motion_setup.parameters, **values)
+        project.motion_setup = replace(project.motion_setup, parameters=parameters)
+
+
+@with_project
+def set_motion_options(_: Session, project: Project, /, **values: Any) -> None:
+    """Set what else is to be: rounds, facing, bones, whether edits are replaced."""
+    if project.motion_setup is not None:
+        project.motion_setup = replace(project.motion_setup, **values)
+
+
+def is_applied_motion_edited(project: Project) -> bool:
+    """Tell whether what a draft takes the place of was edited by hand since it was given."""
+    draft = project.motion_setup
+    return (
+        draft is not None
+        and draft.applied_motion is not None
+        and not is_motion_unedited(project.layer, draft.applied_motion)
+    )
+
+
+def apply_motion_disabled_reason(project: Project) -> str:
+    """Return why the draft cannot be given as it is; empty where it can."""
+    draft = project.motion_setup
+    if draft is None:
+        return "There is no motion to be given."
+    if draft.missing_joints:
+        missing = ", ".join(draft.missing_joints)
+        return f"{draft.preset.label} needs {missing}: click on it in the diagram to add it."
+    if is_applied_motion_edited(project) and not draft.replaces_edits:
+        return "It was edited by hand since it was given, which would be lost."
+    return ""
+
+
+@with_project
+def close_motion_setup(_: Session, project: Project) -> None:
+    """Put the draft away; nothing of it was done to the layer, and its joints are remembered."""
+    project.last_motion_setup, project.motion_setup = project.motion_setup, None
+
+
+@with_project
+def update_motion_setup(_: Session, project: Project) -> None:
+    """Forget a draft whose layer is not posed any more, or has another shape; once a frame."""
+    draft = project.motion_setup
+    if draft is None:
+        return
+    layer = project.layer
+    if draft.layer != project.active or draft.domain is not layer.domain or layer.still:
+        project.motion_setup = None
+    elif draft.applied_motion is not None and draft.applied_motion not in layer.motions:
+        project.motion_setup = replace(draft, applied_motion=None)

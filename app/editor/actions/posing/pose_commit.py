@@ -1,0 +1,121 @@
+"""Poses that the document has: in keys, or in none where the person wants no keys made."""
+
+from dataclasses import replace
+
+from app.document import Command, Layer, Pose, PreviewPose, key_commands, with_all_targets
+from app.editor.error_reports import report_failure
+from app.editor.project import Project
+from app.editor.session import Session
+from app.editor.work import Pull
+from app.errors import LissomError
+
+NO_POSE = "The pose could not be kept"
+
+
+def commit_pose(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
+    """Let the document have a pose of a pull in place of the pull's last one, if it still can.
+
+    If not, as where its key was deleted or the document refuses it, the pull is over.
+    """
+    if pose is pull.kept:
+        return
+    _follow_copies(session, pull, pose)
+    try:
+        if pull.kept is None:
+            is_adopted = _commit_first(session, project, pull, pose)
+        else:
+            is_adopted = project.history.amend(pull.gesture, pull.kept, pull.brought_to(pose))
+    except LissomError as error:
+        report_failure(session, NO_POSE, error)
+        is_adopted = False
+    pull.kept = pose
+    if not is_adopted and pull in project.pending:
+        project.pending.remove(pull)
+
+
+def commit_targets(session: Session, project: Project, pull: Pull) -> bool:
+    """Let the document have what a released pull wishes of a key, before any pose is found for it.
+
+    Returns whether it has; a pull whose start is not known yet, or that several gestures made,
+    has nothing that could be one step.
+    """
+    if (
+        pull.is_held
+        or pull.before is None
+        or pull.world_targets is None
+        or len(pull.target_changes) != 1
+    ):
+        return False
+    commit_pose(
+        session, project, pull, pull.newest or replace(pull.before, targets=pull.world_targets)
+    )
+    return pull in project.pending
+
+
+def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
+    """Let what was copied of a pose on its way go on to another one, too."""
+    kept = pull.kept
+    if kept is None or all(k.pose.phi is not kept.phi for c in session.copied for k in c.keys):
+        return
+    bring = pull.brought_to(pose)
+    session.copied = tuple(
+        replace(
+            copied,
+            keys=tuple(
+                replace(key, pose=bring(copied.layer, key.pose))
+                if key.pose.phi is kept.phi
+                else key
+                for key in copied.keys
+            ),
+        )
+        for copied in session.copied
+    )
+
+
+def _commit_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:
+    """Let the document have the first pose of a pull, as one more step; tell whether it can."""
+    if pull.layer not in project.layer_runtimes:
+        return False
+    layer = project.document.layer(pull.layer)
+    if layer.domain is not pull.clip.layer.domain:
+        return False
+    frames = _frames_now(layer, pull)
+    if not frames:
+        return False
+    pull.frame = pull.frame if pull.frame in frames else min(frames)
+    pose = pull.brought_to(pose)(layer, with_all_targets(layer, pose))
+    if not pull.is_keyed:
+        unkeyed = PreviewPose(layer=pull.layer, frame=pull.frame, pose=pose)
+        project.history.set_preview_pose(unkeyed, gesture=pull.gesture)
+        return True
+    for frame in frames:
+        found = PreviewPose(layer=pull.layer, frame=frame, pose=pose)
+        command = replace(
+            key_pose_command(session, project, found), label="Move" if pull.translations else "Pose"
+        )
+        project.history.do(command, gesture=pull.gesture)
+    left = project.history.preview_pose
+    if left is not None and (left.layer, left.frame) == (pull.layer, pull.frame):
+        project.history.set_preview_pose(None, gesture=pull.gesture)
+    return True
+
+
+def _frames_now(layer: Layer, pull: Pull) -> set[int]:
+    """Return at which frames a pull's pose belongs now.
+
+    Those are of the key that is pulled, and of its copies since; of a new key it is its own.
+    """
+    then = pull.clip.layer
+    if pull.frame not in then.key_frames:
+        return {pull.frame}
+    was = then.key(pull.frame).pose
+    alike = {key.frame for key in layer.keys if key.pose.phi is was.phi}
+    return (alike - then.key_frames) | ({pull.frame} & layer.key_frames)
+
+
+def key_pose_command(session: Session, project: Project, unkeyed: PreviewPose) -> Command:
+    """Return the command that gives a pose to the key at its frame, or inserts one with it."""
+    layer, frame, pose = unkeyed.layer, unkeyed.frame, unkeyed.pose
+    if frame in project.document.layer(layer).key_frames:
+        return key_commands.replace_key_pose(layer, frame, pose)
+    return key_commands.insert_key(layer, frame, pose, easing=session.preferences.easing)

@@ -1,0 +1,244 @@
+"""Pulling handles: the wish comes from the pointer, the worker's solver follows."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+
+from app.document import Pose, Target, keyed_pose_at, segment_time_at
+from app.editor.actions import playback
+from app.editor.actions.posing.pose_commit import commit_pose
+from app.editor.actions.posing.pose_solver import POSING, step_pose_solver
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import DragStart, Pull, TargetChange, absolute_targets
+from engine.deform import BoundedPull
+
+
+@with_project
+def drag_handles(
+    session: Session,
+    project: Project,
+    wish: TargetChange | Mapping[int, Target],
+    *,
+    gesture: object | None = None,
+    hand: BoundedPull | None = None,
+) -> None:
+    """Wish handles elsewhere in the pose of the present frame; the others keep their wishes.
+
+    Pulls of one gesture are one step of undo, in which the later wish takes the place of the
+    earlier; without one, each is a step until it is let go. An in-between that is not there yet is
+    worked out first; what is wished of it meanwhile is not lost. A hand pulls with bounded force.
+    """
+    wanted = wish if callable(wish) else partial(absolute_targets, wish)
+    _change(session, project, gesture, lambda held, by: held.change_targets(by, wanted, hand))
+
+
+@with_project
+def move_pose(
+    session: Session, project: Project, way: complex, *, gesture: object | None = None
+) -> None:
+    """Move the pose of the present frame with all its targets, as it is, so far from the start.
+
+    As with pulls, those of one gesture are one step of undo.
+    """
+    _change(session, project, gesture, lambda held, by: held.move(by, way))
+
+
+def _change(
+    session: Session,
+    project: Project,
+    gesture: object | None,
+    change: Callable[[Pull, object], None],
+) -> None:
+    """Change what is pulled by a gesture, or begin to."""
+    if project.layer_runtime.shown is None:
+        return
+    held = project.pull
+    if held is None or not held.is_held:
+        release_drag(session)
+        held = _begin(session, project, gesture or object())
+    change(held, gesture or object())
+    held.position = project.history.position
+    step_pose_solver(session, project)
+
+
+@with_project
+def release_drag(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
+    """End the pull; the solver goes on until the pose rests."""
+    for pull in project.pulls:
+        pull.is_held = False
+
+
+@with_project
+def release_drag_forced(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
+    """End the pull, and let its handles be wanted where they are pulled to, however far that is."""
+    for pull in project.pulls:
+        if pull.is_held:
+            pull.is_held = False
+            pull.force_targets()
+
+
+def set_targets(session: Session, wishes: Mapping[int, Target]) -> None:
+    """Wish handles elsewhere, as a field of the panel says."""
+    _once(session, wishes)
+
+
+@with_project
+def pin_selected_handles(session: Session, project: Project) -> None:
+    """Let the selected handles be wanted where they are, wherever they were wanted before."""
+    selected = project.selected_handles
+
+    def here(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        known = selected & targets.keys()
+        return {i: replace(targets[i], position=start.places[i]) for i in known}
+
+    if selected:
+        _once(session, here)
+
+
+@with_project
+def nudge_handles(session: Session, project: Project, step: complex) -> None:
+    """Move the selected handles by a few pixels of the picture."""
+    handles = project.layer.handles
+    moved = {h.id for h in handles if h.id in project.selected_handles and not h.locked}
+
+    def away(_: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        known = moved & targets.keys()
+        return {i: replace(targets[i], position=targets[i].position + step) for i in known}
+
+    if moved:
+        _once(session, away)
+
+
+def free_rotation(session: Session, identity: int) -> None:
+    """Let the solver choose how the shape turns at a handle."""
+
+    def free(_: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+        known = {identity} & targets.keys()
+        return {i: replace(targets[i], rotation=None) for i in known}
+
+    _once(session, free)
+
+
+@with_project
+def solve_pose_again(
+    session: Session, project: Project, asked: Mapping[int, Target], *, gesture: object
+) -> None:
+    """Let the pose that is shown follow its own wishes once more, as under other limits.
+
+    Some handles a hand pulls to where they are asked.
+    """
+    if pose_at_playhead(session, project) is not None:
+        drag_handles(
+            session, asked, gesture=gesture, hand=BoundedPull(frozenset(asked)) if asked else None
+        )
+        release_drag(session)
+
+
+@with_project
+def revert_drag(session: Session, project: Project, gesture: object) -> None:
+    """Take back what a gesture has wished.
+
+    A pull that has no other wishes ends, with all that it led to.
+    """
+    for pull in project.pulls:
+        if gesture in pull.target_changes:
+            pull.revert(gesture)
+            pull.is_held = False
+            if not pull.target_changes:
+                cancel_drag(session, project, pull)
+                project.history.revert(pull.gesture)
+
+
+def cancel_drag(session: Session, project: Project, pull: Pull) -> None:
+    """End a pull, whose pose stays as it is in the document, or never gets there."""
+    if pull not in project.pending:
+        # It has ended with another one that was given up.
+        return
+    project.pending.remove(pull)
+    # What comes of it is not taken.
+    session.jobs.drop(POSING)
+    step_pose_solver(session, project)
+
+
+def end_drag_at(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
+    """Let the document have a pose in place of what a pull comes to."""
+    cancel_drag(session, project, pull)
+    commit_pose(session, project, pull, pose)
+
+
+def _once(session: Session, wish: TargetChange | Mapping[int, Target]) -> None:
+    drag_handles(session, wish)
+    release_drag(session)
+
+
+def _begin(session: Session, project: Project, gesture: object) -> Pull:
+    """Begin a pull of the pose at the present frame."""
+    playback.stop_playback(session)
+    frame, shown = playback.edited_frame(session, project), playback.current_frame(session, project)
+    if frame != shown:
+        session.show_notice(
+            f"Frame {shown} repeats frame {frame}: posed here, it changes in every repeat.",
+            topic="repeat",
+        )
+    here = (project.active, frame)
+    pulls = [pull for pull in project.pulls if (pull.layer, pull.frame) == here]
+    earlier = pulls[-1] if pulls else None
+    start = _start(session, project, earlier)
+    if earlier is not None and earlier.kept is None:
+        # Nothing of it is to be seen yet: what is wished now comes with it.
+        session.jobs.drop(POSING)
+        earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
+        return earlier
+    before = pose_at_playhead(session, project)
+    begun = Pull(
+        clip=project.clip,
+        frame=frame,
+        gesture=gesture,
+        start=start,
+        before=before,
+        is_keyed=session.preferences.auto_key,
+        rests=earlier is None or earlier.is_settled,
+    )
+    project.pending.append(begun)
+    return begun
+
+
+def _start(session: Session, project: Project, earlier: Pull | None) -> DragStart | None:
+    """Return what a pull begins with; None where that is an in-between that is not there yet.
+
+    Where tracks or springs act, handles are shown elsewhere than in the pose: that is worked out.
+
+    An earlier pull of the same pose, which is not at rest yet, says what was wished last.
+    """
+    pose, shown, layer = (
+        pose_at_playhead(session, project),
+        project.layer_runtime.shown,
+        project.layer,
+    )
+    if pose is not None:
+        if earlier is not None and earlier.kept is not None and earlier.world_targets is not None:
+            is_its_own = earlier.kept.phi is pose.phi
+            targets = {**earlier.world_targets, **earlier.reached} if is_its_own else pose.targets
+            pose = replace(pose, targets=targets)
+        return DragStart.of(layer, pose)
+    frame = playback.current_frame(session, project)
+    if shown is None or not shown.is_current or shown.frame != frame or shown.clip != project.clip:
+        return None
+    if layer.tracks or layer.springs:
+        return None
+    identities = [handle.id for handle in layer.handles]
+    places = shown.handle_positions.tolist()
+    return DragStart.at(
+        dict(zip(identities, places, strict=True)),
+        dict(zip(identities, shown.handle_rotations, strict=True)),
+        {},
+    )
+
+
+def pose_at_playhead(session: Session, project: Project) -> Pose | None:
+    """Return the pose that the layer rests in at the present frame; None for an in-between."""
+    if project.unkeyed_pose is not None:
+        return project.unkeyed_pose
+    clip = project.clip
+    return keyed_pose_at(clip, segment_time_at(clip, playback.current_frame(session, project)))

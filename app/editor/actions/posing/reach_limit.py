@@ -1,0 +1,74 @@
+"""Hands that have let go: handles beyond their reach are wanted where they came to from then on."""
+
+from collections.abc import Callable, Mapping
+
+from app.document import Target, measure_target_errors, misses_target, relax_limits
+from app.editor.action import do
+from app.editor.actions import playback
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import Pull
+
+# Lets the drawing stretch further, and pulls handles once more to where they were asked.
+RelaxLimits = Callable[[Session, Mapping[int, Target]], None]
+STOPPED_AT_LIMIT = "{who} stopped at {its} stretch limit."
+
+
+def clamp_unreachable_targets(session: Session, project: Project, loosen: RelaxLimits) -> None:
+    """Let hands that have let go give in once the pose has come to rest; once a frame."""
+    for pull in project.pulls:
+        if pull.dragged_targets and pull.is_at_rest and not pull.is_held:
+            asked, places = pull.world_targets, pull.reached
+            pull.release()
+            if asked is not None and pull.is_in(project.history):
+                _show_limit_notice(session, pull, {i: asked[i] for i in places}, places, loosen)
+
+
+def _show_limit_notice(
+    session: Session,
+    pull: Pull,
+    asked: Mapping[int, Target],
+    places: Mapping[int, Target],
+    loosen: RelaxLimits,
+) -> None:
+    """Tell what stopped handles short of where they were pulled, and offer the remedy."""
+    layer, pose = pull.clip.layer, pull.newest
+    lacks = {i: abs(place.position - asked[i].position) for i, place in places.items()}
+    short = [i for i, lack in lacks.items() if misses_target(layer, lack)]
+    if not short or pose is None:
+        return
+    name, others = layer.handle(short[0]).name, len(short) - 1
+    who, its = (f"{name} and {others} more", "their") if others else (name, "its")
+    if not measure_target_errors(layer, pose).at_limits:
+        session.show_notice(
+            f"{who} stopped where the other handles hold the shape.", topic="stopped"
+        )
+    elif relax_limits(layer.bounds) is None:
+        session.show_notice(STOPPED_AT_LIMIT.format(who=who, its=its), topic="stopped")
+    else:
+        session.show_notice(
+            STOPPED_AT_LIMIT.format(who=who, its=its),
+            topic="stopped",
+            label="Loosen",
+            action=do(_relax_limits, pull.layer, pull.frame, asked, loosen),
+        )
+
+
+@with_project
+def _relax_limits(
+    session: Session,
+    project: Project,
+    layer: int,
+    frame: int,
+    asked: Mapping[int, Target],
+    loosen: RelaxLimits,
+) -> None:
+    """Let a layer stretch further, and pull it once more to where the hand went."""
+    if layer != project.active:
+        session.show_notice(
+            "Another layer is posed now. Choose the one that was pulled, and pull again."
+        )
+        return
+    if playback.edited_frame(session, project) != frame:
+        playback.seek(session, frame)
+    loosen(session, asked)

@@ -1,0 +1,278 @@
+"""Gestures of the pointer in the timeline, from press to release, and what it shows."""
+
+from dataclasses import replace
+from itertools import count
+
+from app.document import (
+    LAST_FRAME,
+    Command,
+    Document,
+    FrameRange,
+    cycle_commands,
+    filming_commands,
+    key_commands,
+    layer_commands,
+    scene_commands,
+    switch_group_commands,
+    track_commands,
+)
+from app.editor.actions import editing, playback
+from app.editor.actions.timing.keys import edit_timing
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.timeline_view import (
+    CameraDrag,
+    CycleDrag,
+    EdgeDrag,
+    KeyBox,
+    KeyDrag,
+    KeyRow,
+    KeysByRow,
+    MarkerDrag,
+    ScrubDrag,
+    SwitchDrag,
+    TimeDrag,
+    TimeGesture,
+    TimeRangeView,
+    TurnDrag,
+    display_frame,
+    frames_in,
+    keys_in,
+    layer_of,
+)
+from app.errors import LissomError
+
+MOVE = editing.KeyVerb(key_commands.move_keys, track_commands.move_track_keys)
+COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
+
+
+@with_project
+def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) -> None:
+    """Show a stretch of time; None fits all frames."""
+    if project.timeline.gesture is None:
+        project.timeline.time_range = strip
+    else:
+        project.timeline.gesture_time_range = strip
+
+
+def fit_timeline(session: Session) -> None:
+    """Show all frames."""
+    set_time_range(session, None)
+
+
+@with_project
+def scroll_to_playhead(
+    session: Session, project: Project, frame: int, strip: TimeRangeView | None
+) -> None:
+    """Note that the playhead is at a frame, and show a stretch of time that it is in, if given."""
+    project.timeline.last_shown_frame = frame
+    if strip is not None:
+        set_time_range(session, strip)
+
+
+@with_project
+def scroll_rows(_: Session, project: Project, to: float) -> None:
+    """Scroll the rows to a number of em below the first one; the chosen one is seen."""
+    project.timeline.scrolled = to
+    project.timeline.last_shown_rows = project.row, project.timeline.expanded_layers
+
+
+@with_project
+def begin_timeline_drag(
+    _: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
+) -> None:
+    """Begin a gesture; what is shown stays until it ends."""
+    project.timeline.gesture, project.timeline.gesture_time_range = gesture, strip
+
+
+@with_project
+def move_timeline_drag(session: Session, project: Project, frame: float, row: KeyRow) -> None:
+    """Follow the pointer to another time, on a row."""
+    match project.timeline.gesture:
+        case KeyBox() as box:
+            editing.select_keys_in_rows(session, _inside(project, box, frame, row))
+        case ScrubDrag(offset=offset):
+            playback.scrub(session, round(frame + offset))
+        case TimeDrag() as drag:
+            _drag(session, project, drag, frame)
+
+
+@with_project
+def end_timeline_drag(_: Session, project: Project) -> None:
+    """End the gesture where it is."""
+    timing = project.timeline
+    if timing.time_range is not None:
+        timing.time_range = timing.gesture_time_range
+    timing.gesture = timing.gesture_time_range = None
+
+
+@with_project
+def cancel_timeline_drag(session: Session, project: Project) -> None:
+    """End the gesture, and take back what it did."""
+    gesture = project.timeline.gesture
+    if isinstance(gesture, KeyBox):
+        editing.select_keys_in_rows(session, gesture.keeps)
+    elif isinstance(gesture, TimeDrag) and project.document is gesture.after:
+        _become(session, gesture.before, "Drag")
+        if isinstance(gesture, KeyDrag):
+            editing.select_keys_in_rows(session, gesture.keys)
+    end_timeline_drag(session)
+
+
+@with_project
+def toggle_track_rows(_: Session, project: Project, layer: int) -> None:
+    """Let the tracks of a layer have rows, or fold them away: then none of them is chosen."""
+    project.timeline.expanded_layers ^= {layer}
+    if layer == project.active and layer not in project.timeline.expanded_layers:
+        project.selected_track = None
+
+
+def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysByRow:
+    """Return the keys within a box that ends at a frame and a row, and those that it keeps."""
+    document = project.document
+    low, high = sorted((box.start, frame))
+    order = project.rows
+    if box.row not in order or row not in order:
+        return box.keeps
+    first, last = sorted(map(order.index, (box.row, row)))
+    inside = dict(box.keeps)
+    for each in order[first : last + 1]:
+        layer = document.layer(layer_of(each))
+        if layer.still:
+            continue
+        track = project.track_in(each)
+        keys = [key.frame for key in keys_in(document, each)]
+        frames = frozenset(
+            key for key in keys if low <= display_frame(document, track, key) <= high
+        )
+        inside[each] = inside.get(each, frozenset()) | frames
+    return inside
+
+
+def drag_offset(document: Document, keys: KeysByRow, wanted: int, *, copies: bool) -> int:
+    """Return the number of frames next to `wanted` by which keys can be moved.
+
+    Parameters
+    ----------
+    keys : mapping of KeyRow to frozenset of int
+        Their frames, by their rows.
+    wanted : int
+    copies : bool
+        Whether they stay as well; then 0 stands for no copies.
+    """
+    there = {row: frames_in(document, row) for row in keys}
+    taken = there if copies else {row: there[row] - keys[row] for row in keys}
+    low, high = -min(map(min, keys.values())), LAST_FRAME - max(map(max, keys.values()))
+    wanted = min(max(wanted, low), high)
+    for distance in count():
+        # On the side from which the pointer comes first: keys wait before one that is in the way.
+        for by in (wanted - distance, wanted + distance)[:: 1 if wanted > 0 else -1]:
+            if by == 0 or (
+                low <= by <= high
+                and not any(
+                    key + by in taken[row] for row, frames in keys.items() for key in frames
+                )
+            ):
+                return by
+    raise AssertionError("unreachable: 0 is always possible")
+
+
+def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> None:
+    """Move what is dragged to the pointer's frame, unless something else changed meanwhile."""
+    moved = _moved(drag, frame)
+    if moved is None:
+        return
+    if project.document is not drag.after:
+        end_timeline_drag(session)
+        return
+    drag, command = moved
+    try:
+        document = command(drag.before)
+    except LissomError:
+        # Keys stay where they are before what repeats.
+        return
+    _become(session, document, command.label)
+    if isinstance(drag, KeyDrag):
+        by = drag.by
+        chosen = {i: frozenset(key + by for key in frames) for i, frames in drag.keys.items()}
+        editing.select_keys_in_rows(session, chosen)
+    project.timeline.gesture = replace(drag, after=project.document)
+
+
+def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
+    """Return the drag with what it moves as near to a frame as can be, and the command for that.
+
+    The command is for the document as it was before; None where nothing moves.
+    """
+    by, before = round(frame - drag.start), drag.before
+    match drag:
+        case EdgeDrag():
+            return drag, _trim(drag, frame)
+        case KeyDrag():
+            by = drag_offset(before, drag.keys, by, copies=drag.copies)
+            command = editing.change_keys(COPY if drag.copies else MOVE, drag.keys, by)
+            if not by:
+                command = Command(command.label, lambda document: document)
+            return None if by == drag.by else (replace(drag, by=by), command)
+        case MarkerDrag(marker=marker):
+            at = min(max(marker + by, 0), LAST_FRAME)
+            others = {each.frame for each in before.markers} - {marker}
+            command = scene_commands.move_marker(marker, at)
+        case CameraDrag(key=key):
+            at = before.frames.clamp(key + by)
+            others = {each.frame for each in before.camera} - {key}
+            command = filming_commands.move_camera_key(key, at)
+        case CycleDrag():
+            return drag, _end_cycle(drag, round(frame))
+        case SwitchDrag(layer=layer, switch=switch):
+            at = before.frames.clamp(switch + by)
+            others = {each.frame for each in before.layer(layer).visibility_keys} - {switch}
+            command = layer_commands.move_visibility_key(layer, switch, at)
+        case TurnDrag(choice=choice, turn=turn):
+            at = before.frames.clamp(turn + by)
+            others = {each.frame for each in before.switch_group(choice).keys} - {turn}
+            others.add(before.frames.first)
+            command = switch_group_commands.move_turn(choice, turn, at)
+        case _:
+            raise AssertionError("unreachable: there are no other drags")
+    return None if at in others | {drag.at} else (replace(drag, at=at), command)
+
+
+def _end_cycle(drag: CycleDrag, frame: int) -> Command:
+    """Return the command that puts the dragged end of a cycle where the pointer is, or near."""
+    layer = drag.before.layer(drag.layer)
+    cycle = cycle_commands.cycle_starting_at(layer, drag.first)
+    last, until = cycle.last, cycle.until
+    if drag.is_stretch:
+        cycle = cycle_commands.with_cycle_end(layer, cycle, min(frame, drag.before.frames.last))
+        last, until = cycle.last, cycle.until
+    else:
+        until = cycle_commands.nearest_cycle_end(layer, cycle, frame, drag.before.frames.last)
+    return cycle_commands.set_cycle(drag.layer, drag.first, last, until)
+
+
+def _trim(drag: EdgeDrag, pointed: float) -> Command:
+    """Return the command that puts the dragged end where the pointer is."""
+    document = drag.before
+    frames, played = document.frames, document.played_frames
+    frame = frames.clamp(round(pointed))
+    match drag.edge:
+        case "animation end":
+            last_key = max(layer.keyed_range[1] for layer in document.layers)
+            least = max(last_key, frames.first + 1)
+            last = min(max(round(pointed), least), LAST_FRAME)
+            return scene_commands.set_frames(FrameRange(frames.first, last))
+        case "preview start":
+            preview = FrameRange(max(min(frame, played.last - 1), frames.first), played.last)
+        case "preview end":
+            preview = FrameRange(played.first, min(max(frame, played.first + 1), frames.last))
+        case "preview range":
+            by = round(pointed - drag.start)
+            by = min(max(by, frames.first - played.first), frames.last - played.last)
+            preview = FrameRange(played.first + by, played.last + by)
+    return scene_commands.set_preview(None if preview == frames else preview)
+
+
+def _become(session: Session, document: Document, label: str) -> None:
+    """Go on to another document, as part of the gesture's one step of undo."""
+    edit_timing(session, Command(label, lambda _: document))

@@ -1,0 +1,105 @@
+"""The worker's way to corrected frames: the one that is watched first, then all others."""
+
+from collections.abc import Callable, Iterator
+
+from app.document import Clip, clip_of
+from app.editor.actions import playback
+from app.editor.error_reports import report_failure
+from app.editor.project import Project
+from app.editor.session import Session
+from app.editor.work import Job, JobKind, LayerRuntime
+from app.motion import CorrectedFrames, CorrectionUpdate
+
+COMPLAINT = "The handles cannot follow their tracks"
+CORRECTING = JobKind("Corrections", COMPLAINT)
+CORRECTING_SHOWN_FRAME = JobKind("Frame correction", COMPLAINT, "hand")
+# What the tracks of handles that a hand may carry are relative to.
+FINDING_BASE_FRAMES = JobKind("Places on tracks", COMPLAINT, "hand")
+
+Work = Callable[[], CorrectionUpdate]
+
+
+def is_track_drag_pending(session: Session, project: Project) -> bool:
+    """Tell whether a hand has a handle on its track: but for the frame that it sees all waits."""
+    is_recorded = project.recording is not None and not project.recording.is_over
+    return is_recorded or (session.active_tool is not None and project.selected_track is not None)
+
+
+def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what finds the corrections of some frames, those nearest to the playhead first."""
+    frame = playback.current_frame(session, project)
+    if CORRECTING not in session.jobs.kinds:
+        for clip, puppet, corrected in _corrected(project):
+            work = corrected.missing(project.document, frame, project.samplers)
+            if work is not None:
+                yield _job(session, project, CORRECTING, puppet, clip, work)
+                return
+
+
+def correction_jobs_for_shown_frame(session: Session, project: Project) -> Iterator[Job]:
+    """Yield what finds the correction of the frame that is watched, and what hands need."""
+    # Pulls come first, but for those that wait until what is seen is there.
+    if not (project.pulls and session.prepares_ahead) or is_track_drag_pending(session, project):
+        yield from _follow(session, project)
+        yield from _ground(session, project)
+
+
+def _follow(session: Session, project: Project) -> Iterator[Job]:
+    is_playing = project.playhead.since is not None
+    if CORRECTING_SHOWN_FRAME in session.jobs.kinds or (is_playing and project.recording is None):
+        # Of a frame that only plays it would come too late.
+        return
+    frame, is_urgent = (
+        playback.current_frame(session, project),
+        is_track_drag_pending(session, project),
+    )
+    for clip, puppet, corrected in _corrected(project):
+        work = corrected.missing_here(project.document, frame, project.samplers)
+        # The next drag of a pose is not to wait until all is prepared.
+        is_wanted = corrected.is_begun or is_urgent or not session.prepares_ahead
+        if work is not None and is_wanted:
+            yield _job(session, project, CORRECTING_SHOWN_FRAME, puppet, clip, work)
+            return
+
+
+def _ground(session: Session, project: Project) -> Iterator[Job]:
+    wanted = (
+        session.records
+        or project.selected_track is not None
+        or project.track_drags
+        or project.recording
+    )
+    if not wanted or FINDING_BASE_FRAMES in session.jobs.kinds:
+        return
+    frames = [carry.frame for carry in project.track_drags]
+    frame = frames[0] if frames else playback.current_frame(session, project)
+    for clip, puppet, corrected in _corrected(project):
+        if clip.layer.id == project.active:
+            work = corrected.missing_ground(project.document, frame, project.samplers)
+            if work is not None:
+                yield _job(session, project, FINDING_BASE_FRAMES, puppet, clip, work)
+
+
+def _corrected(project: Project) -> Iterator[tuple[Clip, LayerRuntime, CorrectedFrames]]:
+    for layer, puppet in project.layer_runtimes.items():
+        clip = clip_of(project.document, layer)
+        if puppet.corrected is not None and not puppet.store.has_failed(clip, "correction"):
+            yield clip, puppet, puppet.corrected
+
+
+def _job(
+    session: Session, project: Project, kind: JobKind, puppet: LayerRuntime, clip: Clip, work: Work
+) -> Job:
+    """Return a job for some corrections; what fails is not tried again for the same keys."""
+
+    def done(found: CorrectionUpdate) -> None:
+        # The hand may have gone on since.
+        if puppet.corrected is not None:
+            puppet.corrected.take(found, is_newest=kind == CORRECTING_SHOWN_FRAME)
+            project.free_memory()
+
+    def failed(error: Exception) -> None:
+        puppet.store.mark_failed("correction", clip)
+        report_failure(session, kind.complaint, error)
+
+    return Job(kind=kind, work=work, done=done, failed=failed)

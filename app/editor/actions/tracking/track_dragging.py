@@ -1,0 +1,143 @@
+"""Handles that a hand carries: each place of the pointer is a key of the handle's track.
+
+The document has the key at once. What is shown follows as fast as corrections are solved, those of
+the newest place.
+"""
+
+from app.document import Track, track_at, track_commands, velocity_at
+from app.editor.actions import playback
+from app.editor.actions.tracking.track_space import (
+    find_key_frame,
+    handle_index,
+    to_track_angle,
+    to_track_offset,
+)
+from app.editor.error_reports import report_failure
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import TrackDrag
+from app.errors import LissomError
+
+NO_KEY = "The key of the handle could not be kept"
+
+
+def draggable_track(project: Project, handle: int) -> Track | None:
+    """Return the track that a drag of a handle is for, as its row is chosen; None for poses."""
+    chosen = project.selected_track
+    track = None if chosen is None else project.layer.track_of(chosen)
+    return track if track is not None and handle in track.handles else None
+
+
+@with_project
+def drag_track_handle(
+    session: Session, project: Project, handle: int, place: complex, *, gesture: object
+) -> None:
+    """Want a handle elsewhere at the present frame by its own track; the pose stays.
+
+    What one gesture does is one step of undo.
+
+    Parameters
+    ----------
+    handle : int
+        The first one of the track's.
+    place : complex
+        On the layer by itself.
+    """
+    for held in project.track_drags:
+        if held.gesture is gesture:
+            held.place = place
+            return
+    playback.stop_playback(session)
+    frame = playback.current_frame(session, project)
+    begun = TrackDrag(
+        layer=project.active, handle=handle, frame=frame, gesture=gesture, place=place
+    )
+    project.pending.append(begun)
+
+
+@with_project
+def rotate_track_handle(
+    session: Session, project: Project, handle: int, angle: float, *, gesture: object
+) -> None:
+    """Want the shape turned by an angle at a handle, in radians, by the handle's own track.
+
+    A track that has turned nothing so far turns the shape from then on, as the pose does at its
+    other keys.
+    """
+    held = next((each for each in project.track_drags if each.gesture is gesture), None)
+    track, shown = project.layer.track_of(handle), project.layer_runtime.shown
+    if track is None or shown is None:
+        return
+    if not track.keys_rotation:
+        command = track_commands.set_turning(project.active, handle, turns=True)
+        project.history.do(command, gesture=gesture)
+        session.show_notice("The keys of its track turn the shape now, too.", topic="turning")
+    if held is not None:
+        held.turn = angle
+        return
+    playback.stop_playback(session)
+    frame, place = playback.current_frame(session, project), shown.handle_positions
+    begun = TrackDrag(
+        layer=project.active,
+        handle=handle,
+        frame=frame,
+        gesture=gesture,
+        place=complex(place[handle_index(project, handle)]),
+        turn=angle,
+    )
+    project.pending.append(begun)
+
+
+def cancel_track_drag(project: Project, gesture: object) -> None:
+    """Take back what a gesture has wanted of a track and did not get yet."""
+    for held in project.track_drags:
+        if held.gesture is gesture:
+            project.pending.remove(held)
+
+
+def commit_track_drags(session: Session, project: Project) -> None:
+    """Let tracks have the keys that hands want, as far as these are known; once a frame."""
+    for held in project.track_drags:
+        is_there = held.layer == project.active and held.handle in [
+            handle.id for handle in project.layer.handles
+        ]
+        try:
+            is_over = not is_there or commit_track_key(session, project, held)
+        except LissomError as error:
+            report_failure(session, NO_KEY, error)
+            is_over = True
+        if is_over:
+            project.pending.remove(held)
+
+
+def commit_track_key(session: Session, project: Project, held: TrackDrag) -> bool:
+    """Give a handle's track the key that a hand wants; tell whether nothing is awaited."""
+    handle, frame = held.handle, held.frame
+    track = project.layer.track_of(handle)
+    own = frame if track is None else find_key_frame(session, project.document, track, frame)
+    if own is None:
+        return True
+    at = None if track is None else track_at(track, project.clip, frame)
+    velocity = None if track is None else velocity_at(track, project.clip, frame)
+    if held.turn is None:
+        place = to_track_offset(project, handle, frame, held.place)
+        is_new = track is not None and own not in track.key_frames
+        turn = at.turn if at is not None and is_new else None
+    else:
+        place = to_track_offset(project, handle, frame, held.place) if at is None else at.place
+        turn = to_track_angle(project, handle, frame, held.turn)
+        if turn is None:
+            return False
+    if place is None:
+        return False
+    command = track_commands.put_track_key(
+        held.layer,
+        handle,
+        own,
+        place,
+        turn=turn,
+        velocity=velocity,
+        easing=session.preferences.easing,
+    )
+    project.history.do(command, gesture=held.gesture)
+    return True

@@ -1,0 +1,159 @@
+"""A first animation in five steps: which one comes next is told by the document and the session."""
+
+from dataclasses import replace
+
+from app.document import (
+    Document,
+    FrameRange,
+    Layer,
+    handle_commands,
+    key_commands,
+    scene_commands,
+)
+from app.editor.action import do
+from app.editor.actions import files, saving
+from app.editor.error_reports import run_job
+from app.editor.project import Project
+from app.editor.session import Session, TutorialStage, TutorialState
+from app.editor.work import JobKind
+from app.storage import load_project, sample_images
+from engine.maps import HarmonicMap
+
+STEPS: tuple[TutorialStage, ...] = ("handle", "time", "pose", "play", "export")
+FORMAT = "gif"
+SAMPLE = "giraffe.lissom"
+LED = "nose"  # the handle of the sample that the person makes anew
+HELD = ("withers", "chest", "rump", "hoof")  # ends of the names of those that stay
+LAST, SIZE = 48, (480, 480)  # of the sample's loop, and of its GIF in pixels
+HOLDS_AND_MOVES = 2  # handles that an own drawing needs
+OPENING = JobKind("Opening the giraffe", "The giraffe cannot be opened")
+
+
+def begin_tutorial(session: Session) -> None:
+    """Open a copy of the giraffe without motion, and lead the person through making it bow."""
+
+    def done(read: tuple[files.OpenedFile, TutorialState]) -> None:
+        saving.confirm_unsaved(session, do(install_tutorial, *read))
+
+    run_job(session, OPENING, _read, done)
+
+
+def begin_tutorial_with_own_drawing(session: Session) -> None:
+    """Ask for a drawing, and lead the person through its first animation."""
+    session.ask_file("Open a drawing", files.OPENABLE, lambda path: do(files.open_file, path))
+    session.tutorial = TutorialState()
+
+
+def install_tutorial(session: Session, opened: files.OpenedFile, guide: TutorialState) -> None:
+    """Make the giraffe the project of the window, and begin."""
+    files.install_opened_file(session, sample_images() / SAMPLE, opened)
+    session.tutorial = _attached(session, guide)
+
+
+def end_tutorial(session: Session) -> None:
+    """End the guide; what was made stays."""
+    session.tutorial = None
+
+
+def update_tutorial(session: Session) -> None:
+    """See what the person has done, and go on or back to the step that is next; once a frame."""
+    guide, project = session.tutorial, session.project
+    if guide is None:
+        return
+    if guide.project is None:
+        # Nothing was chosen, or what was cannot be opened.
+        is_given_up = project is None and session.dialog is None and not session.jobs.kinds
+        session.tutorial = None if is_given_up else _attached(session, guide)
+    elif guide.project is not project:
+        session.tutorial = None
+    elif session.active_tool is None and project.timeline.gesture is None:
+        # What the hand is at is not to be disturbed by what comes next.
+        session.tutorial = _advanced(session, project, guide)
+
+
+def is_tutorial_shown(session: Session) -> bool:
+    """Tell whether a guide is shown."""
+    return session.tutorial is not None and session.tutorial.project is not None
+
+
+def is_first_pose_changed(layer: Layer) -> bool:
+    """Tell whether the first pose is another than the one in which the picture was drawn."""
+    rest = HarmonicMap.identity(layer.domain.cage, layer.domain.holes)
+    return not layer.map_of(layer.keys[0].pose).is_same(rest)
+
+
+def _read() -> tuple[files.OpenedFile, TutorialState]:
+    document = load_project(sample_images() / SAMPLE)
+    layer = document.layers[0]
+    led = next(handle for handle in layer.handles if handle.name == LED)
+    goal = next(
+        target.position
+        for key in layer.keys[1:]
+        if (target := key.pose.targets.get(led.id)) and target.position is not None
+    )
+    opened = files.decode_project(_at_rest(document), SAMPLE)
+    return opened, TutorialState(handle_place=led.position, target_place=goal)
+
+
+def _at_rest(document: Document) -> Document:
+    """Return a document with its first key only, and only those handles that hold still."""
+    layer = document.layers[0]
+    free = [handle.id for handle in layer.handles if not handle.name.endswith(HELD)]
+    for command in (
+        key_commands.delete_keys(layer.id, [key.frame for key in layer.keys[1:]]),
+        handle_commands.remove_handles(layer.id, free),
+        scene_commands.set_frames(FrameRange(0, LAST)),
+        scene_commands.set_export(replace(document.export.in_format(FORMAT), size=SIZE)),
+    ):
+        document = command(document)
+    return document
+
+
+def _attached(session: Session, guide: TutorialState) -> TutorialState:
+    """Return a guide through the project that is open, if there is one by now."""
+    project = session.project
+    if project is None:
+        return guide
+    return replace(
+        guide, project=project, handles=_handles(project.document), exported=session.exported
+    )
+
+
+def _handles(document: Document) -> frozenset[tuple[int, int]]:
+    return frozenset((layer.id, handle.id) for layer in document.layers for handle in layer.handles)
+
+
+def _advanced(session: Session, project: Project, guide: TutorialState) -> TutorialState:
+    """Return a guide at the step that is next; the same one where nothing has changed."""
+    if guide.stage == "done":
+        return guide
+    moves = any(map(_moves, project.document.layers))
+    has_played = moves and (guide.has_played or project.playhead.since is not None)
+    step = _next_step(project, guide, moves=moves, has_played=has_played)
+    exported = session.exported
+    if exported is not guide.exported and guide.stage == step == "export":
+        step = "done" if exported is not None and exported.format == FORMAT else step
+    if (step, has_played, exported) == (guide.stage, guide.has_played, guide.exported):
+        return guide
+    return replace(guide, stage=step, has_played=has_played, exported=exported)
+
+
+def _next_step(
+    project: Project, guide: TutorialState, *, moves: bool, has_played: bool
+) -> TutorialStage:
+    if moves:
+        return "export" if has_played else "play"
+    new = _handles(project.document) - guide.handles
+    wanted = HOLDS_AND_MOVES if guide.handle_place is None else 1
+    if len(new) < wanted and not any(map(is_first_pose_changed, project.document.layers)):
+        return "handle"
+    playhead, first = project.playhead, project.layer.keys[0].frame
+    return "time" if playhead.since is not None or playhead.frame == first else "pose"
+
+
+def _moves(layer: Layer) -> bool:
+    """Tell whether a layer has poses of its own to go between, or a track that moves a handle."""
+    if any(len(track.keys) > 1 for track in layer.tracks):
+        return True
+    first = layer.map_of(layer.keys[0].pose)
+    return any(not layer.map_of(key.pose).is_same(first) for key in layer.keys[1:])

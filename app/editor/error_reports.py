@@ -1,0 +1,197 @@
+"""What fails is told, and how; of a surprise the person can have a report."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+from app.editor.action import Action, do
+from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
+from app.editor.session import Session
+from app.editor.work import Job, JobKind
+from app.errors import EXPECTED_ERRORS
+from app.reports import format_problem_report, format_trace, redact_names
+from app.storage import (
+    check_writable,
+    load_report,
+    mark_report_seen,
+    read_fault_log,
+    remove_report,
+    write_atomically,
+    write_report,
+)
+
+Result = TypeVar("Result")
+MOST_NOTED = 40  # actions
+TIMES = " × "  # between an action's name and how often it came in a row
+
+
+def as_sentence(text: str) -> str:
+    """Return a text as a sentence; that of an exception begins in lower case, and does not end."""
+    begins_with_name = not text.partition(" ")[0].isalpha()
+    text = text if begins_with_name else text[:1].upper() + text[1:]
+    return text if text.endswith((".", "?", "…")) else f"{text}."
+
+
+def run_job(
+    session: Session,
+    kind: JobKind,
+    work: Callable[[], Result],
+    done: Callable[[Result], None],
+    failed: Callable[[Exception], None] | None = None,
+) -> None:
+    """Let a worker do something in place of an unfinished job of its kind; tell where it fails."""
+    complain = partial(report_failure, session, kind.complaint)
+    session.jobs.put(Job(kind=kind, work=work, done=done, failed=failed or complain))
+
+
+def report_first_failure(session: Session, what: str, error: Exception) -> None:
+    """Show what failed that is tried again and again; `mended` lets it be shown anew."""
+    if what not in session.reported_failures:
+        session.reported_failures.add(what)
+        report_failure(session, what, error)
+
+
+def clear_reported_failure(session: Session, what: str) -> None:
+    """Take note that something works that may have failed before."""
+    session.reported_failures.discard(what)
+
+
+def report_failure(session: Session, what: str, error: Exception) -> None:
+    """Show what failed, and why; a surprise comes with details to copy."""
+    if isinstance(error, EXPECTED_ERRORS):
+        session.show_notice(as_sentence(f"{what}: {error}"), tone="error")
+    else:
+        report_unexpected_error(session, f"{what}.", error)
+
+
+def report_unexpected_error(
+    session: Session, text: str, error: Exception, *, topic: str = ""
+) -> None:
+    """Tell that the program itself failed, with details to copy and a report to save."""
+    session.last_error_trace = error_trace(session, error)
+    session.show_notice(
+        text,
+        tone="error",
+        topic=topic,
+        details=session.last_error_trace,
+        label="Report…",
+        action=do(show_problem_report),
+    )
+
+
+def error_trace(session: Session, error: Exception) -> str:
+    """Return the traceback of a surprise, without what a report does not name."""
+    return format_trace(error, _hidden(session))
+
+
+def log_action(session: Session, action: Action) -> None:
+    """Remember an action by its name, and none of what it is done with."""
+    last, _, times = (session.logged_actions or [""])[-1].partition(TIMES)
+    if action.name == last:
+        session.logged_actions[-1] = f"{last}{TIMES}{int(times or 1) + 1}"
+    else:
+        session.logged_actions.append(action.name)
+        del session.logged_actions[:-MOST_NOTED]
+
+
+def problem_report_text(session: Session) -> str:
+    """Return the text of a report about what went on here, and about what failed last."""
+    return format_problem_report(
+        graphics=session.graphics, actions=session.logged_actions, trace=session.last_error_trace
+    )
+
+
+def keep_crash_report(session: Session, error: Exception) -> str:
+    """Keep a report of what ends the window beside unsaved work, and return it."""
+    session.last_error_trace = error_trace(session, error)
+    text = problem_report_text(session)
+    write_report(session.folder, text)
+    return text
+
+
+def keep_fault_report(session: Session) -> None:
+    """Keep a report of what Python told when it crashed before, as in a driver, if it did."""
+    told = read_fault_log(session.folder)
+    if told:
+        trace = redact_names(told, _hidden(session))
+        write_report(session.folder, format_problem_report(graphics="", actions=(), trace=trace))
+
+
+def show_problem_report(session: Session) -> None:
+    """Show a report of what went on here."""
+    session.dialog = ProblemReport(
+        text=problem_report_text(session), is_kept=False, behind=_behind(session)
+    )
+
+
+def show_kept_or_new_report(session: Session) -> None:
+    """Show the report of what ended Lissom before, or else one of what went on here."""
+    text = load_report(session.folder)
+    if text:
+        session.dialog = ProblemReport(text=text, is_kept=True, behind=_behind(session))
+    else:
+        show_problem_report(session)
+
+
+def offer_kept_report(session: Session) -> None:
+    """Tell once of a report of what ended Lissom before, unless something is asked now."""
+    if session.dialog is None and mark_report_seen(session.folder):
+        session.show_notice(
+            "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
+            "nowhere.",
+            label="Show it",
+            action=do(show_kept_or_new_report),
+        )
+
+
+def edit_report_text(session: Session, report: ProblemReport, text: str) -> None:
+    """Go on with a report that the person has changed."""
+    session.dialog = replace(report, text=text)
+
+
+def ask_report_path(session: Session, report: ProblemReport) -> None:
+    """Ask where to save a report."""
+    session.dialog = FileDialog(
+        title="Save the report",
+        folder=session.usual_folder,
+        name="Lissom report.txt",
+        suffixes=(".txt",),
+        writes=True,
+        chosen=lambda path: do(save_report, report, path),
+    )
+
+
+def save_report(session: Session, report: ProblemReport, path: Path) -> None:
+    """Save a report in a file; one that was kept until then is not kept any more."""
+    check_writable(path, sources=())
+    write_atomically(path, lambda file: file.write(report.text.encode()))
+    if report.is_kept:
+        remove_report(session.folder)
+    session.dialog = report.behind
+    session.show_notice(f"Saved {path.name}.", tone="good")
+
+
+def discard_report(session: Session, report: ProblemReport) -> None:
+    """Delete a report that was kept."""
+    remove_report(session.folder)
+    session.dialog = report.behind
+    session.show_notice("The report was discarded.")
+
+
+def _behind(session: Session) -> RecoveryDialog | None:
+    """Return the question that comes back once a report was looked at."""
+    dialog = session.dialog
+    if isinstance(dialog, ProblemReport):
+        return dialog.behind
+    return dialog if isinstance(dialog, RecoveryDialog) else None
+
+
+def _hidden(session: Session) -> set[Path]:
+    """Return the files that a report does not name."""
+    project, preferences = session.project, session.preferences
+    known = {*preferences.recent, *preferences.written}
+    if project is not None:
+        known |= {*project.sources, *project.export_destinations.values()}
+    return known

@@ -1,0 +1,276 @@
+"""Hanging one layer on another, and letting it go."""
+
+from collections.abc import Callable, Collection, Sequence
+
+from app.document import (
+    Attachment,
+    Command,
+    Document,
+    combine_commands,
+    layer_commands,
+    transform_at,
+)
+from app.editor import pending_changes
+from app.editor.action import do
+from app.editor.actions import editing, playback
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work import JobKind
+from app.motion import (
+    ParentTransforms,
+    anchor_or_default,
+    attach_in_place as joint_at_rest,
+    reparent_in_place as joint_that_keeps,
+)
+from engine.geometry import RigidMotion
+
+HANGING = JobKind("Hanging a layer", "The layers cannot be joined")
+PARENT_IS_DESCENDANT = (
+    "{name} hangs on {parent}, so that {other} cannot hang on it: that would be a circle. Let "
+    "{hung} hang on nothing first."
+)
+
+
+def is_same_or_descendant(project: Project, identity: int, carrier: int) -> bool:
+    """Tell whether a layer is another one, or hangs on it at some time, directly or by others."""
+    others = project.document.all_ancestors(identity)
+    return identity == carrier or any(each.id == carrier for each in others)
+
+
+@with_project
+def attach_layer(
+    session: Session,
+    project: Project,
+    child: int,
+    parent: int,
+    turns: bool = True,  # noqa: FBT001, FBT002 - of an action
+    place: complex | None = None,
+) -> None:
+    """Hang a layer by its anchor on another one; nothing moves at the present frame.
+
+    Parameters
+    ----------
+    child, parent : int
+        Ids of layers.
+    turns : bool
+        Whether the child turns with the parent.
+    place : complex, optional
+        Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
+    """
+    if is_same_or_descendant(project, parent, child):
+        names = [project.document.layer(identity).name for identity in (parent, child)]
+        session.show_notice(
+            PARENT_IS_DESCENDANT.format(
+                name=names[0], parent=names[1], other=names[1], hung=names[0]
+            ),
+            tone="error",
+            topic="joint",
+        )
+        return
+    frame = playback.current_frame(session, project)
+
+    def find(joints: ParentTransforms) -> Command:
+        held = joint_at_rest(joints, child, parent, frame, place=place, turns=turns)
+        return layer_commands.attach_layer(child, *held)
+
+    joining = do(_attach, (child, parent), find)
+    pending_changes.run_when_idle(session, joining, "Hang the layer")
+
+
+@with_project
+def attach_layers(session: Session, project: Project, parent: int, *children: int) -> None:
+    """Hang layers on another one; those that hang on one of them go along with that."""
+    frame = playback.current_frame(session, project)
+    whole = [child for child in children if child != parent]
+    carried = {
+        child
+        for child in whole
+        if any(other != child and is_same_or_descendant(project, child, other) for other in whole)
+    }
+    free = [child for child in whole if child not in carried]
+    circles = [child for child in free if is_same_or_descendant(project, parent, child)]
+    if circles or len(free) == 1:
+        attach_layer(session, (circles or free)[0], parent)
+        return
+
+    def find(joints: ParentTransforms) -> Command:
+        held = [(child, joint_at_rest(joints, child, parent, frame, turns=True)) for child in free]
+        attached = [layer_commands.attach_layer(child, *joint) for child, joint in held]
+        return combine_commands(f"Attach {len(free)} layers", attached)
+
+    joining = do(_attach, (*free, parent), find)
+    pending_changes.run_when_idle(session, joining, "Hang the layers")
+
+
+@with_project
+def _attach(
+    session: Session,
+    project: Project,
+    joined: Sequence[int],
+    find: Callable[[ParentTransforms], Command],
+) -> None:
+    """Hang layers on another one by the joints that are found."""
+    document = project.document
+    if not set(joined) <= project.layer_runtimes.keys():
+        return
+    siblings = project.samplers
+
+    def done(command: Command) -> None:
+        if project.document is document:
+            editing.edit_document(session, command)
+        else:
+            session.show_notice("The layer was not hung: the project changed meanwhile. Try again.")
+
+    pending_changes.begin_pending_change(
+        session,
+        project,
+        HANGING,
+        lambda: find(ParentTransforms(document, siblings)),
+        done,
+    )
+
+
+@with_project
+def detach_layer(session: Session, project: Project, child: int) -> None:
+    """Let a layer hang on nothing any more; nothing moves at the present frame.
+
+    One that hangs on others at other times is let go as long as the present joint holds.
+    """
+    shown, layer = project.layer_runtimes[child].shown, project.document.layer(child)
+    joint = layer.attachment_key_at(playback.current_frame(session, project))
+    if joint is not None and len(layer.attachments) > 1:
+        free = Attachment(parent=None, frame=joint.frame, keep_world_transform=True)
+        editing.edit_document(
+            session, layer_commands.attach_layer(child, anchor_or_default(layer), free)
+        )
+    elif shown is not None:
+        editing.edit_document(
+            session, _detach_command(project.document, child, shown.frame, shown.placement)
+        )
+
+
+@with_project
+def set_inherits_rotation(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
+    """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
+    frame = playback.current_frame(session, project)
+    joint = project.document.layer(child).attachment_key_at(frame)
+    if joint is not None and joint.parent is not None and turns != joint.inherits_rotation:
+        attach_layer(session, child, joint.parent, turns)
+
+
+@with_project
+def reparent_layer(session: Session, project: Project, child: int, parent: int | None) -> None:
+    """Let a layer hang on another one, or on none, from the present frame on; nothing jumps."""
+    layer = project.document.layer(child)
+    frame = layer.joint_frame(playback.current_frame(session, project))
+    if parent is None:
+        anchor, joint = (
+            anchor_or_default(layer),
+            Attachment(parent=None, frame=frame, keep_world_transform=True),
+        )
+        editing.edit_document(session, layer_commands.attach_layer(child, anchor, joint))
+        return
+
+    def find(joints: ParentTransforms) -> Command:
+        held = layer.attachment_key_at(frame)
+        turns = held is None or held.inherits_rotation
+        joint = joint_that_keeps(joints, child, parent, frame, turns=turns)
+        return layer_commands.attach_layer(child, anchor_or_default(layer), joint)
+
+    joining = do(_attach, (child, parent), find)
+    pending_changes.run_when_idle(session, joining, "Hand the layer over")
+
+
+@with_project
+def delete_parent_key(session: Session, _: Project, child: int, frame: int) -> None:
+    """Let a layer hang on what it hung on before a frame, from there on, too."""
+    editing.edit_document(session, layer_commands.delete_attachment_key(child, frame))
+
+
+@with_project
+def delete_layers(session: Session, project: Project, *identities: int) -> None:
+    """Delete layers. What hung on them hangs on what they hung on, and nothing moves now."""
+    gone, layers = set(identities), project.document.layers
+    if len(gone) == len(layers):
+        session.show_notice("A scene has at least one layer. Add another one first.", tone="error")
+    elif any(joint.parent in gone for layer in layers for joint in layer.attachments):
+        pending_changes.run_when_idle(
+            session, do(_reparent_children, *identities), "Delete the layer"
+        )
+    else:
+        _delete(session, identities, [])
+
+
+@with_project
+def _reparent_children(session: Session, project: Project, *identities: int) -> None:
+    """Find where what hangs on layers that go is to hang, and delete them."""
+    document, siblings = project.document, project.samplers
+    frame = playback.current_frame(session, project)
+
+    def find() -> list[Command]:
+        joints = ParentTransforms(document, siblings)
+        layers = [layer.id for layer in document.layers if layer.id not in identities]
+        return [_reparent_child_command(joints, child, identities, frame) for child in layers]
+
+    def done(inherited: list[Command]) -> None:
+        if project.document is document:
+            _delete(session, identities, inherited)
+        else:
+            session.show_notice("Nothing was deleted: the project changed meanwhile. Try again.")
+
+    pending_changes.begin_pending_change(session, project, HANGING, find, done)
+
+
+def _reparent_child_command(
+    joints: ParentTransforms, child: int, gone: Collection[int], frame: int
+) -> Command:
+    """Return the command by which a layer hangs on what carries those that go, at all times.
+
+    At the frame nothing moves; where it is handed over to one of them it does not jump.
+    """
+    document = joints.document
+    layer, here = document.layer(child), document.layer(child).attachment_key_at(frame)
+    lost = [joint for joint in layer.attachments if joint.parent in gone]
+    found: list[Command] = []
+    hangs = len(lost) < len(layer.attachments)
+    for joint in lost:
+        at = frame if joint is here else joint.frame
+        carriers = document.parent_chain(child, at)[1:]
+        heir = next((each.id for each in carriers if each.id not in gone), None)
+        hangs |= heir is not None
+        held = (
+            anchor_or_default(layer),
+            Attachment(parent=None, frame=joint.frame, keep_world_transform=True),
+        )
+        if heir is not None and joint.keep_world_transform and joint is not here:
+            held = held[0], joint_that_keeps(joints, child, heir, at, turns=joint.inherits_rotation)
+        elif heir is not None:
+            held = joint_at_rest(joints, child, heir, at, turns=joint.inherits_rotation)
+        found.append(layer_commands.attach_layer(child, *held))
+    if lost and not hangs:
+        return _detach_command(document, child, frame, joints.placement(child, frame))
+    return combine_commands("Attach", found)
+
+
+def _detach_command(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
+    """Return the command by which a layer hangs on nothing and stays where it is at a frame.
+
+    From then on it is moved by its own movement.
+    """
+    own = transform_at(document, document.layer(child), frame)
+    return layer_commands.detach_layer(child, *own.inverse.compose(placement))
+
+
+@with_project
+def _delete(
+    session: Session, project: Project, identities: Sequence[int], inherited: Sequence[Command]
+) -> None:
+    order = [layer.id for layer in project.document.layers]
+    removals = [layer_commands.remove_layer(identity) for identity in identities]
+    label = "Delete layer" if len(identities) == 1 else f"Delete {len(identities)} layers"
+    was_active, index = project.active in identities, order.index(project.active)
+    editing.edit_document(session, combine_commands(label, [*inherited, *removals]))
+    if was_active:
+        near = [*order[:index][::-1], *order[index + 1 :]]
+        set_active_layer(session, next(each for each in near if each not in identities))

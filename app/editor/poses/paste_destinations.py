@@ -1,0 +1,204 @@
+"""Where what was copied goes: onto which layers, by which handles, and why it cannot."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from app.document import Document, Layer, SidePairs, mirrored_name
+from app.editor.project import Project
+from app.editor.session import CopiedKeys, Session
+from app.solving import PoseTransfer, SimilarityTransform
+
+# As it is; with pairs of layers and of handles exchanged; or with all of it mirrored, too.
+PasteMode = Literal["as it is", "swapped", "flipped"]
+NOTHING_COPIED = "Copy a pose or keys first."
+MOST_NAMED = 3  # handles in a sentence
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PasteDestination:
+    """A layer that takes keys over, and from which of their handles.
+
+    Parameters
+    ----------
+    layer : Layer
+    copied : CopiedKeys
+    pairs : mapping of int to int
+        The layer's handles, and those of the layer that was copied, by their ids.
+    is_own : bool
+        Whether they are the layer's own keys, on the same domain and handles.
+    """
+
+    layer: Layer
+    copied: CopiedKeys
+    pairs: Mapping[int, int]
+    is_own: bool
+
+    @property
+    def disabled_reason(self) -> str:
+        """In a sentence why nothing is taken over; empty where it is."""
+        layer, source = self.layer, self.copied.layer
+        if layer.still:
+            return f"“{layer.name}” is a still picture, which has no poses."
+        if self.is_own or self.pairs:
+            return ""
+        if not source.handles:
+            return (
+                f"“{source.name}” was copied, which has no handles; by their names poses come to "
+                "other layers."
+            )
+        names = [handle.name for handle in source.handles]
+        if len(names) > MOST_NAMED + 1:
+            names = [*names[:MOST_NAMED], f"{len(names) - MOST_NAMED} others"]
+        *some, last = names
+        listed = f"{', '.join(some)} or {last}" if some else last
+        return f"“{layer.name}” has no handle called {listed}."
+
+    def is_direct(self, way: PasteMode) -> bool:
+        """Tell whether the poses are taken as they are."""
+        stays = all(identity == other for identity, other in self.pairs.items())
+        return self.is_own and (way == "as it is" or (way == "swapped" and stays))
+
+    def pose_transfer(self, way: PasteMode) -> PoseTransfer:
+        """Return the way from the poses that were copied to this layer's."""
+        source, likeness = self.copied.layer, SimilarityTransform()
+        if self.is_own and way == "flipped":
+            likeness = SimilarityTransform.reflection(self.layer.axis)
+        elif not self.is_own:
+            handles = self.pairs.items()
+            places = np.array([source.handle(other).position for _, other in handles])
+            images = np.array([self.layer.handle(identity).position for identity, _ in handles])
+            likeness = SimilarityTransform.fit(
+                places, images, mirrors=True if way == "flipped" else None
+            )
+        return PoseTransfer(
+            source=source, pairs=self.pairs, similarity=likeness, is_within_layer=self.is_own
+        )
+
+
+def find_paste_destinations(
+    session: Session, project: Project, way: PasteMode
+) -> list[PasteDestination]:
+    """Return which layers take over what was copied, each of them once.
+
+    Keys of several layers go to those that they are of, by their names, or to the partners of
+    these. Keys of one go to that which is posed, or to all that are chosen; where sides exchange,
+    the one that is posed gives its own to its partner.
+    """
+    found = _find_paste_destinations(session, project, way)
+    return [each for each in found if not each.disabled_reason]
+
+
+def find_active_paste_destination(
+    session: Session, project: Project, way: PasteMode
+) -> PasteDestination | None:
+    """Return how the layer that is posed takes over what was copied; None where it is not to."""
+    copied = session.copied
+    if len(copied) == 1:
+        return find_paste_destination(project.document, copied[0], project.layer, way)
+    found = _find_paste_destinations(session, project, way)
+    return next((e for e in found if e.layer.id == project.active and e.copied.keys), None)
+
+
+def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
+    """Return in a sentence why the keys that were copied cannot be pasted; empty where they can."""
+    copied = _copied(session)
+    if not copied:
+        return NOTHING_COPIED
+    found = _find_paste_destinations(session, project, way)
+    if not found:
+        names = ", ".join(f"“{each.layer.name}”" for each in copied[:MOST_NAMED])
+        return f"No layer of this drawing is called {names}, as those that were copied are."
+    reasons = [landing.disabled_reason for landing in found]
+    if all(reasons):
+        return reasons[0]
+    if way == "swapped" and all(
+        each.is_direct(way) for each, reason in zip(found, reasons, strict=True) if not reason
+    ):
+        return (
+            "Nothing changes sides: no layer and no handle that was copied has a partner by its "
+            "name. The Poses tab tells which names are pairs."
+        )
+    return ""
+
+
+def skipped_layers_reasons(session: Session, project: Project, way: PasteMode) -> list[str]:
+    """Return in sentences which of several layers take nothing over, and why."""
+    found = _find_paste_destinations(session, project, way)
+    return [landing.disabled_reason for landing in found if landing.disabled_reason]
+
+
+def find_paste_destination(
+    document: Document, copied: CopiedKeys, layer: Layer, way: PasteMode
+) -> PasteDestination:
+    """Return how a layer takes keys over."""
+    source = copied.layer
+    names = {handle.id: handle.name for handle in source.handles}
+    is_own = source.domain is layer.domain and (
+        source.id == layer.id
+        or all(names.get(each.id, each.name) == each.name for each in layer.handles)
+    )
+    pairs = match_handles(source, layer, document.pairs, way)
+    return PasteDestination(layer=layer, copied=copied, pairs=pairs, is_own=is_own)
+
+
+def match_handles(
+    source: Layer, layer: Layer, pairs: SidePairs, way: PasteMode
+) -> Mapping[int, int]:
+    """Return which of a layer's handles take over from which of another's, by their names.
+
+    Where sides are exchanged, a handle takes over from its partner on the other side. Between
+    layers whose handles have no name in common it does so, too.
+    """
+    theirs = {handle.name: handle.id for handle in source.handles}
+    ours = {handle.name: handle.id for handle in layer.handles}
+    same = {identity: theirs[name] for name, identity in ours.items() if name in theirs}
+    if way == "as it is" and (same or source.id == layer.id):
+        return same
+    found = {}
+    for name, identity in ours.items():
+        other = mirrored_name(name, pairs)
+        if other in theirs:
+            found[identity] = theirs[other]
+        elif identity in same and other not in ours:
+            found[identity] = same[identity]
+    return found
+
+
+def _find_paste_destinations(
+    session: Session, project: Project, way: PasteMode
+) -> list[PasteDestination]:
+    found: dict[int, PasteDestination] = {}
+    document, copied = project.document, _copied(session)
+    for each in copied:
+        for layer in _receiving_layers(project, each.layer, way, is_alone=len(copied) == 1):
+            found.setdefault(layer.id, find_paste_destination(document, each, layer, way))
+    return list(found.values())
+
+
+def _copied(session: Session) -> list[CopiedKeys]:
+    """Return the keys that were copied of each layer; none where only those of tracks were."""
+    copied = {each.layer.id: each for each in session.copied}
+    for each in session.copied_tracks:
+        copied.setdefault(each.layer.id, CopiedKeys(each.layer, ()))
+    return list(copied.values())
+
+
+def _receiving_layers(
+    project: Project, source: Layer, way: PasteMode, *, is_alone: bool
+) -> Iterator[Layer]:
+    """Yield the layers that take over what was copied of another one."""
+    document = project.document
+    names = {layer.name: layer for layer in document.layers}
+    # A layer may have been given another name since.
+    kin = (each for each in document.layers if each.id == source.id)
+    own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
+    if is_alone and way == "as it is":
+        yield from map(document.layer, project.selected_layers)
+    elif is_alone and (own is None or own.id != project.active):
+        yield project.layer
+    elif own is not None:
+        other = None if way == "as it is" else mirrored_name(own.name, document.pairs)
+        yield own if other is None else names.get(other, own)

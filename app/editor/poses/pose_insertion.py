@@ -1,0 +1,120 @@
+"""Poses on the timeline: what is pasted, flipped or taken from the library."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+from app.document import Keyframe, Layer, Pose, key_commands, with_all_targets
+from app.editor.actions import playback, posing
+from app.editor.project import Project
+from app.editor.session import Session
+from app.editor.timeline_view import KeyRow
+from app.editor.work import JobKind
+from app.solving import Rig
+from engine.maps import Bounds, certify
+
+PoseHandler = Callable[[Layer, Pose], None]
+
+
+def insert_poses(
+    session: Session,
+    project: Project,
+    frame: int,
+    keys_of: Mapping[int, Sequence[Keyframe]],
+    *,
+    poses: Collection[int] = (),
+    label: str | None = None,
+    gesture: object | None = None,
+) -> None:
+    """Put poses into keys: the first at a frame, others as much later as they were copied.
+
+    These keys are chosen then. Where there is one alone, only its pose is taken.
+
+    Parameters
+    ----------
+    frame : int
+        Where the first of them comes.
+    keys_of : mapping of int to sequence of Keyframe
+        By the ids of their layers.
+    poses : collection of int
+        Layers of which the pose alone is taken, too.
+    label : str, optional
+        What this does in words; by default it pastes.
+    gesture : object, optional
+        What is one step of undo together.
+    """
+    gesture = gesture or object()
+    first = min(key.frame for keys in keys_of.values() for key in keys)
+    chosen_of: dict[KeyRow, frozenset[int]] = {}
+    is_alone = sum(map(len, keys_of.values())) == 1
+    for layer, keys in keys_of.items():
+        is_pose = is_alone or layer in poses
+        # One pose changes all repeats; several keys have no place in them.
+        at = project.document.layer(layer).source_of(frame) if is_pose else frame
+        moved = [replace(key, frame=key.frame + at - first) for key in keys]
+        if is_pose:
+            easing = session.preferences.easing
+            command = key_commands.insert_pose(layer, at, moved[0].pose, easing)
+        else:
+            command = key_commands.insert_keys(layer, moved)
+        project.history.do(replace(command, label=label or command.label), gesture=gesture)
+        chosen_of[layer] = frozenset(key.frame for key in moved)
+    unkeyed = project.history.preview_pose
+    if unkeyed is not None and unkeyed.frame in chosen_of.get(unkeyed.layer, ()):
+        project.history.set_preview_pose(None, gesture=gesture)
+    project.selected_handles, project.selected_keys = frozenset(), chosen_of
+
+
+def stop_and_get_frame(session: Session, project: Project) -> int:
+    """Halt, and return the present frame."""
+    playback.stop_playback(session)
+    return playback.current_frame(session, project)
+
+
+def fit_keys_to_layer(
+    project: Project, identity: int, keys: Sequence[Keyframe], bounds: Bounds
+) -> list[Keyframe]:
+    """Return keys with poses that have a layer's handles of now, and are proven for its limits.
+
+    Parameters
+    ----------
+    identity : int
+        Of the layer.
+    keys : sequence of Keyframe
+        Of an earlier state of it, or of one with the same domain.
+    bounds : Bounds
+        Those that it had then.
+    """
+    layer = project.document.layer(identity)
+    known = {handle.id for handle in layer.handles}
+    return [
+        replace(
+            key,
+            pose=_fitted(project, layer, key.pose, bounds),
+            depths={i: front for i, front in key.depths.items() if i in known},
+        )
+        for key in keys
+    ]
+
+
+def _fitted(project: Project, layer: Layer, pose: Pose, bounds: Bounds) -> Pose:
+    if pose.targets.keys() != {handle.id for handle in layer.handles}:
+        pose = with_all_targets(layer, pose)
+    if layer.bounds == bounds:
+        return pose
+    puppet = project.layer_runtimes[layer.id]
+    puppet.rig = rig = Rig.of(layer, puppet.rig)
+    proven = certify(layer.map_of(pose), rig.deformer.boundary, layer.bounds)
+    return replace(pose, certificate=proven)
+
+
+def request_pose_at_playhead(
+    session: Session, project: Project, kind: JobKind, take: PoseHandler
+) -> None:
+    """Hand over the pose at the playhead; for an in-between, the worker finds the nearest one."""
+    layer, pose = project.layer, posing.pose_at_playhead(session, project)
+    if pose is not None:
+        take(layer, pose)
+        return
+    clip, frame = project.clip, playback.current_frame(session, project)
+    posing.solve_nearest_pose(session, project, clip, frame, partial(take, layer), kind=kind)

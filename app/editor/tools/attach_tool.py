@@ -1,0 +1,113 @@
+"""Hanging the layer that is posed on another one, by a drag from its anchor."""
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+from app.editor import layering
+from app.editor.actions import playback
+from app.editor.project import Project
+from app.editor.session import AttachOverlay, Hint, Mark, Session
+from app.editor.tools.anchor_tool import AnchorTool
+from app.editor.tools.pose_tool import PoseTool
+from app.editor.tools.select_tools import PickLayerTool
+from app.editor.tools.tool import PointerHit, Tool, to_scene
+
+FREE_HAND = (PickLayerTool, PoseTool, AnchorTool)
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class AttachTool(Tool):
+    """The pointer holds the anchor of a layer over the one that it is to hang on."""
+
+    spot: PointerHit  # where it was pressed
+    child: int
+    names: dict[int, str]  # of the layers
+    place: complex  # where the pointer is
+    parent: int | None = None  # the layer under it
+    is_circle: bool = False  # whether that layer hangs on the child
+    moved: bool = False  # whether it has gone farther than a click may
+
+    @classmethod
+    def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell that the anchor is dragged."""
+        if not _takes_anchor(session, project, spot):
+            return ()
+        what = "to hang it on another layer"
+        return (Hint("drag", what) if spot.handle is None else Hint("drag", what, "ctrl"),)
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Take hold of the anchor; where a handle is the anchor, with Ctrl."""
+        if not _takes_anchor(session, project, spot) or (spot.handle is not None and not spot.ctrl):
+            return None
+        names = {layer.id: layer.name for layer in project.document.layers}
+        child = project.active
+        return cls(project=project, spot=spot, child=child, names=names, place=spot.place)
+
+    def move(self, session: Session, place: complex) -> None:
+        """Look which layer is under the pointer."""
+        project = self.project
+        self.place = place
+        self.moved = self.moved or self.is_away(session, self.spot.place, place)
+        if self.moved and project.active == self.child:
+            there = to_scene(project, place)
+            self.parent = parent = layering.layer_at(project, there, besides=self.child)
+            self.is_circle = parent is not None and layering.is_same_or_descendant(
+                project, parent, self.child
+            )
+
+    def end(self, session: Session, place: complex) -> None:
+        """Hang the layer on the one under the pointer; what was only clicked is for another."""
+        self.move(session, place)
+        project = self.project
+        if not self.moved:
+            spot = replace(self.spot, on_anchor=False)
+            gestures = (tool.press(session, project, spot) for tool in FREE_HAND)
+            gesture = next((each for each in gestures if each is not None), None)
+            if gesture is not None:
+                gesture.end(session, place)
+        elif self.parent is not None:
+            frame = playback.current_frame(session, project)
+            joint = project.document.layer(self.child).attachment_key_at(frame)
+            turns = joint is None or joint.inherits_rotation
+            # On both of them the joint is just there; else by the anchor.
+            there = to_scene(project, place)
+            is_on_both = layering.is_layer_at(project, self.child, there)
+            layering.attach_layer(
+                session, self.child, self.parent, turns, there if is_on_both else None
+            )
+        else:
+            session.show_notice(
+                "Let the anchor go over another layer to hang it there.", topic="joint"
+            )
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """The way to the pointer, and the layer under it."""
+        if not self.moved:
+            return ()
+        return (
+            AttachOverlay(
+                start=self.spot.place,
+                end=self.place,
+                parent=self.parent,
+                is_refused=self.is_circle,
+            ),
+        )
+
+    @property
+    def active_hints(self) -> tuple[Hint, ...]:
+        """Tell what letting go does here."""
+        if self.parent is None:
+            return (Hint("go", "over the layer to hang it on"),)
+        if self.is_circle:
+            what = f"hangs on {self.names[self.child]} itself, so that it cannot carry it"
+            return (Hint(self.names[self.parent], what),)
+        what = f"to hang {self.names[self.child]} on {self.names[self.parent]}"
+        return (Hint("let go", what),)
+
+
+def _takes_anchor(session: Session, project: Project, spot: PointerHit) -> bool:
+    """Tell whether a press takes the anchor of a layer, in a scene of several."""
+    is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
+    return spot.on_anchor and is_free and len(project.document.layers) > 1

@@ -1,0 +1,144 @@
+"""Cutting out by hand: a round brush, a knife, a pipette, and clicks on holes."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from app.editor.actions import cut_out_editing
+from app.editor.project import Project
+from app.editor.session import Hint, KnifeOverlay, Mark, Session, StrokeOverlay
+from app.editor.tools.tool import PointerHit, Tool
+from engine.domain import CutLine, Stroke
+
+STEP = 0.12  # of the brush's radius: points of a stroke are no nearer together
+REACH = 8.0  # pixels of the screen: a click so near to a line is on it
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class CutBrushTool(Tool):
+    """The pointer draws a stroke through places; it is done when the button is let go."""
+
+    places: list[complex]
+    radius: float
+    keeps: bool
+
+    @classmethod
+    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
+        """Tell what the brush does, and how it is changed."""
+        if session.cutting not in {"keep", "remove"}:
+            return ()
+        other = "remove" if session.cutting == "keep" else "keep"
+        return (
+            Hint("drag", f"to {session.cutting}"),
+            Hint("drag", f"to {other}", "alt"),
+            Hint("[ and ]", "for its size"),
+            Hint("X", "to swap"),
+        )
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Begin a stroke; with Alt, one that does the opposite."""
+        if session.cutting not in {"keep", "remove"}:
+            return None
+        keeps = (session.cutting == "keep") != spot.alt
+        radius = cut_out_editing.brush_radius(project)
+        return cls(project=project, places=[spot.place], radius=radius, keeps=keeps)
+
+    def move(self, _: Session, place: complex) -> None:
+        """Go on to the pointer."""
+        if abs(place - self.places[-1]) >= STEP * self.radius:
+            self.places.append(place)
+
+    def end(self, session: Session, place: complex) -> None:
+        """Keep or remove what it covers."""
+        if place != self.places[-1]:
+            self.places.append(place)
+        points = np.array(self.places) - self.project.layer.corner
+        cut_out_editing.cut_with_brush(
+            session, Stroke(points=points, radius=self.radius, keeps=self.keeps)
+        )
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """What it covers."""
+        return (StrokeOverlay(points=tuple(self.places), radius=self.radius, keeps=self.keeps),)
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class KnifeTool(Tool):
+    """The pointer draws a line along which the knife parts; a click with Alt takes one away."""
+
+    places: list[complex]
+    parts: bool
+
+    @classmethod
+    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
+        """Tell how a line is drawn, and how one is taken away."""
+        if session.cutting != "knife":
+            return ()
+        return (
+            Hint("drag", "from outside to where it hangs together"),
+            Hint("click", "on a line to take it away", "alt"),
+        )
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Begin a line; with Alt, a click on one."""
+        if session.cutting != "knife":
+            return None
+        return cls(project=project, places=[spot.place], parts=not spot.alt)
+
+    def move(self, session: Session, place: complex) -> None:
+        """Go on to the pointer."""
+        if self.is_away(session, self.places[-1], place):
+            self.places.append(place)
+
+    def end(self, session: Session, place: complex) -> None:
+        """Part what it goes through, or take a line away."""
+        view = self.project.view(session.screen)
+        if not self.parts:
+            cut_out_editing.remove_knife_cut(session, place, REACH / view.scale)
+            return
+        if place != self.places[-1]:
+            self.places.append(place)
+        if len(self.places) < 2 or not self.is_away(session, self.places[0], place):
+            return  # a click is no line
+        cut_out_editing.cut_with_knife(
+            session, CutLine(points=np.array(self.places) - self.project.layer.corner)
+        )
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """The line."""
+        return (KnifeOverlay(points=tuple(self.places)),) if self.parts else ()
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class CutClickTool(Tool):
+    """A click that picks the background's colour, or swaps a hole; done when it is let go."""
+
+    @classmethod
+    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
+        """Tell what a click does."""
+        match session.cutting:
+            case "pick":
+                return (Hint("click", "on the background to remove its colour"),)
+            case "holes":
+                return (Hint("click", "in a hole to keep it open, or to fill it"),)
+            case _:
+                return ()
+
+    @classmethod
+    def press(cls, session: Session, project: Project, _: PointerHit) -> Self | None:
+        """Begin a click."""
+        return cls(project=project) if session.cutting in {"pick", "holes"} else None
+
+    def end(self, session: Session, place: complex) -> None:
+        """Pick the colour, or swap the hole."""
+        act = (
+            cut_out_editing.pick_background_colour
+            if session.cutting == "pick"
+            else cut_out_editing.toggle_hole
+        )
+        act(session, place)

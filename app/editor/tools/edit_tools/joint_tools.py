@@ -1,0 +1,76 @@
+"""Joints of a motion by hand: each is dragged to where it belongs, or left out by a click."""
+
+from dataclasses import dataclass
+from typing import Self
+
+from app.editor.actions import joint_placement
+from app.editor.project import Project
+from app.editor.session import Hint, Session
+from app.editor.tools.tool import PointerHit, Tool
+from app.editor.work import MotionSetup
+
+REACH = 14.0  # pixels of the screen: a joint so near to the pointer is meant
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class JointTool(Tool):
+    """The pointer drags a joint; with Alt held a click leaves it out."""
+
+    name: str
+    start: complex
+    draft: MotionSetup  # as it was before
+    is_drag: bool = False
+
+    @classmethod
+    def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell what is done with a joint."""
+        name = find_joint_near(session, project, spot.place)
+        if name is None:
+            return (Hint("drag", "each joint to where it belongs"),)
+        return (Hint("drag", f"{name} to where it belongs"), Hint("click", "leaves it out", "alt"))
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Take hold of a joint, or leave it out."""
+        name, draft = find_joint_near(session, project, spot.place), project.motion_setup
+        if draft is None:
+            return None
+        if name is None:
+            joint_placement.select_joint(session, None)
+            return None
+        if spot.alt:
+            joint_placement.exclude_joint(session, name)
+            return None
+        joint_placement.select_joint(session, name)
+        return cls(project=project, name=name, start=spot.place, draft=draft)
+
+    def move(self, session: Session, place: complex) -> None:
+        """Let the joint follow the pointer, on the drawing."""
+        self.is_drag = self.is_drag or self.is_away(session, self.start, place)
+        if self.is_drag and self.project.motion_setup is not None:
+            self.project.motion_setup = self.draft
+            joint_placement.move_shown_joint(session, self.name, place)
+
+    def end(self, session: Session, place: complex) -> None:
+        """Leave it where the pointer is."""
+        self.move(session, place)
+
+    def cancel(self, _: Session) -> None:
+        """Put the joint back."""
+        if self.project.motion_setup is not None:
+            self.project.motion_setup = self.draft
+
+    @property
+    def active_hints(self) -> tuple[Hint, ...]:
+        """What can be done until it ends."""
+        return (Hint("let go", "where it belongs"),)
+
+
+def find_joint_near(session: Session, project: Project, place: complex) -> str | None:
+    """Return the joint that is nearest to a place, if it is near enough."""
+    reach = REACH / project.view(session.screen).scale
+    away = {
+        name: abs(at - place) for name, at in joint_placement.shown_joint_places(project).items()
+    }
+    nearest = min(away, key=away.__getitem__, default=None)
+    return nearest if nearest is not None and away[nearest] <= reach else None

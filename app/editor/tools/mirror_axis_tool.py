@@ -1,0 +1,66 @@
+"""Moving the axis at which poses are flipped."""
+
+from dataclasses import dataclass, field
+from typing import Self
+
+from app.editor.poses import flipping
+from app.editor.project import Project
+from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
+from app.editor.tools.numeric_entry import NumericEntry
+from app.editor.tools.tool import PointerHit, Tool
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class MirrorAxisTool(Tool):
+    """The pointer moves the axis; what was flipped last is flipped again where it is let go."""
+
+    axis: float  # where it was
+    start: complex  # where the pointer was pressed
+    place: complex  # where it is
+    typed: NumericEntry = field(default_factory=NumericEntry)
+
+    @classmethod
+    def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell what the axis is for."""
+        return (Hint("drag", "to flip poses at another place"),) if spot.on_axis else ()
+
+    @classmethod
+    def press(cls, _: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Take hold of the axis."""
+        if not spot.on_axis:
+            return None
+        axis = project.layer.axis
+        return cls(project=project, axis=axis, start=spot.place, place=spot.place)
+
+    def move(self, session: Session, place: complex) -> None:
+        """Move the axis as far as the pointer goes sideways."""
+        self.place = place
+        self._move(session)
+
+    def type(self, session: Session, characters: str) -> None:
+        """Move it as far as is typed."""
+        self.typed.type(characters)
+        self._move(session)
+
+    def _move(self, session: Session) -> None:
+        self.typed.axis = "x"
+        way = self.typed.constrain_offset(self.place - self.start).real
+        flipping.move_mirror_axis(session, self.axis + way, gesture=self)
+
+    def end(self, session: Session, _: complex) -> None:
+        """Flip again."""
+        flipping.flip_pose_again(session, gesture=self)
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """What was typed."""
+        if not self.typed.text:
+            return ()
+        return (
+            NumericEntryOverlay(place=self.start, direction=None, text=self.typed.describe("px")),
+        )
+
+    @property
+    def active_hints(self) -> tuple[Hint, ...]:
+        """What can be done until it ends."""
+        return (Hint("type", "a number of pixels"),)

@@ -1,0 +1,204 @@
+"""Posing by hand: handles are added where the shape is pressed, and pulled.
+
+A handle whose track's row is chosen is carried along that, or its drag is recorded; the rest of the
+tool is the same.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Self
+
+from app.document import Target
+from app.editor.actions import editing, playback, posing, tracking
+from app.editor.project import Project
+from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
+from app.editor.tools.numeric_entry import NumericEntry
+from app.editor.tools.tool import PointerHit, Tool, to_scene
+from app.editor.work import DragStart
+from engine.deform import BoundedPull
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class PoseTool(Tool):
+    """The pointer pulls handles."""
+
+    start: complex  # where it was pressed
+    handles: frozenset[int] = frozenset()  # those that are pulled, by id
+    taken: int | None = None  # the one that was there already under the pointer
+    at_target: bool = False  # whether they are pulled from where they are wanted
+    entry: NumericEntry = field(default_factory=NumericEntry)  # what is typed meanwhile
+    place: complex | None = None  # where it is; None before it has moved
+    moved: bool = False  # whether it has gone farther than a click may, or a way was typed
+    # The handle whose track takes the drag in place of the pose, and where that began.
+    tracked: int | None = None
+    origin: complex = 0j
+    # Whether the drag is recorded: then all places are of the scene, in which the body moves.
+    records: bool = False
+    stood: int | None = None  # the frame that the playhead has left for a key of the path
+
+    @classmethod
+    def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell that handles are dragged, and that a click adds one."""
+        if spot.handle is not None:
+            if project.layer.is_locked(spot.handle):
+                return (Hint("click", "to select; it is locked"),)
+            if session.records:
+                return (Hint("drag", "to record how it moves"),)
+            on_track = tracking.draggable_track(project, spot.handle) is not None
+            return (Hint("drag", "to key it alone" if on_track else "to pose"),)
+        if spot.track_key is not None:
+            return (Hint("drag", f"to move the key at frame {spot.track_key}"),)
+        if spot.on_shape and session.overlays.handles and not (spot.on_ring or session.records):
+            return (Hint("click", "to add a handle"),)
+        return ()
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Take hold of a handle and of all that are selected with it, or of a new one."""
+        if spot.ctrl or spot.shift or spot.on_ring:
+            return None
+        if spot.handle is not None:
+            return None if spot.alt else cls._take(session, project, spot, spot.handle)
+        if spot.track_key is not None and project.selected_track is not None:
+            pulling = cls(project=project, start=spot.place)
+            pulling._take_key(session, project.selected_track, spot.track_key)
+            return pulling
+        if not spot.on_shape or not session.overlays.handles or session.records:
+            return None
+        pulling = cls(project=project, start=spot.place)
+        posing.add_handle(session, spot.place, gesture=pulling)
+        pulling.handles = project.selected_handles
+        return pulling
+
+    @classmethod
+    def _take(cls, session: Session, project: Project, spot: PointerHit, handle: int) -> Self:
+        pulling = cls(project=project, start=spot.place, taken=handle, at_target=spot.at_target)
+        if handle not in project.selected_handles:
+            editing.select_handles(session, project.layer.grouped_handles(handle))
+        pulling.handles = _movable_handles(project)
+        if handle in pulling.handles:
+            pulling._take_to_track(session, handle)
+        return pulling
+
+    def _take_to_track(self, session: Session, pressed: int) -> None:
+        """Let the handle's track take the drag, if it is for that or is recorded."""
+        project, shown = self.project, self.project.layer_runtime.shown
+        track = tracking.draggable_track(project, pressed)
+        if session.records:
+            track = project.layer.track_of(pressed)
+        elif track is None:
+            return
+        if shown is None:
+            return
+        self.tracked = pressed if track is None else track.handles[0]
+        identities = [handle.id for handle in shown.clip.layer.handles]
+        self.origin = complex(shown.handle_positions[identities.index(self.tracked)])
+        if self.at_target and shown.correction is not None:
+            self.origin = shown.correction.targets.get(self.tracked, self.origin)
+        if session.records:
+            self.records = True
+            self.start, self.origin = (
+                to_scene(project, each) for each in (self.start, self.origin)
+            )
+            tracking.start_recording(session, self.tracked, self.origin, gesture=self)
+
+    def _take_key(self, session: Session, handle: int, frame: int) -> None:
+        """Take hold of the key of a track that is seen at a frame; the playhead goes there."""
+        project, track = self.project, self.project.layer.track_of(handle)
+        place = None if track is None else tracking.track_target(project, track, frame)
+        if track is not None and place is not None:
+            self.tracked, self.origin = track.handles[0], place
+            self.stood = playback.current_frame(session, project)
+            playback.scrub(session, frame)
+
+    def move(self, session: Session, place: complex) -> None:
+        """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
+        self.place = to_scene(self.project, place) if self.records else place
+        self.moved = self.moved or self.is_away(session, self.start, self.place)
+        self._pull(session)
+
+    def type(self, session: Session, characters: str) -> None:
+        """Pull them as far as is typed, or along an axis; what is recorded is the hand alone."""
+        if self.records:
+            return
+        self.entry.type(characters)
+        self.moved = self.moved or self.entry.value is not None
+        self._pull(session)
+
+    @property
+    def offset(self) -> complex:
+        """How far the pointer has come, or what was typed in place of that."""
+        return self.entry.constrain_offset(
+            (self.start if self.place is None else self.place) - self.start
+        )
+
+    def _pull(self, session: Session) -> None:
+        if self.tracked is not None:
+            place = self.origin + self.offset
+            if self.records:
+                tracking.drag_recorded_handle(session, place)
+            elif self.moved:
+                tracking.drag_track_handle(session, self.tracked, place, gesture=self)
+            return
+        pulled = self.handles & {handle.id for handle in self.project.layer.handles}
+        if not (self.moved and pulled):
+            return
+        way = self.offset
+
+        def as_far(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+            wanted = {i: target.position for i, target in start.targets.items()}
+            places = wanted if self.at_target else start.places
+            known = pulled & targets.keys()
+            return {i: replace(targets[i], position=places[i] + way) for i in known}
+
+        posing.drag_handles(session, as_far, gesture=self, hand=BoundedPull(pulled))
+
+    def end(self, session: Session, _: complex) -> None:
+        """Let the handles go where they have come to, or keep the wish.
+
+        A click selects the one that it was on alone, or its group.
+        """
+        if self.records:
+            tracking.stop_recording(session, has_moved=self.moved)
+        elif self.tracked is not None:
+            pass
+        elif session.is_forcing_targets:
+            posing.release_drag_forced(session)
+        else:
+            posing.release_drag(session)
+        if not self.moved and self.taken is not None:
+            editing.select_handles(session, self.project.layer.grouped_handles(self.taken))
+
+    def cancel(self, session: Session) -> None:
+        """Take back what it did; the playhead goes back to where it was."""
+        if self.records:
+            tracking.discard_recording(session)
+        tracking.cancel_track_drag(self.project, self)
+        if self.stood is not None:
+            playback.seek(session, self.stood)
+        super(PoseTool, self).cancel(session)
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """What was typed; else nothing: the handles show it."""
+        entry = self.entry
+        if not (entry.text or entry.axis):
+            return ()
+        text = entry.describe("px")
+        return (NumericEntryOverlay(place=self.start, direction=entry.direction, text=text),)
+
+    @property
+    def active_hints(self) -> tuple[Hint, ...]:
+        """What can be done until it ends."""
+        if self.records:
+            return (Hint("let go", "to end the recording"),)
+        typed = (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+        if self.tracked is not None:
+            return typed
+        return (*typed, Hint("let go", "to keep the wish beyond its reach", "alt"))
+
+
+def _movable_handles(project: Project) -> frozenset[int]:
+    """Return the selected handles but those that are locked."""
+    handles = project.layer.handles
+    return frozenset(h.id for h in handles if h.id in project.selected_handles and not h.locked)

@@ -1,0 +1,150 @@
+"""Turning the shape around a handle, by the ring around it or by a key.
+
+A handle whose track's row is chosen is turned by that, and the pose stays.
+"""
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Self
+
+from app.document import Target
+from app.editor.actions import editing, playback, posing, tracking
+from app.editor.project import Project
+from app.editor.session import Hint, Mark, NumericEntryOverlay, RotationOverlay, Session
+from app.editor.tools.numeric_entry import NumericEntry
+from app.editor.tools.tool import PointerHit, Tool
+from app.editor.work import DragStart
+
+STEP = math.radians(15.0)  # of turning in steps
+LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class RotateTool(Tool):
+    """The pointer turns the shape around a handle."""
+
+    handle: int
+    centre: complex  # where the handle is
+    start: complex  # where the pointer was pressed
+    turn: float  # by how much the shape was turned there at the start, in radians
+    on_track: bool  # whether the handle's track takes the turn in place of the pose
+    deletes: bool  # whether a click, which turns nothing, deletes the handle
+    swept: float = 0.0  # by how much the pointer has turned it, in radians
+    entry: NumericEntry = field(
+        default_factory=NumericEntry
+    )  # how many degrees are typed meanwhile
+    moved: bool = False
+
+    @classmethod
+    def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell how the shape is turned."""
+        if spot.on_ring:
+            (handle,) = project.selected_handles
+            is_alone = tracking.draggable_track(project, handle) is not None
+            what = "to key its turn alone" if is_alone else "to turn the shape around the handle"
+            return (Hint("drag", what),)
+        if spot.handle is None or project.layer.is_locked(spot.handle):
+            return ()
+        # Of both gestures the one that no window manager takes for itself, as many do Alt+drag.
+        return (Hint("drag its ring", "to turn"),)
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Take hold of the ring around the selected handle, or of a handle with Alt."""
+        shown = project.layer_runtime.shown
+        is_by_key = spot.handle is not None and spot.alt and not (spot.ctrl or spot.shift)
+        is_by_ring = spot.on_ring and len(project.selected_handles) == 1
+        if shown is None or not (is_by_key or is_by_ring):
+            return None
+        handle = spot.handle if is_by_key else next(iter(project.selected_handles))
+        identities = [handle.id for handle in shown.clip.layer.handles]
+        if handle is None or handle not in identities or project.layer.is_locked(handle):
+            return None
+        index = identities.index(handle)
+        on_track = tracking.draggable_track(project, handle) is not None
+        frame = playback.current_frame(session, project)
+        wished = tracking.track_target_angle(project, handle, frame) if on_track else None
+        turning = cls(
+            project=project,
+            handle=handle,
+            centre=complex(shown.handle_positions[index]),
+            start=spot.place,
+            turn=shown.handle_rotations[index] if wished is None else wished,
+            on_track=on_track,
+            deletes=is_by_key,
+        )
+        editing.select_handles(session, frozenset({handle}))
+        return turning
+
+    def move(self, session: Session, place: complex) -> None:
+        """Turn the shape as far as the pointer goes around the handle, maybe in steps."""
+        if not (self.moved or self.is_away(session, self.start, place)):
+            return
+        if not self.moved:
+            arm = abs(self.start - self.centre) * self.project.view(session.screen).scale
+            if arm < LEAST_ARM:
+                # From so near, the direction in which it leaves is where the turn begins.
+                self.start = place
+        self.moved = True
+        swept = (place - self.centre) / (self.start - self.centre or 1)
+        if swept and self.entry.value is None:
+            angle = cmath.phase(swept)
+            self.swept = STEP * round(angle / STEP) if session.is_snapping else angle
+            self._turn(session)
+
+    def type(self, session: Session, characters: str) -> None:
+        """Turn the shape by as many degrees as are typed."""
+        self.entry.type(characters)
+        self.entry.axis = ""
+        if self.entry.value is not None:
+            self.moved = True
+            self.swept = math.radians(self.entry.value)
+            self._turn(session)
+
+    def _turn(self, session: Session) -> None:
+        handle, swept = self.handle, self.swept
+        if handle not in {each.id for each in self.project.layer.handles}:
+            return
+        if self.on_track:
+            tracking.rotate_track_handle(session, handle, self.turn + swept, gesture=self)
+            return
+
+        def turned(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
+            if handle not in targets:
+                return {}
+            place, turn = start.places[handle], start.angles[handle] + swept
+            return {handle: Target(position=place, rotation=turn)}
+
+        posing.drag_handles(session, turned, gesture=self)
+
+    def end(self, session: Session, _: complex) -> None:
+        """Let the shape go; delete the handle that was only clicked."""
+        if self.deletes and not self.moved:
+            posing.remove_handles(session, frozenset({self.handle}))
+        elif not self.on_track:
+            posing.release_drag(session)
+
+    def cancel(self, session: Session) -> None:
+        """Take back what it did."""
+        tracking.cancel_track_drag(self.project, self)
+        super(RotateTool, self).cancel(session)
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """How far it is turned, and what was typed."""
+        sweep = RotationOverlay(
+            handle=self.handle, angle=self.turn + self.swept, swept_angle=self.swept
+        )
+        if not self.entry.text:
+            return (sweep,)
+        return (
+            sweep,
+            NumericEntryOverlay(place=self.centre, direction=None, text=self.entry.describe("°")),
+        )
+
+    @property
+    def active_hints(self) -> tuple[Hint, ...]:
+        """What can be done until it ends."""
+        return (Hint("turn", "by steps of 15°", "ctrl"), Hint("type", "a number of degrees"))

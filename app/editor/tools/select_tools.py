@@ -1,0 +1,107 @@
+"""Selecting handles, one by one or by a box, and choosing the layer to pose by a click on it."""
+
+from dataclasses import dataclass
+from typing import Self
+
+from app.editor import layering
+from app.editor.actions import editing
+from app.editor.project import Project
+from app.editor.session import BoxOverlay, Hint, Mark, Session
+from app.editor.tools.tool import PointerHit, Tool
+from app.motion import BoundingBox
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class SelectTool(Tool):
+    """The pointer spans a box to select what is in it, or has selected a handle by a click."""
+
+    start: complex  # where it was pressed
+    place: complex  # where it is
+    adds: bool  # whether what was selected stays so
+    has_box: bool
+
+    @classmethod
+    def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell that dragging beside the shape selects."""
+        is_free = spot.handle is None and not spot.on_shape and not spot.on_ring
+        return (Hint("drag", "to select"),) if is_free else ()
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Begin a box; with Shift, on a handle, select it beside the others or not any more."""
+        has_box, at = spot.handle is None, spot.place
+        if spot.on_ring or not (has_box or spot.shift):
+            return None
+        selecting = cls(project=project, start=at, place=at, adds=spot.shift, has_box=has_box)
+        if spot.handle is not None:
+            fellows = project.layer.grouped_handles(spot.handle)
+            is_selected = spot.handle in project.selected_handles
+            chosen = (
+                project.selected_handles - fellows
+                if is_selected
+                else project.selected_handles | fellows
+            )
+            editing.select_handles(session, chosen)
+        return selecting
+
+    def move(self, _: Session, place: complex) -> None:
+        """Span the box up to the pointer."""
+        self.place = place
+
+    def end(self, session: Session, place: complex) -> None:
+        """Select what is in the box."""
+        project, shown = self.project, self.project.layer_runtime.shown
+        if shown is None or not self.has_box:
+            return
+        x, y = sorted((self.start.real, place.real)), sorted((self.start.imag, place.imag))
+        box = BoundingBox(complex(x[0], y[0]), complex(x[1], y[1]))
+        places = zip(shown.clip.layer.handles, shown.handle_positions, strict=True)
+        inside = {
+            handle.id
+            for handle, at in places
+            if box.contains(BoundingBox(complex(at), complex(at)), slack=0.0)
+        }
+        editing.select_handles(
+            session, project.selected_handles | inside if self.adds else frozenset(inside)
+        )
+
+    @property
+    def tool_overlays(self) -> tuple[Mark, ...]:
+        """The box."""
+        return (BoxOverlay(corner=self.start, opposite=self.place),) if self.has_box else ()
+
+
+@dataclass(slots=True, kw_only=True, eq=False)
+class PickLayerTool(Tool):
+    """The pointer has chosen a layer (not the last one); it does no more until it is let go."""
+
+    last: int
+
+    @classmethod
+    def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        """Tell which layer a click chooses."""
+        layer = _pressed_other_layer(project, spot)
+        if layer is None:
+            return ()
+        return (Hint("click", f"to pose {project.document.layer(layer).name}"),)
+
+    @classmethod
+    def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
+        """Choose the layer that is seen there, if it is another one."""
+        layer = _pressed_other_layer(project, spot)
+        if layer is None:
+            return None
+        choosing = cls(project=project, last=project.active)
+        layering.set_active_layer(session, layer)
+        return choosing
+
+    def cancel(self, session: Session) -> None:
+        """Go back to the layer that was posed."""
+        layering.set_active_layer(session, self.last)
+
+
+def _pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
+    """Return the layer that a press at a spot is for, if it is not the one that is posed."""
+    if spot.handle is not None or spot.on_ring or spot.ctrl or spot.shift:
+        return None
+    return None if spot.layer in {None, project.active} else spot.layer

@@ -1,0 +1,43 @@
+"""A shape with its handles and bounds, which drags and searches are about."""
+
+from dataclasses import dataclass
+
+from engine.deform.handles import Handles, HandleTargets
+from engine.deform.model import Evaluation, Objective
+from engine.deform.state import State
+from engine.maps import Boundary, HarmonicMap, LocalBounds
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ConstrainedShape:
+    """A shape that is held by handles within bounds.
+
+    Parameters
+    ----------
+    boundary : Boundary
+        Of the shape, as sampled.
+    handles : Handles
+    bounds : Bounds or LocalBounds
+        Limits may differ from sample to sample.
+    """
+
+    boundary: Boundary
+    handles: Handles
+    bounds: LocalBounds
+
+    @property
+    def rest_map(self) -> HarmonicMap:
+        """The identity."""
+        return HarmonicMap.identity(self.boundary.cage, self.boundary.holes)
+
+    def allows(self, state: State) -> bool:
+        """Tell whether a state's map is proven to be within the bounds."""
+        proven = state.certificate
+        return self.bounds.include(state.limits) or self.bounds.allow(
+            k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
+        )
+
+    def measure_state(self, state: State, wish: HandleTargets) -> tuple[Objective, Evaluation]:
+        """Return the objective without a barrier, over the shape's own samples, and a map's jet."""
+        objective = Objective(boundary=self.boundary, handles=self.handles, targets=wish)
+        return objective, objective.evaluate(*state.map.columns)

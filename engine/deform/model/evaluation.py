@@ -1,0 +1,74 @@
+"""What the objective knows of a map."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats
+from engine.deform.model.energy import symmetric_dirichlet
+from engine.geometry import RigidMotion
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Evaluation:
+    """Everything the objective knows of a map; real-linear in its coefficients.
+
+    Parameters
+    ----------
+    f, g : complex128, shape (m,)
+        f_z and conj(f_z̄) at the samples.
+    positions, fz : complex128, shape (h,)
+        The map and f_z at the handles.
+    """
+
+    f: Complexes
+    g: Complexes
+    positions: Complexes
+    fz: Complexes
+
+    @cached_property
+    def a(self) -> Floats:
+        """|f_z| at the samples, float64 (m,)."""
+        moduli: Floats = np.abs(self.f)
+        return moduli
+
+    @cached_property
+    def b(self) -> Floats:
+        """|f_z̄| at the samples, float64 (m,)."""
+        moduli: Floats = np.abs(self.g)
+        return moduli
+
+    @cached_property
+    def density(self) -> Floats:
+        """The symmetric Dirichlet density at the samples, float64 (m,)."""
+        # A trial step may lead farther than numbers reach; there the energy is ∞.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return symmetric_dirichlet(self.a, self.b)
+
+    def scaled(self, factor: float) -> "Evaluation":
+        """Return the jet of a change that is so many times as large."""
+        return Evaluation(
+            f=factor * self.f,
+            g=factor * self.g,
+            positions=factor * self.positions,
+            fz=factor * self.fz,
+        )
+
+    def moved(self, motion: RigidMotion) -> "Evaluation":
+        """Return the jet of a map, and a rigid motion after it."""
+        return Evaluation(
+            f=motion.factor * self.f,
+            g=np.conj(motion.factor) * self.g,
+            positions=motion.apply(self.positions),
+            fz=motion.factor * self.fz,
+        )
+
+    def advanced(self, length: float, direction: "Evaluation") -> "Evaluation":
+        """Return the jet of the map that lies `length` steps along a direction."""
+        return Evaluation(
+            f=self.f + length * direction.f,
+            g=self.g + length * direction.g,
+            positions=self.positions + length * direction.positions,
+            fz=self.fz + length * direction.fz,
+        )

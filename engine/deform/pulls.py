@@ -1,0 +1,219 @@
+"""Hands that pull at handles with bounded force, and links that keep these in reach.
+
+A handle is held by λ |e|², e its distance from its target, which pulls without limit: one that is
+wanted far beyond its reach would move all others. A hand pulls with at most a force F. With ē the
+mean distance of its handles, Λ the sum of their λ and e₀ = F / (2 Λ), the part Λ |ē|² of their
+energy becomes 2 Λ e₀ |ē| − Λ e₀² beyond e₀ (Huber 1964), which is the least of
+Λ |ē − s|² + 2 Λ e₀ |s| over all s: the hand gives in by s, and its handles keep their formation.
+
+A link between two handles costs κ (r − c)² where their distance r is beyond the range that it may
+have, whose nearer end is c: what a hand pulls too far is drawn straight, and stops.
+"""
+
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices, readonly
+from engine.errors import EngineError
+
+# A hand pulls at most so strongly, per L. An arm needs 1 to 2 to straighten to its limits; measured
+# on 18 pulls within reach, none is lost with 10, and three are with 5.
+MAX_PULL_FORCE = 10.0
+FORCE_NOT_POSITIVE = "A hand must pull with a positive force, not {pull:g}."
+CONSTRAINT_ENDS = "A link between handles {first} and {second} is none."
+CONSTRAINT_LENGTHS = "A link cannot be from {shortest:g} to {longest:g} long."
+PULL_HANDLES = "A hand pulls at handles {handles} of {count}."
+
+
+class BoundedPull(NamedTuple):
+    """What pulls at some handles together.
+
+    Parameters
+    ----------
+    handles : collection of int
+        Which they are.
+    pull : float
+        Its largest force, per L.
+    """
+
+    handles: Collection[int]
+    max_force: float = MAX_PULL_FORCE
+
+
+class BoundedPulls(NamedTuple):
+    """Some hands, and at which handles they pull.
+
+    Parameters
+    ----------
+    shares : float64, shape (q, h)
+        Of the handles in the mean of those that each hand pulls; 0 for all others.
+    stiffness : float64, shape (q,)
+        Λ of each.
+    gives : float64, shape (q,)
+        e₀ of each.
+    """
+
+    weights: Floats
+    stiffness: Floats
+    huber_thresholds: Floats
+
+    @classmethod
+    def of(
+        cls, hands: Sequence[BoundedPull], stiffness: Floats, around: Floats, size: float
+    ) -> "BoundedPulls | None":
+        """Return what hands are to handles of this stiffness (h,), on a shape of this size.
+
+        One of infinite force holds, as does none at all. How stiff the shape is `around` handles
+        (h,) is a factor of the force.
+
+        Raises
+        ------
+        EngineError
+            If a force is not positive, a hand pulls at nothing, or at a handle that is not there or
+            in another hand.
+        """
+        hands = [hand for hand in hands if hand.max_force != np.inf]
+        if not hands:
+            return None
+        weights = np.zeros((len(hands), len(stiffness)))
+        for number, (handles, pull) in enumerate(hands):
+            if not pull > 0:
+                raise EngineError(FORCE_NOT_POSITIVE.format(pull=pull))
+            if len(handles) == 0:
+                raise EngineError("A hand pulls at nothing; leave it out.")
+            if not all(handle in range(len(stiffness)) for handle in handles):
+                raise EngineError(PULL_HANDLES.format(handles=list(handles), count=len(stiffness)))
+            weights[number, list(handles)] = stiffness[list(handles)]
+        twice = np.flatnonzero(np.count_nonzero(weights, axis=0) > 1)
+        if len(twice):
+            raise EngineError(f"Two hands pull at handle {twice[0]}; let one of them do it.")
+        totals = weights.sum(axis=1)
+        forces = np.array([hand.max_force for hand in hands]) / size
+        forces *= (weights * around).sum(axis=1) / totals
+        return cls(
+            weights=readonly(weights / totals[:, None]),
+            stiffness=readonly(totals),
+            huber_thresholds=readonly(forces / (2.0 * totals)),
+        )
+
+    @property
+    def has_all_handles(self) -> bool:
+        """Whether no handle is held but by a hand: nothing then resists but the shape."""
+        return bool((self.weights > 0).any(axis=0).all())
+
+    def slack(self, errors: Complexes) -> Complexes:
+        """Return by how much each hand gives in (q,), for what its handles lack (h,)."""
+        means = self.weights @ errors
+        distances = np.maximum(np.abs(means), self.huber_thresholds)
+        given: Complexes = (1.0 - self.huber_thresholds / distances) * means
+        return given
+
+    def slack_directions(self, errors: Complexes) -> tuple[Complexes, Floats]:
+        """Return the direction in which each hand gives in, and its share across that, (q,) each.
+
+        Along its pull a hand that gives in does so by all that its handles move, across it by this
+        share; the direction is 0 where it does not give in.
+        """
+        given = self.slack(errors)
+        sizes = np.abs(given)
+        directions = given / np.maximum(sizes, np.finfo(np.float64).tiny)
+        return directions, sizes / (sizes + self.huber_thresholds)
+
+    def spread_to_handles(self, of_hands: Complexes) -> Complexes:
+        """Return for each handle (h,) what is so of its hand (q,); 0 for those that are held."""
+        spread: Complexes = of_hands @ (self.weights > 0)
+        return spread
+
+    def slack_energy(self, given: Complexes) -> float:
+        """Return the energy of giving in."""
+        return float((2.0 * self.stiffness * self.huber_thresholds) @ np.abs(given))
+
+
+class DistanceConstraint(NamedTuple):
+    """Two handles, by their numbers, and the range of distances that they keep."""
+
+    first: int
+    second: int
+    shortest: float
+    longest: float
+
+
+class DistanceConstraints(NamedTuple):
+    """Some links.
+
+    Parameters
+    ----------
+    ends : intp, shape (2, l)
+        The handles of each.
+    shortest, longest : float64, shape (l,)
+    stiffness : float64, shape (l,)
+        κ of each.
+    """
+
+    ends: Indices
+    shortest: Floats
+    longest: Floats
+    stiffness: Floats
+
+    @classmethod
+    def of(
+        cls, links: Sequence[DistanceConstraint], stiffness: Floats
+    ) -> "DistanceConstraints | None":
+        """Return links between handles of which each by itself is so firm (h,).
+
+        Raises
+        ------
+        EngineError
+            If a link is not between two handles that are there, or has no range of distances.
+        """
+        if not links:
+            return None
+        for first, second, shortest, longest in links:
+            if first == second or not all(end in range(len(stiffness)) for end in (first, second)):
+                raise EngineError(CONSTRAINT_ENDS.format(first=first, second=second))
+            if not 0 <= shortest <= longest:
+                raise EngineError(CONSTRAINT_LENGTHS.format(shortest=shortest, longest=longest))
+        ends = np.array([(link.first, link.second) for link in links], np.intp).T
+        return cls(
+            ends=readonly(ends),
+            shortest=readonly(np.array([link.shortest for link in links])),
+            longest=readonly(np.array([link.longest for link in links])),
+            stiffness=readonly(stiffness[ends].max(axis=0)),
+        )
+
+    def _measure(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
+        """Return direction, length, and length beyond the range of each link (l,)."""
+        between = positions[self.ends[0]] - positions[self.ends[1]]
+        lengths = np.maximum(np.abs(between), np.finfo(np.float64).tiny)
+        beyond = lengths - np.clip(lengths, self.shortest, self.longest)
+        return between / lengths, lengths, beyond
+
+    def energy(self, positions: Complexes) -> float:
+        """Return what links cost with the handles (h,) at some places."""
+        return float(self.stiffness @ self._measure(positions)[2] ** 2)
+
+    def gradient(self, positions: Complexes) -> Complexes:
+        """Return the gradient of that (h,)."""
+        directions, _, beyond = self._measure(positions)
+        return self._at_handles(2.0 * self.stiffness * beyond * directions, len(positions))
+
+    def hessian_product(self, positions: Complexes, changes: Complexes) -> Complexes:
+        """Return the product (h,) of its projected Hessian with changes of the places."""
+        directions, along, across = self.stiffness_by_direction(positions)
+        between = directions.conj() * (changes[self.ends[0]] - changes[self.ends[1]])
+        given = directions * (along * between.real + 1j * across * between.imag)
+        return self._at_handles(given, len(positions))
+
+    def stiffness_by_direction(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
+        """Return the direction of each link, and its stiffness along that and across it, (l,)."""
+        directions, lengths, beyond = self._measure(positions)
+        twice = 2.0 * self.stiffness
+        return directions, twice * (beyond != 0), twice * np.maximum(beyond / lengths, 0.0)
+
+    def _at_handles(self, of_links: Complexes, count: int) -> Complexes:
+        at = np.zeros(count, np.complex128)
+        np.add.at(at, self.ends[0], of_links)
+        np.subtract.at(at, self.ends[1], of_links)
+        return at

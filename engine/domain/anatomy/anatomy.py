@@ -1,0 +1,185 @@
+"""What a shape consists of: a middle, a trunk, a head on a neck, and tips that reach out."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices
+from engine.domain.anatomy.medial_axis import medial_axis
+from engine.domain.anatomy.skeleton import Skeleton
+from engine.geometry import diameter
+
+# Of the largest radius, which may be that of a head: what belongs to the body.
+THICK = 0.4
+# A neck is so much narrower than the head beyond it, which is at least so wide as parts of the
+# middle's radius.
+NECK, LEAST_HEAD = 0.8, 0.55
+LONGEST_EAR = 2.5  # radii of the head that tips on it are away from its middle
+FORK = 0.5  # parts of the middle's radius: where limbs leave the trunk it is at least so thick
+# Two parts of the body have a handle each where they are so many radii apart.
+APART = 0.9
+# Parts of the height: feet are so near to the ground.
+GROUND = 0.12
+# Along a way to a head the neck is so much narrower than what is beyond it, and than what is before
+# it; and what is beyond has such a part of the first radius.
+NARROWED, HARDLY_NARROWED, SMALLEST_HEAD = 0.93, 0.97, 0.3
+BENT = 0.44  # from what angle on a limb is bent, in radians
+THICKENED = 1.45  # or thicker by what factor
+MARGIN = 0.35  # parts of a limb, on either side, in which no joint is
+STEP = 0.2  # parts of a limb, before and after a place, over which it bends
+
+
+class Anatomy:
+    """A skeleton, its middle, and what is its trunk and its head.
+
+    Parameters
+    ----------
+    loops : sequence of complex128
+        The outline, counter-clockwise, and the outlines of the holes; y up.
+    opened : bool
+        Whether ways around holes are cut open: limbs that touch are limbs all the same.
+    """
+
+    def __init__(self, loops: Sequence[Complexes], *, opened: bool = False) -> None:
+        self.holes = len(loops) - 1
+        bottom, top = loops[0].imag.min(), loops[0].imag.max()
+        self.ground = float(bottom + GROUND * (top - bottom))
+        self.skeleton = Skeleton(medial_axis(loops), diameter(loops[0]))
+        if opened:
+            self.skeleton.open_rings(self.ground)
+        else:
+            self.skeleton.cut_pinches()
+        self.branches = self.skeleton.cut_spurs()
+        self.tips = {end: self.skeleton.tip(branch) for end, branch in self.branches.items()}
+        self.places, self.radii = self.skeleton.axis.places, self.skeleton.axis.radii
+        self.kept = np.array(sorted(self.skeleton.near))
+        thick = self.kept[self.radii[self.kept] >= THICK * self.radii[self.kept].max()]
+        # A shape without limbs is nearest to all of its ends.
+        goals = list(self.tips.values()) or self.kept.tolist()
+        farthest = np.max(
+            [self.skeleton.path_distances([goal])[0][thick] for goal in goals], axis=0
+        )
+        self.middle = int(thick[farthest.argmin()])
+        _, self.before = self.skeleton.path_distances([self.middle])
+        self.neck, self.head = self._neck_and_head()
+        self.in_head = self._in_head()
+        self.trunk = self._trunk()
+
+    def path(self, node: int) -> Indices:
+        """Return the nodes from the middle to one."""
+        path = [node]
+        while path[-1] != self.middle:
+            path.append(int(self.before[path[-1]]))
+        return np.array(path[::-1])
+
+    def _neck_and_head(self) -> tuple[int, int | None]:
+        """Find the widest part above the middle and beyond a neck; both as nodes."""
+        neck, head = self.middle, None
+        widest = LEAST_HEAD * self.radii[self.middle]
+        for end in self.tips:
+            path = self.path(end)
+            radii = self.radii[path]
+            is_wide = (np.minimum.accumulate(radii) <= NECK * radii) & (radii > widest)
+            wide = int(np.where(is_wide, radii, 0.0).argmax())
+            found = int(path[wide])
+            is_above = self.places[found].imag > self.places[self.middle].imag
+            if is_wide[wide] and is_above and self._ends_at(found, int(path[max(wide - 1, 0)])):
+                away = np.abs(self.places[path[:wide]] - self.places[found])
+                outside = np.flatnonzero(away >= radii[wide])
+                neck = int(path[outside[-1]]) if outside.size else self.middle
+                head, widest = found, self.radii[found]
+        return neck, head
+
+    def _in_head(self) -> set[int]:
+        """Return the nodes beyond the neck; all limbs begin in it where it is the middle."""
+        if self.head is None:
+            return set()
+        return self._beyond(int(self.path(self.head)[1]) if self.neck == self.middle else self.neck)
+
+    def _ends_at(self, head: int, neck: int) -> bool:
+        """Tell whether no limb reaches far out of what may be a head, as out of a chest."""
+        beyond = self._beyond(neck)
+        tips = [self.places[tip] for tip in self.tips.values() if tip in beyond]
+        reach = LONGEST_EAR * self.radii[head]
+        return bool(np.all(np.abs(np.array(tips) - self.places[head]) <= reach))
+
+    def _beyond(self, neck: int) -> set[int]:
+        """Return the nodes whose way from the middle leads through one."""
+        found, ahead = {neck}, [neck]
+        while ahead:
+            node = ahead.pop()
+            further = self.skeleton.near[node] - {int(self.before[node])} - found
+            found |= further
+            ahead += further
+        return found
+
+    def _trunk(self) -> list[int]:
+        """Return the nodes that hold the trunk: two where limbs leave it far apart, or its middle.
+
+        The first is nearer to the neck, or higher.
+        """
+        forks = [
+            node
+            for node, others in self.skeleton.near.items()
+            if len(others) > 2
+            and node not in self.in_head
+            and self.radii[node] >= FORK * self.radii[self.middle]
+        ]
+        if len(forks) > 1:
+            between = np.array([self.skeleton.path_distances([fork])[0][forks] for fork in forks])
+            one, other = np.unravel_index(between.argmax(), between.shape)
+            pair = [forks[one], forks[other]]
+            if between[one, other] >= APART * self.radii[pair].max():
+                first = self.places[self.neck] if self.head is not None else 1e9j
+                return sorted(pair, key=lambda node: float(abs(self.places[node] - first)))
+        return [self.middle]
+
+
+def neck_along(radii: Floats) -> int | None:
+    """Return the number of the narrowest of some radii that grow again on both sides, if any."""
+    after, before = np.maximum.accumulate(radii[::-1])[::-1], np.maximum.accumulate(radii)
+    is_narrow = (radii <= NARROWED * after) & (radii <= HARDLY_NARROWED * before)
+    is_narrow &= after >= SMALLEST_HEAD * radii[0]
+    narrowness = np.where(is_narrow, radii / after * np.sqrt(radii / before), np.inf)
+    at = int(narrowness.argmin())
+    return at if is_narrow[at] else None
+
+
+def joint_share(places: Complexes, radii: Floats, lengths: Floats) -> float:
+    """Return the part of a limb after which it bends most, or becomes thicker; or a half."""
+    bend = bend_share(places, lengths)
+    if bend is not None:
+        return bend
+    shares = _joint_shares()
+    after, before = (shares + step for step in (STEP / 2, -STEP / 2))
+    growth = _along(after, lengths, radii) / _along(before, lengths, radii)
+    thickened = _most_within(growth, THICKENED)
+    return 0.5 if thickened is None else thickened
+
+
+def bend_share(places: Complexes, lengths: Floats) -> float | None:
+    """Return the part of a limb after which it bends most; None where it is straight."""
+    shares = _joint_shares()
+    before, here, after = (
+        _along(shares + step, lengths, places.real)
+        + 1j * _along(shares + step, lengths, places.imag)
+        for step in (-STEP, 0.0, STEP)
+    )
+    return _most_within(np.abs(np.angle((after - here) / (here - before))), BENT)
+
+
+def _joint_shares() -> Floats:
+    """Return parts of a limb after which a joint may be."""
+    return np.linspace(MARGIN, 1 - MARGIN, 29)
+
+
+def _along(shares: Floats, lengths: Floats, values: Floats) -> Floats:
+    """Return the values at parts of a limb."""
+    return np.asarray(np.interp(shares * lengths[-1], lengths, values))
+
+
+def _most_within(measure: Floats, least: float) -> float | None:
+    """Return the share of what is most; at an end it would belong to a hand or a shoulder."""
+    most = int(measure.argmax())
+    shares = _joint_shares()
+    return float(shares[most]) if measure[most] >= least and 0 < most < len(shares) - 1 else None

@@ -1,0 +1,52 @@
+"""What kind of body a shape looks like."""
+
+from collections.abc import Sequence
+
+from engine.arrays import Complexes
+from engine.domain.anatomy.body_plan import FOOT, SYMMETRIC, TOES, BodyPlan
+from engine.domain.anatomy.chain import is_chain
+from engine.geometry.motions import BodyKind, find_kind
+
+MOST_LEGS, MOST_LIMBS = 4, 9
+
+
+def guess_kind(loops: Sequence[Complexes]) -> BodyKind:
+    """Return the kind of body that a shape looks like.
+
+    Parameters
+    ----------
+    loops : sequence of complex128
+        The outline, counter-clockwise, and the outlines of the holes; y up.
+
+    Returns
+    -------
+    BodyKind
+        Of the drawing as it is: legs stand on the ground, a chain is all along one path; what
+        is neither is anything.
+    """
+    return _kind(BodyPlan(loops))
+
+
+def _kind(plan: BodyPlan) -> BodyKind:
+    """Return what kind of body it is."""
+    count = len(plan.legs)
+    if count > MOST_LEGS or len(plan.anatomy.branches) > MOST_LIMBS:
+        return find_kind("anything")
+    if plan.is_lying:
+        return find_kind("four-legs")
+    if count > 1:
+        return find_kind("biped-front" if _is_frontal(plan) else "biped-side")
+    is_long = is_chain(plan)
+    # What is low at a fish is a fin.
+    stands = count == 1 and abs(plan.toes[0]) > FOOT and plan.is_upright
+    if stands and not (is_long and plan.wide > plan.tall):
+        return find_kind("biped-side")
+    return find_kind("chain" if is_long else "anything")
+
+
+def _is_frontal(plan: BodyPlan) -> bool:
+    """Tell whether a body on two legs is seen from the front, by its toes or its symmetry."""
+    left, right = plan.toes[0], plan.toes[-1]
+    if abs(left + right) > 2 * TOES:
+        return False
+    return -left > TOES < right or plan.symmetry >= SYMMETRIC

@@ -1,0 +1,115 @@
+"""How slits are closed where a domain is painted: their sides meet, in every pose.
+
+A mesh ends at the outline, and a slit would show as a line. So the vertices on its sides are
+painted where the map of a triangle beside them takes the places at which the two sides meet.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, Indices, Integers
+from engine.domain.build import MeshedDomain
+from engine.geometry import ON_OUTLINE, diameter, loop_ends
+
+FARTHEST = 8.0  # sizes of a triangle beyond it, that it tells of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ClosedCuts:
+    """The vertices of a mesh beside slits, as sums of vertices.
+
+    Parameters
+    ----------
+    vertices : intp, shape (s,)
+        Which they are.
+    corners : int32, shape (s, 3)
+        A triangle of the mesh at each.
+    weights : float64, shape (s, 3)
+        Barycentric coordinates in it of where the vertex is painted: outside, so that one of them
+        is negative.
+    """
+
+    vertices: Indices
+    corners: Integers
+    weights: Floats
+
+    def close_cuts(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return what depends linearly on the place of each vertex, (v, …), with slits closed."""
+        result = values.copy()
+        result[self.vertices] = np.einsum("sc,sc...->s...", self.weights, values[self.corners])
+        return result
+
+
+def find_closed_cuts(domain: MeshedDomain) -> ClosedCuts | None:
+    """Return how a domain's mesh is painted; None where it has no slit."""
+    if domain.closed is None:
+        return None
+    corners = np.concatenate(domain.loops)
+    shifts = domain.closed - corners
+    on_side, beside = _on_sides(domain, corners, shifts)
+    moved = np.concatenate([np.flatnonzero(shifts), on_side])
+    places = domain.mesh.vertices[moved] + np.concatenate([shifts[shifts != 0], beside])
+    return _beside(domain, moved, places)
+
+
+def _on_sides(
+    domain: MeshedDomain, corners: Complexes, shifts: Complexes
+) -> tuple[Indices, Complexes]:
+    """Return the vertices between the corners of slits, and by how much they are moved."""
+    ends = loop_ends(domain.loops)
+    shifts_at_ends = loop_ends(
+        np.split(shifts, np.cumsum([len(loop) for loop in domain.loops])[:-1])
+    )
+    sides = np.flatnonzero((shifts != 0) | (shifts_at_ends != 0))
+    tolerance = ON_OUTLINE * diameter(domain.outline)
+    vertices = domain.mesh.vertices
+    # In order of x, so that only few have to be looked at for each side.
+    by_x = len(corners) + np.argsort(vertices.real[len(corners) :])
+    x = vertices.real[by_x]
+    found, moves = [np.empty(0, dtype=np.intp)], [np.empty(0, dtype=np.complex128)]
+    for side in sides:
+        start, along = corners[side], ends[side] - corners[side]
+        reach = sorted((start.real, ends[side].real))
+        first, last = np.searchsorted(x, [reach[0] - tolerance, reach[1] + tolerance])
+        share = (vertices[by_x[first:last]] - start) / along
+        near = np.abs(share.imag) * abs(along) <= tolerance
+        near &= (share.real > 0) & (share.real < 1)
+        found.append(by_x[first:last][near])
+        move = shifts_at_ends[side] - shifts[side]
+        moves.append(shifts[side] + share.real[near] * move)
+    return np.concatenate(found), np.concatenate(moves)
+
+
+def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> ClosedCuts:
+    """Return the seam that paints vertices at other places, each by a triangle beside it."""
+    triangles, vertices = domain.mesh.triangles, domain.mesh.vertices
+    number = np.full(len(vertices), -1)
+    number[moved] = np.arange(len(moved))
+    rows, columns = np.nonzero(number[triangles] >= 0)
+    index, around = number[triangles[rows, columns]], triangles[rows]
+    weights = _weights(vertices[around], places[index])
+    # Of the triangles at a vertex the one that has to reach the least beyond itself.
+    order = np.lexsort((-weights.min(axis=1), index))
+    chosen = order[np.flatnonzero(np.diff(index[order], prepend=-1))]
+    corners, weights = around[chosen], weights[chosen]
+    # Meshes have corners where triangles are far smaller than a slit: a larger one nearby is taken.
+    tiny = np.flatnonzero(weights.min(axis=1) < -FARTHEST)
+    middles = vertices[triangles].mean(axis=1) if len(tiny) else vertices
+    areas = domain.mesh.areas() if len(tiny) else np.empty(0)
+    for row in tiny:
+        far = np.abs(middles - vertices[moved[row]])
+        far[areas < np.abs(places[row] - vertices[moved[row]]) ** 2 / 4] = np.inf
+        corners[row] = triangles[int(far.argmin())]
+        weights[row] = _weights(vertices[corners[row : row + 1]], places[row : row + 1])[0]
+    return ClosedCuts(vertices=moved, corners=corners, weights=weights)
+
+
+def _weights(corners: Complexes, places: Complexes) -> Floats:
+    """Return the barycentric coordinates (n, 3) of places (n,) in triangles (n, 3)."""
+    a, b, c = corners.T
+    area, away = ((b - a).conj() * (c - a)).imag, places - a
+    second, third = (away.conj() * (c - a)).imag / area, ((b - a).conj() * away).imag / area
+    return np.column_stack([1 - second - third, second, third])

@@ -1,0 +1,316 @@
+"""The knife: lines along which what touches is parted, by slits in the outline.
+
+A slit is as narrow as cages can stand in. Its sides are cut at the precision of numbers and not of
+pixels, and closed again where the drawing is painted: there its two sides reach its middle line,
+and a little beyond, so that nothing shows through as long as they lie side by side.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from shapely.ops import substring
+
+from engine.arrays import Booleans, Complexes, Floats
+from engine.errors import EngineError
+from engine.geometry import as_xy, edge_vectors, shapely_region
+
+CUT_WIDTH = 0.002  # of the diagonal of the subject's box
+TREMOR = 0.7  # slit widths: by what a hand trembles is left out
+NEAR_EDGE = 0.02  # of the diagonal: an end that is no farther inside is led out
+BLUNT = 2.0  # mitre limit at the bends of a line
+SAMPLES, MOST_SAMPLES = 1_000, 1e6  # of a part and of its box, which tell how much of it is drawn
+SPECK = 2e-4  # of the subject's area: smaller pieces that lines cut off are dropped
+THIN = 1.5  # slit widths: thinner strips beside a line are dropped
+LEAST_STRIP, MOST_STRIP = 0.25, 4.0  # squares of slit widths: of them all, and of the drawing
+BESIDE = 0.75  # slit widths from a line: the sides of its slit
+OVERLAP = 1.1  # of the way to the middle line: how far the sides are painted
+# Lengths of edges on the sides of a slit: at its ends, of the diagonal; per distance from there;
+# and at most.
+AT_END, GROWTH, LONGEST = 0.006, 0.5, 0.06
+SHORTEST = 0.35  # slit widths: ends of shorter edges are one
+SHARP = 110.0  # degrees: turn at a corner that is blunted
+STRAIGHT = 0.2  # sine of the angle of two lines that hardly cross
+CUTS_OFF = (
+    "The knife cuts off a part of the drawing, {cut_off:.1%} of it, and a figure is one piece; end "
+    "the line inside, or move the part to a layer of its own."
+)
+
+
+class CutRegion(NamedTuple):
+    """The loops of a domain that was parted: the outline, then those of holes.
+
+    Parameters
+    ----------
+    loops : tuple of complex128
+        The holes' run clockwise.
+    closed : tuple of complex128
+        Where the vertices of each are painted.
+    """
+
+    loops: tuple[Complexes, ...]
+    closed: tuple[Complexes, ...]
+
+
+def cut_region(
+    loops: Sequence[Complexes], lines: Sequence[Complexes], mask: Booleans, diagonal: float
+) -> CutRegion:
+    """Part a region along lines.
+
+    Parameters
+    ----------
+    loops : sequence of complex128
+        The outline, counter-clockwise, and the holes, clockwise.
+    lines : sequence of complex128, each of shape (n,)
+        Polylines, n ≥ 2. They may cross each other, holes and the outline.
+    mask : bool, shape (h, w)
+        The subject in the region: cell (r, c) is the square [c, c + 1] × [r, r + 1].
+    diagonal : float
+        Of the subject's box, of which the slits' width is a part.
+
+    Raises
+    ------
+    EngineError
+        If a line misses the region, begins and ends inside, runs along its edge, or cuts off a
+        part; if it is too short.
+    """
+    width = CUT_WIDTH * diagonal
+    whole = shapely_region(loops[0], loops[1:])
+    ways = [_reaching_out(_simplified(line, width), whole, width) for line in lines]
+    slits = [_cut_strip(way, width) for way in ways]
+    _require_touching(whole, slits)
+    rest = shapely.difference(whole, shapely.union_all(slits))
+    parts = shapely.get_parts(rest)
+    piece = _largest(rest)
+    # Beside the drawing, a line may cut off some of the outline's margin.
+    others = (part for part in parts if not shapely.equals(part, piece))
+    cut_off = sum(_drawn_area(part, mask) for part in others) / np.count_nonzero(mask)
+    if cut_off > SPECK:
+        raise EngineError(CUTS_OFF.format(cut_off=cut_off))
+    piece = _without_strips(piece, whole, mask, width)
+    tips = np.concatenate([way[[0, -1]] for way in ways])
+    new = [piece.exterior, *piece.interiors]
+    found = [_loop(ring, ways, tips, width, hole=number > 0) for number, ring in enumerate(new)]
+    return CutRegion(tuple(loop for loop, _ in found), tuple(closed for _, closed in found))
+
+
+def _drawn_area(part: shapely.Polygon, mask: Booleans) -> float:
+    """Return about how much of a part belongs to the subject, in cells."""
+    left, low, right, high = shapely.bounds(part)
+    # Slivers of hardly any area may be long.
+    spacing = float(np.sqrt(max(part.area / SAMPLES, (right - left) * (high - low) / MOST_SAMPLES)))
+    if not spacing:
+        return 0.0
+    x, y = np.meshgrid(np.arange(left, right, spacing), np.arange(low, high, spacing))
+    inside = shapely.contains_xy(part, x, y)
+    columns, rows = x[inside].astype(int), y[inside].astype(int)
+    on_grid = (columns >= 0) & (columns < mask.shape[1]) & (rows >= 0) & (rows < mask.shape[0])
+    return float(np.count_nonzero(mask[rows[on_grid], columns[on_grid]])) * spacing**2
+
+
+def _simplified(line: Complexes, width: float) -> Complexes:
+    """Return a line with few vertices, as a hand means it."""
+    way = shapely.simplify(shapely.LineString(as_xy(line)), TREMOR * width)
+    if way.length < 4 * width:
+        raise EngineError("The knife's line is too short to part anything; draw a longer one.")
+    xy = shapely.get_coordinates(way)
+    return np.asarray(xy[:, 0] + 1j * xy[:, 1])
+
+
+def _reaching_out(way: Complexes, whole: shapely.Polygon, width: float) -> Complexes:
+    """Return a line that is inside with the end that nearly reaches an edge led out there.
+
+    The edge that is seen lies farther inside than the outline, by its margin.
+    """
+    if not shapely.contains_properly(whole, shapely.LineString(as_xy(way))):
+        return way
+    ends = shapely.points(as_xy(way[[0, -1]]))
+    away = shapely.distance(whole.boundary, ends)
+    last = bool(away[1] < away[0])
+    if away.min() > NEAR_EDGE * width / CUT_WIDTH:
+        return way
+    nearest = shapely.shortest_line(ends[int(last)], whole.boundary)
+    inner, edge = shapely.get_coordinates(nearest) @ [1, 1j]
+    outside = edge + width * (edge - inner) / max(abs(edge - inner), 1e-9 * width)
+    return np.append(way, outside) if last else np.append(outside, way)
+
+
+def _cut_strip(way: Complexes, width: float) -> shapely.Geometry:
+    """Return what is cut out along a line: a strip with pointed ends."""
+    line = shapely.LineString(as_xy(way))
+    half = width / 2
+    inner = substring(line, half, line.length - half)
+    strip = shapely.buffer(inner, half, cap_style="flat", join_style="mitre", mitre_limit=BLUNT)
+    points = []
+    for end, before in ((way[0], way[1]), (way[-1], way[-2])):
+        along = half * (before - end) / abs(before - end)
+        # A hair longer, so that strip and point are one.
+        corners = np.array([end, end + 1.001 * (1 + 1j) * along, end + 1.001 * (1 - 1j) * along])
+        points.append(shapely.Polygon(as_xy(corners)))
+    return shapely.union_all([strip, *points])
+
+
+def _require_touching(whole: shapely.Polygon, slits: Sequence[shapely.Geometry]) -> None:
+    """Raise `EngineError` where a slit misses the region, or lies inside and meets no other."""
+    if not all(shapely.intersects(whole, slit) for slit in slits):
+        raise EngineError("The knife's line does not touch the drawing; draw it across an edge.")
+    for piece in shapely.get_parts(shapely.union_all(slits)):
+        if shapely.contains_properly(whole, piece):
+            raise EngineError(
+                "The knife's line begins and ends inside the drawing; begin it outside, in a hole, "
+                "or at another line."
+            )
+
+
+def _without_strips(
+    piece: shapely.Polygon, whole: shapely.Polygon, mask: Booleans, width: float
+) -> shapely.Polygon:
+    """Return a piece without what lines leave beside edges that is too thin to be moved.
+
+    Raises
+    ------
+    EngineError
+        If that is a part of the drawing.
+    """
+    left = shapely.difference(
+        shapely.intersection(piece, _opened(whole, width)), _opened(piece, width)
+    )
+    parts = shapely.get_parts(left)
+    strips = parts[shapely.area(parts) > LEAST_STRIP * width**2]
+    if sum(_drawn_area(strip, mask) for strip in strips) > MOST_STRIP * width**2:
+        raise EngineError(
+            "The knife's line runs along an edge or another line and leaves a strip that is too "
+            "thin; draw it farther away."
+        )
+    rest = shapely.difference(piece, shapely.buffer(shapely.union_all(strips), 1e-3 * width))
+    return _largest(rest)
+
+
+def _opened(area: shapely.Polygon, width: float) -> shapely.Geometry:
+    """Return what of an area is wider than some slits."""
+    half, options = THIN * width / 2, {"join_style": "mitre", "mitre_limit": 5.0}
+    return shapely.buffer(shapely.buffer(area, -half, **options), 1.01 * half, **options)
+
+
+def _largest(area: shapely.Geometry) -> shapely.Polygon:
+    parts = shapely.get_parts(area)
+    return parts[int(shapely.area(parts).argmax())]
+
+
+def _loop(
+    ring: shapely.LinearRing,
+    ways: Sequence[Complexes],
+    tips: Complexes,
+    width: float,
+    *,
+    hole: bool,
+) -> tuple[Complexes, Complexes]:
+    """Return a ring of the parted region, with fit edges, and where its vertices are painted."""
+    ring = shapely.LinearRing(shapely.get_coordinates(ring))
+    if shapely.is_ccw(ring) == hole:
+        ring = shapely.reverse(ring)
+    xy = shapely.get_coordinates(ring)[:-1]
+    corners = _without_spikes(
+        _without_short_edges(xy[:, 0] + 1j * xy[:, 1], ways, width), ways, width
+    )
+    lines = _lines_of(corners, ways, width)
+    is_side = np.array([line is not None for line in lines])
+    ends = np.append(tips, corners[is_side != np.roll(is_side, 1)])  # tips and mouths
+    loop: list[complex] = []
+    for start, line, end in zip(corners, lines, np.roll(corners, -1), strict=True):
+        loop += [start] if line is None else _divided(start, end, ends, width)
+    vertices = np.array(loop)
+    return vertices, _closed(vertices, ways, tips, width)
+
+
+def _without_short_edges(loop: Complexes, ways: Sequence[Complexes], width: float) -> Complexes:
+    """Return a loop without edges that are too short; the sides of slits keep their ends."""
+    on_line = _distances(loop, ways) < BESIDE * width
+    while len(loop) > 3:
+        lengths = np.abs(edge_vectors(loop))
+        shortest = int(lengths.argmin())
+        if lengths[shortest] >= SHORTEST * width:
+            break
+        following = (shortest + 1) % len(loop)
+        dropped = following if on_line[shortest] else shortest
+        loop, on_line = np.delete(loop, dropped), np.delete(on_line, dropped)
+    return loop
+
+
+def _without_spikes(loop: Complexes, ways: Sequence[Complexes], width: float) -> Complexes:
+    """Return a loop whose sharp corners at the mouths of slits are blunt: a cage has room there."""
+    blunt: list[complex] = []
+    near = _distances(loop, ways) < BESIDE * width
+    for before, corner, after, is_near in zip(
+        np.roll(loop, 1), loop, np.roll(loop, -1), near, strict=True
+    ):
+        turn = float(np.angle((after - corner) / (corner - before), deg=True))
+        if not is_near or turn < SHARP:
+            blunt.append(corner)
+            continue
+        back = 0.5 * width / np.sin(np.radians(180.0 - turn) / 2)
+        for other in (before, after):
+            length = abs(other - corner)
+            blunt.append(corner + min(back, 0.45 * length) * (other - corner) / length)
+    return np.array(blunt)
+
+
+def _divided(start: complex, end: complex, ends: Complexes, width: float) -> list[complex]:
+    """Return the points, but the last, of an edge that is divided the finer the nearer to ends."""
+    diagonal = width / CUT_WIDTH
+    middle = (start + end) / 2
+    longest = min(LONGEST * diagonal, AT_END * diagonal + GROWTH * np.abs(ends - middle).min())
+    if abs(end - start) <= longest:
+        return [start]
+    return _divided(start, middle, ends, width) + _divided(middle, end, ends, width)
+
+
+def _distances(points: Complexes, ways: Sequence[Complexes]) -> Floats:
+    """Return how far points (n,) are from the nearest of the lines."""
+    lines = shapely.MultiLineString([as_xy(way) for way in ways])
+    distances: Floats = shapely.distance(lines, shapely.points(as_xy(points)))
+    return distances
+
+
+def _lines_of(
+    loop: Complexes, ways: Sequence[Complexes], width: float
+) -> list[tuple[complex, complex] | None]:
+    """Return for each edge of a loop the piece of a line of whose slit it is a side, if it is."""
+    starts = np.concatenate([way[:-1] for way in ways])
+    pieces = np.concatenate([way[1:] for way in ways]) - starts
+    lengths = np.abs(pieces)
+    directions = pieces / lengths
+    lines: list[tuple[complex, complex] | None] = []
+    is_near: Booleans = _distances(loop, ways) < BESIDE * width
+    for here, there, near, is_next in zip(
+        loop, np.roll(loop, -1), is_near, np.roll(is_near, -1), strict=True
+    ):
+        lines.append(None)
+        if near and is_next:
+            middle = (here + there) / 2
+            along = np.clip(((middle - starts) / directions).real, 0, lengths)
+            away = np.abs(middle - starts - along * directions)
+            nearest = int(away.argmin())
+            if away[nearest] < BESIDE * width:
+                lines[-1] = complex(starts[nearest]), complex(directions[nearest])
+    return lines
+
+
+def _closed(loop: Complexes, ways: Sequence[Complexes], tips: Complexes, width: float) -> Complexes:
+    """Return where the vertices of a loop are painted: those beside a line, on it."""
+    lines, closed = _lines_of(loop, ways, width), loop.copy()
+    for index, point in enumerate(loop):
+        before, after = lines[index - 1], lines[index]
+        if np.abs(tips - point).min() < 1e-6 * width or (before is None and after is None):
+            continue
+        start, along = after or before  # type: ignore[misc]
+        place = start + ((point - start) / along).real * along
+        if before and after:
+            other, across = before
+            sine = (along.conjugate() * across).imag
+            if abs(sine) > STRAIGHT:
+                place = start + ((other - start).conjugate() * across).imag / sine * along
+        if abs(place - point) < BLUNT * width:
+            closed[index] = point + OVERLAP * (place - point)
+    return closed

@@ -1,0 +1,115 @@
+"""Corrections folded into in-betweens: the change of their derivatives at any points."""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, Indices, freeze
+from engine.interpolation.added.pins.pinning import CorrectionSeries
+from engine.interpolation.keyframe_blend import Derivatives
+from engine.interpolation.series import Residual
+from engine.maps import Span
+
+
+class SpanBasis(NamedTuple):
+    """The functions of a span (n,) at nodes (s,), and their derivatives, in single precision.
+
+    Corrections are small beside the places, and so are their rounding errors.
+    """
+
+    values: npt.NDArray[np.complex64]
+    slopes: npt.NDArray[np.complex64]
+
+    @classmethod
+    def of(cls, span: Span, nodes: Complexes) -> Self:
+        """Evaluate them."""
+        values, slopes = span.coordinates(nodes), span.derivatives(nodes)
+        return cls(freeze(values.astype(np.complex64)), freeze(slopes.astype(np.complex64)))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return self.values.nbytes + self.slopes.nbytes
+
+    def evaluate(self, functions: Complexes) -> tuple[Complexes, Complexes]:
+        """Return functions (n, j) and their derivatives at the nodes, (s, j) each."""
+        single = functions.astype(np.complex64)
+        values, slopes = self.values @ single, self.slopes @ single
+        return values.astype(np.complex128), slopes.astype(np.complex128)
+
+
+class Mixing(NamedTuple):
+    """K, which multiplies q, at nodes (s,), and the derivative of its logarithm."""
+
+    k: Complexes
+    log_k_z: Complexes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class EvaluatedCorrection:
+    """h and q of a correction at nodes (s,).
+
+    Parameters
+    ----------
+    known : CorrectionSeries
+    h, q : Residual
+    """
+
+    known: CorrectionSeries
+    h: Residual
+    q: Residual
+
+    @classmethod
+    def of(
+        cls, known: CorrectionSeries, span: Span, nodes: Complexes, basis: SpanBasis | None = None
+    ) -> Self:
+        """Evaluate the functions of a correction at nodes (s,), by a basis there if it is known."""
+        count, functions = known.h.shape[1], np.hstack([known.h, known.q])
+        if basis is None:
+            values, slopes = span.evaluate(functions, nodes, orders=(0, 1))
+        else:
+            values, slopes = basis.evaluate(functions)
+        return cls(
+            known=known,
+            h=Residual.of(known.series, values[:, :count], slopes[:, :count]),
+            q=Residual.of(known.series, values[:, count:], slopes[:, count:]),
+        )
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes."""
+        return type(self)(known=self.known, h=self.h.at(which), q=self.q.at(which))
+
+    def changed(
+        self, base: Derivatives, mixing: Mixing, sign: int, time: float
+    ) -> tuple[Derivatives, Mixing]:
+        """Return F e^h, G e^{σh} + q K e^h and K e^h with their derivatives."""
+        (h, h_z), (q, q_z) = (_both(each, time) for each in (self.h, self.q))
+        grown = np.exp(h)
+        k, log_k_z = mixing.k * grown, mixing.log_k_z + h_z
+        own = grown if sign > 0 else 1.0 / grown
+        after = Derivatives(
+            fz=base.fz * grown,
+            fzz=(base.fzz + base.fz * h_z) * grown,
+            g=base.g * own + q * k,
+            gz=(base.gz + sign * base.g * h_z) * own + (q_z + q * log_k_z) * k,
+        )
+        return after, Mixing(k, log_k_z)
+
+    def changed_values(
+        self, fz: Complexes, g: Complexes, k: Complexes, sign: int, times: Floats
+    ) -> tuple[Complexes, Complexes, Complexes]:
+        """Return the same at times (t,), of F, G and K (t, s), without derivatives."""
+        h, q = self.h.at_times(times), self.q.at_times(times)
+        grown = np.exp(h)
+        k = k * grown
+        return fz * grown, g * (grown if sign > 0 else 1.0 / grown) + q * k, k
+
+
+def _both(function: Residual, time: float) -> tuple[Complexes, Complexes]:
+    """Return a function and its derivative at a time."""
+    value = np.zeros(function.modes.shape[1], dtype=np.complex128)
+    slope = np.zeros_like(value)
+    function.add_to(value, slope, time)
+    return value, slope

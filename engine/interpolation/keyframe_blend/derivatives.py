@@ -1,0 +1,145 @@
+"""What every variant blends: the derivatives of Φ and Ψ at the nodes of the paths."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, Indices, Integers
+from engine.errors import EngineError
+from engine.interpolation.keyframe_blend.keyframe_samples import KeyframeSamples
+from engine.interpolation.series import Residual, combine_arrays
+from engine.interpolation.time_weights import TimeWeights
+
+KEYFRAMES_OF_SEGMENT = (
+    "An interval of this course has {wanted} keyframes, not {count} with {sheets} sheets."
+)
+
+
+class Derivatives(NamedTuple):
+    """Φ', Φ'', Ψ' and Ψ'' of an in-between, each complex128 (s,).
+
+    Section 4.1: f_z = Φ' and f_z̄ = conj(Ψ').
+    """
+
+    fz: Complexes
+    fzz: Complexes
+    g: Complexes
+    gz: Complexes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class KeyframeBlend:
+    """The keyframes that the in-betweens of two of them are blended of, and with which weights.
+
+    Build it with `Passage.of`.
+
+    Parameters
+    ----------
+    keyframes : tuple of KeyframeSamples, length q
+        The two, with those around them for which the course asks.
+    sheets : int32, shape (q,)
+        Branch of each logarithm, from `root_sheets`.
+    course : TimeWeights
+        Of log f_z and of the anchor.
+    eta_course : TimeWeights
+        Of η, which the metric variant has on another one.
+    residuals : tuple of Residual
+        What is added to the blend of log f_z.
+    """
+
+    keyframes: tuple[KeyframeSamples, ...]
+    sheets: Integers
+    time_weights: TimeWeights
+    eta_time_weights: TimeWeights
+    residuals: tuple[Residual, ...] = ()
+
+    @classmethod
+    def of(
+        cls,
+        keyframes: Sequence[KeyframeSamples],
+        sheets: Integers,
+        course: TimeWeights | None = None,
+    ) -> Self:
+        """Put keyframes and course together; by default two keyframes are blended linearly.
+
+        Raises
+        ------
+        EngineError
+            If there are not as many keyframes and sheets as the course weighs.
+        """
+        course = TimeWeights.straight() if course is None else course
+        if not len(keyframes) == len(sheets) == course.count:
+            wanted = ("two", "three", "four", "five", "six")[course.count - 2]
+            raise EngineError(
+                KEYFRAMES_OF_SEGMENT.format(wanted=wanted, count=len(keyframes), sheets=len(sheets))
+            )
+        return cls(
+            keyframes=tuple(keyframes), sheets=sheets, time_weights=course, eta_time_weights=course
+        )
+
+    @property
+    def ends(self) -> tuple[KeyframeSamples, KeyframeSamples]:
+        """The keyframes at time 0 and at time 1."""
+        first = self.time_weights.first
+        return self.keyframes[first], self.keyframes[first + 1]
+
+    def anchor_positions(self, times: Floats) -> Complexes:
+        """Return the blended position of the anchor at times (t,)."""
+        known = np.array([key.anchor_position for key in self.keyframes])
+        positions: Complexes = self.time_weights.at(times).T @ known
+        return positions
+
+    def at(self, which: Indices) -> Self:
+        """Return the same at some of the nodes (c,) only."""
+        return replace(
+            self,
+            keyframes=tuple(key.at(which) for key in self.keyframes),
+            residuals=tuple(residual.at(which) for residual in self.residuals),
+        )
+
+    def with_residual(self, residual: Residual) -> Self:
+        """Return the same with something more added to log f_z."""
+        return replace(self, residuals=(*self.residuals, residual))
+
+    def log_fz(self, time: float) -> tuple[Complexes, Complexes]:
+        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,).
+
+        Residuals are included.
+        """
+        logarithm, logarithm_z = self.log_fz_without_residuals(time)
+        for residual in self.residuals:
+            residual.add_to(logarithm, logarithm_z, time)
+        return logarithm, logarithm_z
+
+    def log_fz_without_residuals(self, time: float) -> tuple[Complexes, Complexes]:
+        """Return the same without residuals."""
+        weights = self.time_weights(time)
+        # Equation (3), as a logarithm.
+        logarithm = weighted_sum([key.log_fz for key in self.keyframes], weights)
+        logarithm.imag += 2 * np.pi * float(weights @ self.sheets)
+        return logarithm, weighted_sum([key.log_fz_z for key in self.keyframes], weights)
+
+    def log_fz_at(self, times: Floats) -> Complexes:
+        """Return the former at times (t,), (t, s)."""
+        logarithms = self.log_fz_without_residuals_at(times)
+        for residual in self.residuals:
+            logarithms += residual.at_times(times)
+        return logarithms
+
+    def log_fz_without_residuals_at(self, times: Floats) -> Complexes:
+        """Return the same without residuals."""
+        weights = self.time_weights.at(times).T
+        logarithms = combine_arrays(weights, np.array([key.log_fz for key in self.keyframes]))
+        logarithms.imag += 2 * np.pi * (weights @ self.sheets)[:, None]
+        return logarithms
+
+
+def weighted_sum(arrays: Sequence[Complexes], weights: Floats) -> Complexes:
+    """Return Σ w_i a_i; an array whose weight is 0 is not touched."""
+    terms = [(a, w) for a, w in zip(arrays, weights, strict=True) if w != 0.0]
+    total: Complexes = terms[0][0] * terms[0][1]
+    for array, weight in terms[1:]:
+        total += array * weight
+    return total

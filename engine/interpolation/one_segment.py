@@ -1,0 +1,119 @@
+"""The in-betweens of two neighbouring keyframes, whatever their variant."""
+
+from functools import partial
+
+import numpy as np
+
+from engine.arrays import Complexes
+from engine.deform.correction import BaseFrame, PointCorrector
+from engine.errors import EngineError
+from engine.interpolation.added.pins import (
+    CorrectionBase,
+    CorrectionSeries,
+    SegmentPins,
+    fit_pin_corrections,
+)
+from engine.interpolation.blends import BLENDS, Blend
+from engine.interpolation.inbetweens import Frame, Inbetweens
+from engine.interpolation.keyframe_blend import KeyframeSegment
+from engine.interpolation.sampled_domain import SampledDomain
+from engine.interpolation.scaling import SmoothedRho
+from engine.maps import Bounds
+from engine.variant import Variant
+
+
+def prepare_inbetweens(variant: Variant, interval: KeyframeSegment) -> Inbetweens:
+    """Prepare the in-betweens of an interval.
+
+    Raises
+    ------
+    EngineError
+        If the transform is missing or of another outline.
+    """
+    return _closed(BLENDS[variant].of(interval), interval.sampled_domain)
+
+
+def frame_at(
+    time: float, variant: Variant, interval: KeyframeSegment, pins: CorrectionSeries | None = None
+) -> Frame:
+    """Return one in-between, where no other is wanted yet: what `prepare_inbetweens` gives then.
+
+    Of the metric variant it costs less, since one Dirichlet problem is solved and not one for each
+    of the forms that the residual takes in the whole interval; around holes, and of other variants,
+    as much.
+
+    Raises
+    ------
+    EngineError
+        As `prepare_inbetweens`, and if the time is not in [0, 1].
+    """
+    if not 0.0 <= time <= 1.0:
+        raise EngineError(f"An interval runs from time 0 to 1; {time} is outside.")
+    if interval.sampled_domain.closer is not None:
+        found = prepare_inbetweens(variant, interval)
+    else:
+        found = _closed(BLENDS[variant].at_single_time(time, interval), interval.sampled_domain)
+    return (found if pins is None else found.with_correction(pins)).frame(time)
+
+
+def value_points_for_corrections(corrector: PointCorrector) -> Complexes:
+    """Return where corrections need values: nodes of the paths to handles, and the samples."""
+    return np.concatenate([corrector.paths.nodes, corrector.boundary.points])
+
+
+def evaluate_base(inbetweens: Inbetweens, corrector: PointCorrector, time: float) -> CorrectionBase:
+    """Return an in-between as a correction of it needs it.
+
+    Parameters
+    ----------
+    inbetweens : Inbetweens
+        At the handles, with values at `value_points_for_corrections`.
+    corrector : PointCorrector
+        For the handles.
+    time : float
+    """
+    frame, (fz, g, k) = inbetweens.frame_with_values(time)
+    nodes = len(corrector.paths.nodes)
+    parts = slice(nodes), slice(nodes, None)
+    of_nodes, of_samples = (BaseFrame(fz[p], g[p], k[p], inbetweens.sign) for p in parts)
+    anchor = inbetweens.anchor_position(time)
+    return CorrectionBase(frame.positions, frame.fz, anchor, of_nodes, of_samples)
+
+
+def solve_pins(
+    base: Inbetweens, corrector: PointCorrector, pins: SegmentPins, bounds: Bounds
+) -> CorrectionSeries:
+    """Find the corrections of a segment.
+
+    Parameters
+    ----------
+    base : Inbetweens
+        As `base_at` wants it, without pins.
+    corrector : PointCorrector
+        For the handles.
+    pins : SegmentPins
+    bounds : Bounds
+        Limits that are kept at the samples, as far as the base keeps them.
+    """
+    return fit_pin_corrections(corrector, partial(evaluate_base, base, corrector), pins, bounds)
+
+
+def _closed(blend: Blend, sites: SampledDomain) -> Inbetweens:
+    """Close the periods around holes, and scale Ψ where that is called for."""
+    closing = conformal = scale = None
+    closed, closer = blend, sites.closer
+    if closer is not None and blend.sign:
+        values = blend.at(sites.paths.around).values
+        closing = closer.close(values, blend.sign, blend.moduli(sites.boundary))
+        closed = blend.with_residual(closing.residual)
+        if blend.is_scaled:
+            conformal = closer.to_conformal(values, blend.sign)
+    if blend.is_scaled:
+        scale = SmoothedRho.of(blend.exact_rho(sites, closing, conformal))
+    return Inbetweens(
+        sampled_domain=sites,
+        blend=closed,
+        scale=scale,
+        closing=closing,
+        conformal_closing=conformal,
+    )

@@ -1,0 +1,224 @@
+"""Where in-betweens are wanted: what belongs to the domain and the points, not to a keyframe."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+import numpy.typing as npt
+
+from engine.arrays import Complexes, Floats, Indices, as_points, freeze, nbytes_of
+from engine.errors import EngineError
+from engine.geometry import ON_OUTLINE, deepest_point, diameter, require_inside
+from engine.interpolation.added import HoleCloser
+from engine.maps import Boundary
+from engine.paths import (
+    IntegrationPaths,
+    Loops,
+    chain_starts,
+    continue_logarithm,
+    lay_paths,
+    mesh_network,
+    scattered_network,
+    with_chains,
+    with_loops,
+)
+
+ONE_ANCHOR = (
+    "One anchor is needed, not {count}: its pose fixes the in-betweens, and a second could not be "
+    "met. Leave it out, and the engine chooses one."
+)
+OTHER_OUTLINE = (
+    "The Hilbert transform is of another outline, of {others} vertices, than the points', of "
+    "{own}; build it anew for this one."
+)
+NO_SAMPLES = (
+    "A proof needs the samples of the boundary: as the first points, or as the last value points."
+)
+VALUES_OR_TRIANGLES = (
+    "Values alone are wanted at points beside those of triangles; prepare sites of their own."
+)
+
+
+def _none() -> Complexes:
+    return np.empty(0, dtype=np.complex128)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SampledDomain:
+    """A domain with the points at which its in-betweens are wanted, shared by all keyframes.
+
+    Build it with `prepare_sites`.
+
+    Parameters
+    ----------
+    diameter : float
+        Largest distance between two vertices of the outline.
+    points : complex128, shape (m,)
+    paths : IntegrationPaths
+        From the anchor to the points, and around holes.
+    boundary : Boundary
+        On which keyframes are proven free of folds.
+    loops : Loops
+        Around the holes, at the nodes `paths.around`.
+    arguments : float64, shape (1 + m, holes)
+        Of z − c_j at the anchor and the points, continued along the paths.
+    closer : HoleCloser or None
+        Of periods around the holes; None where there are none.
+    value_points : complex128, shape (v,)
+        At which in-betweens have derivatives only, and no positions.
+    """
+
+    diameter: float
+    points: Complexes
+    paths: IntegrationPaths
+    boundary: Boundary
+    loops: Loops
+    arguments: Floats
+    closer: HoleCloser | None
+    value_points: Complexes = field(default_factory=_none)
+
+    @property
+    def outline(self) -> Complexes:
+        """The domain's boundary, complex128 (p,)."""
+        return self.boundary.outline
+
+    @property
+    def cage(self) -> Complexes:
+        """The polygon of the Cauchy coordinates, complex128 (n,)."""
+        return self.boundary.cage
+
+    @property
+    def anchor(self) -> complex:
+        """The point whose pose is given."""
+        return complex(self.paths.nodes[0])
+
+    def require_boundary(self, loops: Sequence[Complexes]) -> None:
+        """Refuse a Hilbert transform of another boundary.
+
+        Raises
+        ------
+        EngineError
+            If its loops are not the domain's own.
+        """
+        own = self.boundary.loops
+        if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
+            raise EngineError(
+                OTHER_OUTLINE.format(others=sum(map(len, loops)), own=sum(map(len, own)))
+            )
+
+    def sample_nodes(self) -> Indices:
+        """Return the nodes at the samples of the boundary, (p,).
+
+        Raises
+        ------
+        EngineError
+            If neither the points begin nor the value points end with them.
+        """
+        samples = self.boundary.points
+        count = len(samples)
+        if np.array_equal(self.points[:count], samples):
+            return self.paths.places[:count]
+        if np.array_equal(self.value_points[-count:], samples):
+            return self.paths.beside[-count:]
+        raise EngineError(NO_SAMPLES)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that the arrays take, in bytes."""
+        return nbytes_of(self)
+
+
+def sample_domain(
+    boundary: Boundary,
+    points: npt.ArrayLike,
+    *,
+    triangles: npt.ArrayLike | None = None,
+    anchor: npt.ArrayLike | None = None,
+    values_at: npt.ArrayLike = (),
+) -> SampledDomain:
+    """Find paths inside the domain from the anchor to every point.
+
+    Parameters
+    ----------
+    boundary : Boundary
+        Of the domain, from `Boundary.sample`; other sites may share it.
+    points : complex, shape (m,)
+        In the closed domain, to 1e-9 of its diameter.
+    triangles : int, shape (t, 3), optional
+        Triangles of the points; the paths then follow their edges. Without them the engine finds
+        its own paths.
+    anchor : complex, optional
+        By default the centre of the largest disc in the domain: farthest from the cage, where the
+        maps are smoothest and their arguments least extreme.
+    values_at : complex, shape (v,), optional
+        Further points, without triangles, at which only derivatives are wanted. Each costs one
+        node where its neighbour in order can be reached straight.
+
+    Raises
+    ------
+    EngineError
+        If a point, a triangle or the anchor is not as said.
+    """
+    points = as_points(points, "points", at_least=1)
+    outline, *inner = boundary.loops
+    tolerance = ON_OUTLINE * diameter(outline)
+    root = np.array([deepest_point(outline, inner)]) if anchor is None else _single(anchor)
+    require_inside(outline, root, "anchor", holes=inner, tolerance=tolerance)
+    require_inside(outline, points, "point", holes=inner, tolerance=tolerance)
+    beside = as_points(values_at, "values_at")
+    require_inside(outline, beside, "point for values", holes=inner, tolerance=tolerance)
+    corners, cages = np.concatenate(boundary.loops), boundary.span.vertices
+    loops = Loops.around(outline, inner, np.concatenate([corners, cages]))
+    if triangles is None:
+        # Without a mesh nothing else may come near a hole.
+        starts = chain_starts(boundary.loops, beside)
+        everything = np.concatenate([points, loops.nodes[loops.starts], beside[starts]])
+        network = with_chains(
+            scattered_network(outline, everything, root, holes=inner), beside, starts
+        )
+        network = replace(network, places=network.places[: len(points)])
+    elif len(beside):
+        raise EngineError(VALUES_OR_TRIANGLES)
+    else:
+        network = mesh_network(outline, points, _as_triangles(triangles), root, holes=inner)
+    if inner:
+        network = with_loops(network, outline, inner, loops)
+    paths = lay_paths(network, corners, cages)
+    return SampledDomain(
+        diameter=diameter(outline),
+        points=points,
+        paths=paths,
+        boundary=boundary,
+        loops=loops,
+        arguments=freeze(_arguments(paths, boundary.span.centres)),
+        closer=HoleCloser.of(boundary, loops, paths.nodes) if inner else None,
+        value_points=beside,
+    )
+
+
+def _arguments(paths: IntegrationPaths, centres: Complexes) -> Floats:
+    """Return the arguments (1 + m, holes) of z − c_j, continued from the anchor to the points."""
+    ends = np.concatenate([[0], paths.places])
+    continued = np.empty((len(ends), len(centres)))
+    for column, centre in enumerate(centres):
+        away = paths.nodes - centre
+        logarithms = continue_logarithm(away, 1 / away, paths, partial(np.add, -centre))
+        continued[:, column] = logarithms.imag[ends]
+    return continued
+
+
+def _single(anchor: npt.ArrayLike) -> Complexes:
+    if np.size(anchor) != 1:
+        raise EngineError(ONE_ANCHOR.format(count=np.size(anchor)))
+    return as_points(np.reshape(anchor, (1,)), "anchor")
+
+
+def _as_triangles(values: npt.ArrayLike) -> npt.NDArray[np.int32]:
+    triangles = np.asarray(values)
+    if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
+        raise EngineError(
+            f"triangles must be integers of shape (t, 3), not {triangles.dtype} of shape "
+            f"{triangles.shape}."
+        )
+    return triangles.astype(np.int32)

@@ -1,0 +1,213 @@
+"""A whole motion as one shape and a few others that are added to it with weights in [0, 1].
+
+What a game engine calls morph targets or blend shapes, with the weights as piecewise linear
+functions of time.
+"""
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from engine.arrays import Complexes, Floats, as_number, as_reals, freeze
+from engine.errors import EngineError
+
+# Shares of the tolerance: of what the basis leaves out, of the weights' way between their times,
+# and of the targets that are left out. Times cost little, targets much.
+OF_BASIS, OF_TIME, OF_RANK = 0.02, 0.1, 0.85
+NO_TIMES = "times must be finite numbers, one at least, not {times}."
+TIMES_FALL = "times must increase from one to the next."
+BLOCK = 256  # moments that are written out at once
+SHORTEST = 2.0**-6  # time that a jump of the motion may take: there no tolerance is kept
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MorphTargets:
+    """Where m points are: base + Σ_j w_j(t) targets_j.
+
+    Parameters
+    ----------
+    base : complex128, shape (m,)
+    targets : complex128, shape (r, m)
+    times : float64, shape (n,)
+        Increasing.
+    weights : float64, shape (n, r)
+        At the times, in [0, 1]; linear in between.
+    error : float
+        The largest distance from the motion that was found, of all points, at the times and in
+        the middle between each two.
+    """
+
+    base: Complexes
+    targets: Complexes
+    times: Floats
+    weights: Floats
+    error: float
+
+    def positions(self, time: float) -> Complexes:
+        """Return the points (m,) at a time; before the first and after the last they rest."""
+        weights = np.array([np.interp(time, self.times, column) for column in self.weights.T])
+        return np.asarray(self.base + weights @ self.targets)
+
+
+def build_morph_targets(
+    sample: Callable[[float], Complexes],
+    base: Complexes,
+    times: Sequence[float],
+    *,
+    tolerance: float,
+    most: int | None = None,
+) -> Generator[float, None, MorphTargets]:
+    """Find the fewest targets that keep a motion within a tolerance; yield the time at each step.
+
+    Parameters
+    ----------
+    sample : callable
+        Returns the points (m,) at a time from the first to the last of `times`.
+    base : complex128, shape (m,)
+        What all targets are added to.
+    times : sequence of float
+        Increasing; at least one. Where the motion is looked at first: so closely that it does
+        nothing in between that does not show in the middle.
+    tolerance : float
+        The largest distance that is allowed between a point and where it should be, at any time
+        but that of a jump.
+    most : int, optional
+        How many targets there may be. Where they do not suffice, `error` tells how far they come.
+
+    Notes
+    -----
+    Moments are halved until the weights' straight way from one to the next is close enough. The
+    motion at all of them, a matrix of points by moments, has a low rank up to the tolerance; its
+    principal components about the mean are the targets. With one more target, whose weight is
+    always 1, the others' weights are never negative: engines cut those off. At first it is left
+    out where the motion allows it, as where it starts at the base.
+    """
+    moments = as_reals(times, "times")
+    if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
+        raise EngineError(NO_TIMES.format(times=moments))
+    if (np.diff(moments) <= 0).any():
+        raise EngineError(TIMES_FALL)
+    as_number(tolerance, "The tolerance of targets", above=0)
+    film = _Snapshots(base, OF_BASIS * tolerance)
+    film.append(times[0], film.take(sample(times[0])))
+    yield times[0]
+    for start, end in pairwise(times):
+        yield from film.add_between(sample, start, end, OF_TIME * tolerance)
+    found = film.targets(0)
+    for rank in range(1, film.rank + 1):
+        if found.error <= (OF_RANK + OF_TIME) * tolerance:
+            break
+        more = film.targets(rank)
+        if most is not None and len(more.targets) > most:
+            break
+        found = more
+    return found
+
+
+class _Snapshots:
+    """A motion at some moments, each of them as its coordinates in a basis that grows with them."""
+
+    def __init__(self, base: Complexes, slack: float) -> None:
+        self._base = base
+        self._slack = slack  # the largest distance that the basis may leave out
+        self._rows = np.empty((0, 2 * len(base)))  # orthonormal
+        self._times: list[float] = []
+        self._moments: list[Floats] = []
+        self._middles: list[Floats | None] = []  # half way to the next moment; None of a jump
+
+    @property
+    def rank(self) -> int:
+        """How many shapes the basis has."""
+        return len(self._rows)
+
+    def take(self, points: Complexes) -> Floats:
+        """Return the coordinates (q,) of the points, in a basis that now has room for them."""
+        rest = (points - self._base).view(np.float64)
+        coordinates = self._rows @ rest
+        rest = rest - coordinates @ self._rows
+        # Once more, against rounding.
+        again = self._rows @ rest
+        rest -= again @ self._rows
+        coordinates += again
+        if float(np.abs(rest.view(np.complex128)).max(initial=0.0)) > self._slack:
+            length = float(np.linalg.norm(rest))
+            self._rows = np.vstack([self._rows, rest / length])
+            coordinates = np.append(coordinates, length)
+        return coordinates
+
+    def append(self, time: float, coordinates: Floats) -> None:
+        """Add a moment by its coordinates."""
+        self._times.append(time)
+        self._moments.append(coordinates)
+
+    def add_between(
+        self, sample: Callable[[float], Complexes], start: float, end: float, tolerance: float
+    ) -> Generator[float, None, None]:
+        """Add the moments after one up to the next, as close together as is needed."""
+        pending = [(start, end, self.take(sample(end)))]
+        yield end
+        while pending:
+            start, end, last = pending.pop()
+            middle = (start + end) / 2
+            between = self.take(sample(middle))
+            yield middle
+            bend = _table([between, -0.5 * self._moments[-1], -0.5 * last], self.rank).sum(axis=0)
+            is_straight = self.largest(bend[None]) <= tolerance
+            if is_straight or end - start <= SHORTEST:
+                # The middle of a jump is where it is for no time at all.
+                self._middles.append(between if is_straight else None)
+                self.append(end, last)
+            else:
+                pending += [(middle, end, last), (start, middle, between)]
+
+    def largest(self, coordinates: Floats) -> float:
+        """Return the largest distance from the origin of any point in moments (n, q)."""
+        worst = 0.0
+        rows = self._rows[: coordinates.shape[1]]
+        for start in range(0, len(coordinates), BLOCK):
+            points = (coordinates[start : start + BLOCK] @ rows).view(np.complex128)
+            worst = max(worst, float(np.abs(points).max(initial=0.0)))
+        return worst
+
+    def targets(self, rank: int) -> MorphTargets:
+        """Return the motion in so many shapes about its mean."""
+        moments = _table(self._moments, self.rank)
+        inner = [index for index, middle in enumerate(self._middles) if middle is not None]
+        middles = _table([m for m in self._middles if m is not None], self.rank)
+        seen = np.vstack([moments, middles])
+        mean = seen.mean(axis=0)
+        _, _, right = np.linalg.svd(seen - mean, full_matrices=False)
+        axes = right[:rank]
+        heights = (moments - mean) @ axes.T
+        low, high = heights.min(axis=0), heights.max(axis=0)
+        # Each axis points away from the base, so that little is left for the target of weight 1.
+        centre = axes @ mean
+        flip = np.where(np.abs(centre + high) < np.abs(centre + low), -1.0, 1.0)
+        axes, heights = axes * flip[:, None], heights * flip
+        low, high = np.minimum(low * flip, high * flip), np.maximum(low * flip, high * flip)
+        spans = np.maximum(high - low, np.finfo(np.float64).tiny)
+        weights, shapes = (heights - low) / spans, spans[:, None] * axes
+        offset = mean + low @ axes
+        if self.largest(offset[None]) > self._slack:
+            weights = np.hstack([np.ones((len(weights), 1)), weights])
+            shapes = np.vstack([offset, shapes])
+        straight = (weights[:-1] + weights[1:])[inner] / 2
+        apart = moments - weights @ shapes, middles - straight @ shapes
+        error = max(map(self.largest, apart))
+        return MorphTargets(
+            base=self._base,
+            targets=freeze((shapes @ self._rows).view(np.complex128)),
+            times=freeze(np.array(self._times)),
+            weights=freeze(weights),
+            error=error + self._slack,
+        )
+
+
+def _table(rows: Sequence[Floats], width: int) -> Floats:
+    """Return rows of coordinates, of which those that were found earlier are fewer."""
+    table = np.zeros((len(rows), width))
+    for row, values in zip(table, rows, strict=True):
+        row[: len(values)] = values
+    return table
