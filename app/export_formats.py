@@ -60,7 +60,8 @@ class FormatOptions:
             value = getattr(self, name)
             if value is not None and not option.minimum <= value <= option.maximum:
                 raise LissomError(
-                    f"{name.capitalize()} must be {option.minimum:,} to {option.maximum:,}, not {value}."
+                    f"{name.capitalize()} must be {option.minimum:,} to {option.maximum:,}, not "
+                    f"{value}."
                 )
 
     @classmethod

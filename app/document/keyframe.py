@@ -176,7 +176,8 @@ class Keyframe:
         require_frame(self.frame, "A key")
         require(
             abs(self.revolutions) <= MAX_REVOLUTIONS,
-            f"There may be {MAX_REVOLUTIONS} whole turns on the way to a key, not {self.revolutions}.",
+            f"There may be {MAX_REVOLUTIONS} whole turns on the way to a key, not "
+            f"{self.revolutions}.",
         )
         require_tangent_mode(self.tangent_mode)
         object.__setattr__(self, "tangent_mode", TangentMode(self.tangent_mode))

@@ -353,7 +353,8 @@ class Document:
         for cycle in layer.cycles if self.loop and len(layer.keys) > 1 else ():
             require(
                 any(cycle.contains(key.frame) for key in layer.keys),
-                f"There is no key of {layer.name!r} in {cycle.description} that could repeat in a loop; "
+                f"There is no key of {layer.name!r} in {cycle.description} that could repeat in "
+                "a loop; "
                 "insert one there first.",
             )
         for track in layer.tracks if self.loop else ():

@@ -164,13 +164,15 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
         )
         if cycle is not None and repeating_cycle(layer, row) is None:
             notices.append(
-                f"its {name} ends otherwise than it begins in {cycle.description}, and does not repeat"
+                f"its {name} ends otherwise than it begins in {cycle.description}, and does not "
+                "repeat"
             )
     for cycle in part.cycles:
         changes = any(cycle.first < joint.frame < cycle.last for joint in layer.attachments)
         if changes and not attachments_repeat(layer.attachments, cycle):
             notices.append(
-                f"what it hangs on changes in the repeats of {cycle.description}, too, or is another one "
+                f"what it hangs on changes in the repeats of {cycle.description}, too, or is "
+                "another one "
                 "at their end than at their beginning, and does not repeat"
             )
     return notices

@@ -251,7 +251,8 @@ def _posed(
         if again is not None and cycle is not None and cycle.until != cycle.last:
             if not is_alike or key.fronts:
                 raise LissomError(
-                    f"the key at frame {key.frame} is where {cycle.description} begin again, but it is "
+                    f"the key at frame {key.frame} is where {cycle.description} begin again, "
+                    "but it is "
                     f"not like the key at frame {again.frame}; leave it out, or let them end "
                     "elsewhere"
                 )

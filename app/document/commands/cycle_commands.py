@@ -167,7 +167,8 @@ def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
     for cycle in layer.cycles:
         if first < cycle.first < last:
             raise LissomError(
-                f"Frames {first} to {last} cannot repeat, as {cycle.description} in them repeat already; "
+                f"Frames {first} to {last} cannot repeat, as {cycle.description} in them repeat "
+                "already; "
                 "stop those first, or choose other keys."
             )
     after = [frame for frame in layer.key_frames if frame > last]
@@ -264,7 +265,8 @@ def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Tr
     if not is_whole and starts and (track.is_scene_space or any(acts)):
         raise LissomError(
             f"The track of {layer.handle(track.handles[0]).name!r} acts in a part of "
-            f"{cycle.description} only, so that its repeats are no keys of one track; let it act from "
+            f"{cycle.description} only, so that its repeats are no keys of one track; let it "
+            "act from "
             f"frame {cycle.first} to {cycle.last}, or begin and end where the pose has the handle."
         )
     # Where it fills the stretch, its last key is its first one again.

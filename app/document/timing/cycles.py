@@ -95,7 +95,8 @@ def require_no_overlap(cycles: Sequence[Cycle]) -> None:
     for before, after in pairwise(cycles):
         require(
             before.until is not None and before.until <= after.first,
-            f"The repeats of {before.description} and of {after.description} overlap; end the former at frame "
+            f"The repeats of {before.description} and of {after.description} overlap; end the "
+            "former at frame "
             f"{after.first} at the latest.",
         )
 
@@ -109,7 +110,8 @@ def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
     own, has_before, after = keys[begin:end], begin > 0, keys[end : end + 1]
     if after and (cycle.until is None or after[0] < cycle.until):
         raise LissomError(
-            f"The key at frame {after[0]} is where {cycle.description} repeat; pose it in {cycle.description}, "
+            f"The key at frame {after[0]} is where {cycle.description} repeat; pose it in "
+            f"{cycle.description}, "
             "let the repeats end there, or make them into keys first."
         )
     require(

@@ -43,7 +43,8 @@ class SeriesBuffer(VertexSource):
     ) -> None:
         if rows > max_series_rows(context):
             raise LissomError(
-                f"this machine's graphics take {max_series_rows(context)} rows of a series, not {rows}"
+                f"this machine's graphics take {max_series_rows(context)} rows of a series, not "
+                f"{rows}"
             )
         pairs = (rows + 1) // 2
         buffer = context.buffer(reserve=16 * pairs * count, dynamic=True)

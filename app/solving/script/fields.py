@@ -66,7 +66,8 @@ def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
     """Refuse the name of a handle that the script does not have."""
     if name not in handles:
         raise LissomError(
-            f"{where} names the handle {name!r}, but the handles are {join_names([*handles]) or 'none'}"
+            f"{where} names the handle {name!r}, but the handles are "
+            f"{join_names([*handles]) or 'none'}"
         )
 
 

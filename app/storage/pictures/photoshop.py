@@ -93,7 +93,8 @@ def read_photoshop(data: bytes) -> LayeredPicture:
         import psd_tools  # noqa: PLC0415 - it is an extra
     except ImportError as error:
         raise LissomError(
-            f"Photoshop files need psd-tools: {install_hint('psd')}; or save the drawing as OpenRaster "
+            f"Photoshop files need psd-tools: {install_hint('psd')}; or save the drawing as "
+            "OpenRaster "
             "(.ora)"
         ) from error
     # It says its own words about what it skips, where nobody listens on standard error.

@@ -221,4 +221,7 @@ def _hint_of_place(bands: TimelineLayout) -> str:
         return (
             f"Drag to move the playhead, wheel to scroll, {format_modified(CTRL, 'wheel')} to zoom"
         )
-    return f"Drag keys to move them, {format_modified(CTRL, 'drag')} to copy, click between keys for easing"
+    return (
+        f"Drag keys to move them, {format_modified(CTRL, 'drag')} to copy, click between "
+        "keys for easing"
+    )

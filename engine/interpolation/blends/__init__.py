@@ -2,7 +2,8 @@
 
 In: the passage from one keyframe to the next; for the metric variant an outline's transform.
 Out: f_z, conj(f_z̄) and their derivatives at any time; what is blended, and how far it distorts.
-Imports: `engine.dirichlet`, `engine.interpolation.keyframe_blend`, `engine.interpolation.enclosures`,
+Imports: `engine.dirichlet`, `engine.interpolation.keyframe_blend`,
+`engine.interpolation.enclosures`,
 `engine.interpolation.scaling`, `engine.interpolation.time_weights`, `engine.interpolation.added`.
 """
 

@@ -206,7 +206,8 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
             actions.append(do(layering.delete_parent_key, layer.id, keyed))
     if len(layer.attachments) > 1:
         told = (
-            f"{'nothing' if each.parent is None else document.layer(each.parent).name} from {each.frame}"
+            f"{'nothing' if each.parent is None else document.layer(each.parent).name} from "
+            f"{each.frame}"
             for each in layer.attachments
         )
         small_text(look, "It hangs on " + ", ".join(told) + ".")

@@ -247,5 +247,8 @@ def _where(project: Project, draft: MotionSetup) -> str:
     """Return in words where in time it will be."""
     period = draft.preset.frames(draft.parameters, project.document.fps) * draft.rounds
     if draft.applied_motion is not None:
-        return f"It takes the place of frames {draft.applied_motion.first} – {draft.applied_motion.last}."
+        return (
+            f"It takes the place of frames {draft.applied_motion.first} – "
+            f"{draft.applied_motion.last}."
+        )
     return f"It begins at frame {draft.first} and takes {period} frames."
