@@ -50,9 +50,9 @@ InbetweenPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
 class InbetweenCache:
     """The in-betweens of a layer on a mesh; of the main thread alone.
 
-    They are known by their content (`SegmentKey`), so that undo, a copied key or another method that
-    is tried again find what was made for them before. Of an interval there is nothing, one frame, all
-    of it prepared, or that as series. Workers are handed frozen input; what they find is taken in
+    They are known by their content (`SegmentKey`), so that undo, a copied key or another method
+    that is tried again find what was made for them before. Of an interval there is nothing, one
+    frame, all of it prepared, or that as series. Workers are handed frozen input; what they find is taken in
     whenever it comes, also where nothing asks for it any more.
 
     All is kept within the budget: first what no clip needs makes room, the longest unwanted first;

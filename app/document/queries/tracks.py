@@ -40,8 +40,8 @@ def track_at(track: Track, clip: Clip, frame: float) -> TrackSample | None:
 
     Between two keys place and turn have the passings of keys as whole poses have them
     (`app.document.queries.tangents.sample_segment`), each by itself. Through its first key and its
-    last one it comes from rest and to rest, as nothing is moved beyond them; where it fills a loop and
-    its ends agree it goes on from the one to the other.
+    last one it comes from rest and to rest, as nothing is moved beyond them; where it fills a loop
+    and its ends agree it goes on from the one to the other.
     """
     time = _time(track, clip, frame)
     if time is None or not track.enabled:
