@@ -52,8 +52,8 @@ class InbetweenCache:
 
     They are known by their content (`SegmentKey`), so that undo, a copied key or another method
     that is tried again find what was made for them before. Of an interval there is nothing, one
-    frame, all of it prepared, or that as series. Workers are handed frozen input; what they find is taken in
-    whenever it comes, also where nothing asks for it any more.
+    frame, all of it prepared, or that as series. Workers are handed frozen input; what they
+    find is taken in whenever it comes, also where nothing asks for it any more.
 
     All is kept within the budget: first what no clip needs makes room, the longest unwanted first;
     then that to which undo and redo lead, then series, those farthest from the playhead first. What

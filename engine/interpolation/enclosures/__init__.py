@@ -2,7 +2,7 @@
 
 In: keyframes and a boundary.
 Out: `EndpointValues` and `BoundaryBezier`, what is known of keyframes along pieces;
-`BernsteinPatch` and `BilinearPatch`, quantities on cells; enclosures of k, σ_a and σ_b of such ones.
+`BernsteinPatch` and `BilinearPatch`, quantities on cells; enclosures of their k, σ_a and σ_b.
 Imports: `engine.maps`.
 """
 
