@@ -77,24 +77,24 @@ class SpriteSheetOptions(FormatOptions):
     trimmed: bool = _option(
         True,  # noqa: FBT003 - the usual value
         label="Frames are",
-        words=((True, "Trimmed"), (False, "All alike")),
+        choices=((True, "Trimmed"), (False, "All alike")),
         flag="trim",
-        about="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
+        description="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
     )
     padding: int = _option(
         2,
         label="Padding",
         tip="Transparent pixels between frames and at the border",
         flag="padding",
-        about="pixels between frames of a sprite sheet",
-        most=256,
+        description="pixels between frames of a sprite sheet",
+        maximum=256,
     )
     power_of_two: bool = _option(
         False,  # noqa: FBT003 - the usual value
         label="Sheet sides",
-        words=((False, "Any"), (True, "Powers of two")),
+        choices=((False, "Any"), (True, "Powers of two")),
         flag="power-of-two",
-        about="let the sides of a sprite sheet be powers of two",
+        description="let the sides of a sprite sheet be powers of two",
     )
 
 
@@ -110,21 +110,21 @@ class MeshOptions(FormatOptions):
         label="Triangles",
         tip="Of each layer, about: more of them bend more smoothly, in a larger file",
         flag="triangles",
-        about="of a model, about (default: 4000)",
-        least=100,
-        most=2_000_000,  # as many as a domain may have
+        description="of a model, about (default: 4000)",
+        minimum=100,
+        maximum=2_000_000,  # as many as a domain may have
     )
     tolerance: float | None = _option(
         None,
         label="Within",
         tip="How far the shapes may be from the motion, in pixels. As usual, it takes at most 8 of "
         "them, which every viewer shows; a tolerance of your own takes as many as it needs",
-        words=((None, "½ px, 8 shapes"), (0.5, "Own")),
+        choices=((None, "½ px, 8 shapes"), (0.5, "Own")),
         flag="tolerance",
-        about="how far a model may be from the motion, in pixels, with as many shapes as that "
+        description="how far a model may be from the motion, in pixels, with as many shapes as that "
         "takes (default: 0.5, with 8 shapes at most)",
-        least=0.001,
-        most=100,
+        minimum=0.001,
+        maximum=100,
     )
 
 

@@ -38,7 +38,7 @@ draw, run, told = timeline.draw_ruler, Window.run, None
 
 def draw_ruler(track, frame):
     global told
-    places = track.x(0), track.x(1), (track.ruler_top + track.marks_top) / 2
+    places = track.x(0), track.x(1), (track.ruler_top + track.markers_top) / 2
     if places != told:
         print(*places, flush=True)
     told = places

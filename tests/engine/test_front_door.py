@@ -65,13 +65,13 @@ MISUSES = {
     "map of ragged lists": lambda bar: bar.at_rest([[1], [1, 2]]),
     "Handles.place": lambda bar: engine.Handles.place(bar.boundary.domain, [1]),
     "weights": lambda bar: engine.Handles.place(bar.boundary, [1 + 0.5j], ["a"]),
-    "rotations": lambda bar: bar.handles.wish([1], ["a"]),
+    "rotations": lambda bar: bar.handles.targets([1], ["a"]),
     "start": lambda bar: bar.start([1]),
     "settle": lambda bar: bar.settle(bar.start(), [1]),
     "settle others": lambda bar: bar.settle(
         bar.start(), engine.Handles.place(bar.boundary, [1 + 0.5j, 2 + 0.5j]).targets([1, 2])
     ),
-    "steps": lambda bar: bar.settle(bar.start(), bar.handles.wish([1]), at_most="3"),
+    "steps": lambda bar: bar.settle(bar.start(), bar.handles.targets([1]), at_most="3"),
     "certify": lambda bar: engine.certify([1], bar.boundary, bar.bounds),
     "prepare": lambda bar: engine.prepare(None, bar.boundary, [1]),
     "prove": lambda _: engine.prove([1]),

@@ -83,9 +83,9 @@ REFUSED = {
     "a rectangle without area": lambda: rectangle_domain(0, 0),
     "a bound as text": lambda: Bounds(k="x"),
     "weights as text": lambda: Handles.place(boundary(), np.array([0j]), ["x"]),
-    "rotations as text": lambda: handles().wish([0j, 1], ["a", "b"]),
-    "half a handle in a hand": lambda: handles().wish([0j, 1], None, [BoundedPull([0.5])]),
-    "half a handle in a link": lambda: handles().wish(
+    "rotations as text": lambda: handles().targets([0j, 1], ["a", "b"]),
+    "half a handle in a hand": lambda: handles().targets([0j, 1], None, [BoundedPull([0.5])]),
+    "half a handle in a link": lambda: handles().targets(
         [0j, 1], None, (), [DistanceConstraint(0.5, 1, 0, 2)]
     ),
     "keyframes as arrays": lambda: prepare([CAGE, CAGE], boundary(), [0j]),
@@ -119,8 +119,8 @@ REFUSED = {
     "a knee on the hips": lambda: body(**{"knee.L": STANDING["hips"]}),
     "a foot nowhere": lambda: body(**{"foot.L": complex(NAN, NAN)}),
     "a flat box": lambda: Body(kind=find_kind("anything"), joints={}, box=(0j, 100 + 0j)),
-    "a limb that is not there": lambda: body().limb("hand.L"),
-    "a length that is not there": lambda: body().length(["hips", "nose"]),
+    "a limb that is not there": lambda: body().limb_joints("hand.L"),
+    "a length that is not there": lambda: body().path_length(["hips", "nose"]),
     "a share that is no number": lambda: MOTIONS["walk"].poses_at(body(), Parameters(), [NAN]),
     "no frames a second": lambda: MOTIONS["walk"].frames(Parameters(), NAN),
     "no outline": lambda: guess_facing(find_kind("biped-side"), STANDING, np.empty(0, complex)),
@@ -153,6 +153,6 @@ def test_extension_takes_points_of_the_boundary():
 
 
 def test_handles_are_held_by_whole_numbers_of_any_type():
-    wish = handles().wish([0j, 1], None, [BoundedPull(np.array([0]))])
-    assert wish.hands is not None
+    wish = handles().targets([0j, 1], None, [BoundedPull(np.array([0]))])
+    assert wish.pulls is not None
     assert Deformer(boundary=boundary(), handles=handles(), bounds=Bounds()).start() is not None

@@ -45,8 +45,8 @@ def prepared(document, store=None):
     """Return a store that has all in-betweens of a document, and how many were prepared for it."""
     clip = clip_of(document, 0)
     store = store or InbetweenCache(mesh=DeformMesh.coarse(clip.layer.domain))
-    lacking = store.missing(clip, 0)
-    store.take(store.preparing(clip, lacking)())
+    lacking = store.missing_segments(clip, 0)
+    store.add(store.segments_job(clip, lacking)())
     assert store.has(clip)
     return store, len(lacking)
 

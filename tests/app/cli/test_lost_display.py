@@ -35,7 +35,7 @@ class Looks:
         history = History(disc_document(), saved=True)
         history.do(scene_commands.add_marker(0, "unsaved"))
         self.session.project = Project(
-            name="disc", history=history, path=None, puppets={}, active=0
+            name="disc", history=history, path=None, layer_runtimes={}, active=0
         )
         x11 = ctypes.CDLL("libX11.so.6")
         x11.XOpenDisplay.restype = ctypes.c_void_p

@@ -107,7 +107,7 @@ def test_what_hangs_after_a_signal_does_not_keep_the_process():
 
 def test_what_waits_is_woken_and_more_signals_change_nothing():
     before = "waiting = threading.Event(); wake = waiting.set"
-    work = "waiting.wait(); say(heard.has_come); sys.stdin.read()"
+    work = "waiting.wait(); say(heard.is_signalled); sys.stdin.read()"
     with listening(before=before, work=work) as process:
         process.send_signal(signal.SIGHUP)
         assert process.stdout.readline() == "True\n"

@@ -335,8 +335,8 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in told
     document = load_project(out)
     patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
-    assert [joint.frame for joint in patch.joints] == [0, 3, 6, 30]
-    assert patch.joints[1].to == body.id
+    assert [joint.frame for joint in patch.attachments] == [0, 3, 6, 30]
+    assert patch.attachments[1].parent == body.id
     joints = ParentTransforms(document)
     for frame in (3, 6):
         just, now = (joints.placement(patch.id, at) for at in (frame - 1e-6, frame))
@@ -344,9 +344,9 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
         assert abs(just.factor - now.factor) < 1e-5
     assert joints.placement(patch.id, 8) == joints.placement(patch.id, 6)
     # The nearest point of the body when it is handed over, not as it was drawn.
-    as_drawn = body.domain.nearest(np.array([patch.joints[0].at]))[0]
-    assert patch.joints[1].at.real > 105
-    assert abs(patch.joints[1].at - as_drawn) > 1
+    as_drawn = body.domain.nearest(np.array([patch.attachments[0].parent_point]))[0]
+    assert patch.attachments[1].parent_point.real > 105
+    assert abs(patch.attachments[1].parent_point - as_drawn) > 1
 
 
 def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):

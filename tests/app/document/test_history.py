@@ -178,7 +178,7 @@ def test_a_pose_that_no_key_holds_is_undone_and_redone_like_all_else():
     for unkeyed in (poses[0], poses[0], poses[2]):
         history.redo()
         assert history.preview_pose is unkeyed
-    history.pose(None, gesture=drag)
+    history.set_preview_pose(None, gesture=drag)
     assert history.preview_pose is None
 
 

@@ -152,7 +152,7 @@ def test_the_larger_of_what_is_painted_and_of_bones_counts():
     for amount, wanted in ((5.0, np.maximum(5.0, bone)), (0.2, np.where(bone > 1, bone, 0.2))):
         painted = replace(layer, stiffness=np.full(12, amount))
         assert_allclose(boundary_of(painted).stiffness, wanted)
-    soft = replace(layer.bones[0], amount=0.1)
+    soft = replace(layer.bones[0], stiffness=0.1)
     assert_allclose(boundary_of(replace(layer, bones=(soft,))).stiffness.min(), 0.1)
     points, stiffness = stiff_outline(layer)
     assert points[0] == layer.domain.outline[0]

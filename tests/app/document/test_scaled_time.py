@@ -69,7 +69,7 @@ def frames_of(document, channel):
     if channel == "tracks":
         return [key.frame for key in document.layers[0].tracks[0].keys]
     if channel == "choices":
-        return [turn.frame for turn in document.choices[0].turns]
+        return [turn.frame for turn in document.switch_groups[0].keys]
     rows = document if hasattr(document, channel) else document.layers[0]
     return [key.frame for key in getattr(rows, channel)]
 

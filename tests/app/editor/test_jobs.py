@@ -95,7 +95,7 @@ def test_newest_of_a_kind_wins(busy):
         jobs.put(job("frame", lambda number=number: number, results))
     assert labels(jobs.kinds) == ("gate", "frame")
     gate.set()
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == [("frame", 4)]
 
@@ -124,7 +124,7 @@ def test_dropped_job_never_delivers(busy):
     jobs.put(job("pose", lambda: 1, results))
     jobs.drop(JobKind("pose"))
     gate.set()
-    assert jobs.settle()
+    assert jobs.wait_until_idle()
     jobs.deliver()
     assert results == []
 

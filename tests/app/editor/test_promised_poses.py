@@ -50,7 +50,7 @@ def begun_pull(session):
     maintain(session)
     (pull,) = project.pulls
     while pull.kept is None or pull.kept is pull.before:
-        assert session.jobs.settle()
+        assert session.jobs.wait_until_idle()
         session.jobs.deliver()
         maintain(session)
     # The hand lets go, and the in-betweens of an earlier pose are there.
@@ -85,7 +85,7 @@ def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
         posing.insert_key(session)
         maintain(session)
     for _ in range(ROUNDS):
-        assert session.jobs.settle()
+        assert session.jobs.wait_until_idle()
         session.jobs.deliver()
         maintain(session)
     assert is_shown(session), unrest(session)

@@ -331,7 +331,7 @@ def test_what_a_model_does_not_composite_is_told(tmp_path):
         groups=(Group(name="limbs", opacity=0.5, blend="screen"),),
     )
     _, maker = exported(document, tmp_path / "two.glb")
-    assert maker.shapes[0].opacity == 0.25
+    assert maker.meshes[0].opacity == 0.25
     told = [notice for notice in maker.notices if "glTF" in notice]
     assert told == [
         f"{second.name}: not multiplied in a glTF model, but painted over the rest",
@@ -364,7 +364,7 @@ def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
     assert_array_equal(values(gltf, sampler.output), [[0, 0, 0], [1, 1, 1]])
     factors = [material.pbrMetallicRoughness.baseColorFactor for material in gltf.materials]
     assert factors == [[1, 1, 1, 0.5], [1, 1, 1, 1]]
-    assert maker.shapes[0].texture[..., 3].max() == 255
+    assert maker.meshes[0].texture[..., 3].max() == 255
     assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
     off = (VisibilityKey(0, visible=False),)
     unseen = tuple(replace(layer, visibility_keys=off) for layer in document.layers)
@@ -414,7 +414,7 @@ def test_a_tolerance_of_ones_own_takes_as_many_shapes_as_it_needs(tmp_path, monk
     (notice,) = maker.notices
     assert f"walk has {count} shapes, and viewers of glTF need show only 2" in notice
     _, maker = exported(moving_document(), out, settings(tolerance=50.0))
-    assert len(maker.shapes[0].motion.targets) <= 2
+    assert len(maker.meshes[0].motion.targets) <= 2
     assert maker.notices == ()
 
 
@@ -423,7 +423,7 @@ def test_where_eight_shapes_do_not_suffice_it_is_told(tmp_path, monkeypatch):
     _, maker = exported(moving_document(), tmp_path / "a.glb")
     (notice,) = maker.notices
     assert "1 shapes come within" in notice
-    assert f"{maker.shapes[0].motion.error:.2g} pixels" in notice
+    assert f"{maker.meshes[0].motion.error:.2g} pixels" in notice
 
 
 def test_rates_are_refused_where_there_are_no_pictures(tmp_path):

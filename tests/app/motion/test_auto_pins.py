@@ -143,7 +143,7 @@ def test_limits_are_kept_between_samples():
     document = posed()
     layer = document.layers[0]
     boundary = animated(document).sampler.sites.boundary
-    ends = boundary.points[boundary.following]
+    ends = boundary.points[boundary.next_samples]
     dense = np.concatenate([boundary.points * (1 - s) + ends * s for s in np.linspace(0, 0.9, 10)])
     animation = animate(document, dense)
     for frame in (2, 5, 8, 14, 18, 22, 27):
@@ -158,7 +158,7 @@ def test_a_handle_that_is_free_or_follows_is_not_still():
     document = posed()
     layer = document.layers[0]
     left, middle = layer.handles[:2]
-    free = replace(left, free=True)
+    free = replace(left, is_unpinned=True)
     changed = with_layer(
         document,
         handles=(free, *layer.handles[1:]),
@@ -167,7 +167,7 @@ def test_a_handle_that_is_free_or_follows_is_not_still():
     assert_array_equal(pinned_handles(clip_of(changed, 0))[0], [False, False, True, False])
     alone = with_layer(
         document,
-        handles=(left, *(replace(each, free=True) for each in layer.handles[1:])),
+        handles=(left, *(replace(each, is_unpinned=True) for each in layer.handles[1:])),
     )
     assert drift(alone) < 1e-3
 
@@ -206,7 +206,7 @@ def test_attached_layer_is_corrected_about_its_joint_alone():
         id=1,
         name="child",
         anchor=30 + 40j,
-        joints=(Attachment(parent=0, parent_point=90 + 45j),),
+        attachments=(Attachment(parent=0, parent_point=90 + 45j),),
     )
     scene = replace(document, layers=(layer, child))
     unpinned = replace(document, layers=(layer, replace(child, has_auto_pins=False)))

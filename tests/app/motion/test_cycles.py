@@ -221,8 +221,8 @@ def test_handles_that_stay_and_tracks_repeat_with_it():
     document = altered(document, tracks=(wag,))
     animation = moving(document)
     assert animation.corrections is not None
-    found = [animation.corrections.at(frame) for frame in (22, 41)]
-    again = [animation.corrections.at(frame) for frame in (46, 89)]
+    found = [animation.corrections.correction_at(frame) for frame in (22, 41)]
+    again = [animation.corrections.correction_at(frame) for frame in (46, 89)]
     assert all(one is other and one is not None for one, other in zip(found, again, strict=True))
     assert unlike(animation, WALK, [22, 26, 29, 41]) < 1e-9
 
@@ -277,5 +277,5 @@ def test_what_moves_fades_and_is_ordered_repeats_with_it():
         assert shown(keyed, frame)[2] == shown(document, frame)[2]
     # Who goes on beyond the stretch, or comes elsewhere, has a time of their own.
     for last in (TransformKey(frame=60, shift=9), TransformKey(frame=44, shift=9)):
-        walk = replace(document.layer(0), movement=(TransformKey(frame=20), last))
+        walk = replace(document.layer(0), transform_keys=(TransformKey(frame=20), last))
         assert shown(document.with_layer(walk), 92)[0] == 9

@@ -92,8 +92,8 @@ def test_detached_layer_stays_or_goes_back_as_asked(hands):
 
 
 def test_before_its_first_joint_a_layer_is_where_it_is_by_itself(hands):
-    late = replace(hands.layer(2).joints[0], frame=10, keeps=True)
-    document = hands.with_layer(replace(hands.layer(2), joints=(late,)))
+    late = replace(hands.layer(2).attachments[0], frame=10, keep_world_transform=True)
+    document = hands.with_layer(replace(hands.layer(2), attachments=(late,)))
     joints = ParentTransforms(document)
     assert joints.placement(2, 9.9) == IDENTITY_MOTION
     assert abs(joints.placement(2, 10).shift) < TOL
@@ -173,13 +173,13 @@ def test_joints_are_taken_back_moved_and_stretched_in_time(hands):
     moved = layers.move_attachment_key(2, 20, 26)(document)
     assert [joint.frame for joint in moved.layer(2).attachments] == [0, 26]
     back = layers.delete_attachment_key(2, 26)(moved)
-    assert back.layer(2).attachments == hands.layer(2).joints
+    assert back.layer(2).attachments == hands.layer(2).attachments
     with pytest.raises(LissomError, match="not attached anew at frame 21"):
         layers.move_attachment_key(2, 21, 5)(document)
     longer = scene_commands.scale_time(2.0)(document)
     assert [joint.frame for joint in longer.layer(2).attachments] == [0, 40]
     gone = layers.remove_layer(1)(document)
-    assert gone.layer(2).attachments == hands.layer(2).joints
+    assert gone.layer(2).attachments == hands.layer(2).attachments
 
 
 def test_joints_come_round_in_a_loop(hands):
@@ -222,7 +222,7 @@ def test_reparented_layer_is_reparented_in_every_repeat(juggled):
         placed = [seen(juggled, 2, frame + repeat * 48, joints) for repeat in range(3)]
         for other in placed[1:]:
             assert_allclose(other, placed[0], rtol=0, atol=1e-5)
-        carriers = [juggled.carriers(2, frame + repeat * 48)[1].id for repeat in range(3)]
+        carriers = [juggled.parent_chain(2, frame + repeat * 48)[1].id for repeat in range(3)]
         assert carriers == [1 if 14 <= frame < 32 else 0] * 3
     for frame in (14, 32, 48, 62, 80, 96, 144):
         before, after = around(joints, 2, frame)
@@ -250,9 +250,9 @@ def test_a_joint_at_the_end_of_a_cycle_is_the_one_at_its_beginning(juggled):
 
 
 def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
-    caught = replace(juggled.layer(2), joints=juggled.layer(2).joints[1:])
+    caught = replace(juggled.layer(2), attachments=juggled.layer(2).attachments[1:])
     document = juggled.with_layer(caught)
-    assert [len(document.carriers(2, frame)) for frame in (5, 20, 50, 68)] == [1, 2, 1, 2]
+    assert [len(document.parent_chain(2, frame)) for frame in (5, 20, 50, 68)] == [1, 2, 1, 2]
     free = ParentTransforms(document)
     for frame in (5, 50, 97):
         assert free.placement(2, frame) == IDENTITY_MOTION
@@ -264,12 +264,12 @@ def test_what_is_free_at_first_is_free_in_every_repeat(juggled):
 def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
     document = juggled
     for keeps in (False, True):
-        first = replace(document.layer(2).joints[0], frame=5, keeps=keeps)
-        later = [joint for joint in document.layer(2).joints if joint.frame > 5]
+        first = replace(document.layer(2).attachments[0], frame=5, keep_world_transform=keeps)
+        later = [joint for joint in document.layer(2).attachments if joint.frame > 5]
         document = document.with_layer(
             replace(
                 document.layer(2),
-                joints=(first, *later),
+                attachments=(first, *later),
                 cycles=(Cycle(first=5, last=53),),
                 keys=document.layer(2).keys[:1],
             )
@@ -290,11 +290,11 @@ def test_repeats_of_joints_made_into_keys_move_as_before(juggled):
 def test_repeats_end_at_their_frame_and_what_comes_later_follows(juggled):
     layer = juggled.layer(2)
     later = Attachment(parent=None, frame=150, keep_world_transform=True)
-    joints = (*layer.joints, later)
+    joints = (*layer.attachments, later)
     document = juggled.with_layer(
-        replace(layer, joints=joints, cycles=(Cycle(first=0, last=48, until=96),))
+        replace(layer, attachments=joints, cycles=(Cycle(first=0, last=48, until=96),))
     )
-    carriers = [[each.id for each in document.carriers(2, f)[1:]] for f in (62, 96, 130, 150)]
+    carriers = [[each.id for each in document.parent_chain(2, f)[1:]] for f in (62, 96, 130, 150)]
     assert carriers == [[1], [0], [0], []]
 
 

@@ -64,8 +64,10 @@ def prepared(found):
 
 def prepare(store, clip, *wanted):
     """Let a store have some of a clip's in-betweens, or all; return how many were prepared."""
-    lacking = [number for number in store.missing(clip, 0) if number in (wanted or range(99))]
-    store.take(store.preparing(clip, lacking)())
+    lacking = [
+        number for number in store.missing_segments(clip, 0) if number in (wanted or range(99))
+    ]
+    store.add(store.segments_job(clip, lacking)())
     return len(lacking)
 
 
@@ -93,9 +95,9 @@ def stream(store, clip, frame, *, heat=False):
     """Build all that is wanted, and return the order of the intervals."""
     numbers = {segment_key(clip, interval): interval for interval in range(3)}
     order = []
-    store.pin([clip], [], frame)
+    store.set_needed_clips([clip], [], frame)
     while build := store.next_build(clip, frame, heat=heat):
-        order.append((numbers[build.pair], build.distortions))
+        order.append((numbers[build.segment_key], build.distortions))
         store.add_build(finished(build))
         assert store.nbytes <= store.budget
         assert len(order) < 20
@@ -103,7 +105,7 @@ def stream(store, clip, frame, *, heat=False):
 
 
 def streamed(store, clip):
-    return [store.interval(clip, i).series is not None for i in range(3)]
+    return [store.segment(clip, i).series is not None for i in range(3)]
 
 
 # By their content.
@@ -113,13 +115,13 @@ def test_what_was_made_once_is_found_wherever_it_comes_again(clip, prepared):
     halves = [variant_of(clip, variant) for variant in ("eta", "nu")]
     assert prepare(prepared, halves[0]) == 3
     # The same variant again, as another layer of another document.
-    assert prepared.missing(halves[1], 0) == []
+    assert prepared.missing_segments(halves[1], 0) == []
     assert prepared.has(clip)
     assert prepared.prepared(halves[1]) == prepared.prepared(clip)
     # One key's pose is another, and then the old one again.
     changed = posed(clip, 30)
     assert prepare(prepared, changed) == 2
-    assert prepared.missing(clip, 0) == []
+    assert prepared.missing_segments(clip, 0) == []
 
 
 def test_a_copied_key_costs_nothing(document):
@@ -177,7 +179,7 @@ def test_a_result_that_nobody_waits_for_any_more_is_used_when_its_keys_come_agai
     assert store.missing_segments(clip, 0) == [1, 2]
     # So are series.
     build = finished(prepared.next_build(clip, 0, heat=False))
-    prepared.pin([variant_of(clip, "eta")], [clip], 0)
+    prepared.set_needed_clips([variant_of(clip, "eta")], [clip], 0)
     prepared.add_build(build)
     assert streamed(prepared, clip) == [True, False, False]
 
@@ -191,18 +193,18 @@ def test_a_series_in_the_making_is_not_gone_on_with_for_other_keys(clip, prepare
     other = variant_of(clip, "eta")
     assert prepared.next_build(other, 0, heat=False) is None
     prepare(prepared, other)
-    assert prepared.next_build(other, 0, heat=False).pair == segment_key(other, 0)
+    assert prepared.next_build(other, 0, heat=False).segment_key == segment_key(other, 0)
 
 
 def test_a_failure_is_known_of_the_same_keys_as_long_as_they_are_there(clip, prepared):
-    prepared.pin([clip], [], 0)
-    prepared.fail("in-betweens", clip)
+    prepared.set_needed_clips([clip], [], 0)
+    prepared.mark_failed("in-betweens", clip)
     assert prepared.has_failed(replace(clip, layer=replace(clip.layer)))
     assert not prepared.has_failed(clip, "series")
     other = variant_of(clip, "eta")
     assert not prepared.has_failed(other)
-    prepared.pin([other], [clip], 0)
-    prepared.pin([clip], [other], 0)
+    prepared.set_needed_clips([other], [clip], 0)
+    prepared.set_needed_clips([clip], [other], 0)
     assert not prepared.has_failed(clip)
 
 
@@ -253,22 +255,22 @@ def test_only_exact_in_betweens_are_shown_as_current(variant):
 def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepared):
     others = [variant_of(clip, variant) for variant in ("eta", "linear")]
     for other in others:
-        prepared.pin([other], [], 0)
+        prepared.set_needed_clips([other], [], 0)
         prepare(prepared, other)
     size = prepared.nbytes
-    prepared.pin([clip], [], 0)
+    prepared.set_needed_clips([clip], [], 0)
     assert all(map(prepared.has, (clip, *others)))
     # Room for the present one, and not quite for both of the others.
-    own = sum(sum(prepared.interval(clip, i).sizes) for i in range(3))
+    own = sum(sum(prepared.segment(clip, i).sizes) for i in range(3))
     spare = size - own
     prepared.budget = SPARE * (spare - 1)
-    prepared.pin([clip], [others[0]], 0)
-    prepared.pin([clip], [], 0)
+    prepared.set_needed_clips([clip], [others[0]], 0)
+    prepared.set_needed_clips([clip], [], 0)
     assert prepared.has(clip)
     assert not prepared.has(others[1]), "wanted before the other one"
     assert prepared.has(others[0])
     prepared.budget = own
-    prepared.pin([clip], [others[0]], 0)
+    prepared.set_needed_clips([clip], [others[0]], 0)
     assert prepared.has(clip)
     assert not prepared.has(others[0]), "to which undo leads, if there is room"
     assert prepared.nbytes <= own
@@ -276,12 +278,12 @@ def test_what_nothing_present_needs_makes_room_and_the_oldest_first(clip, prepar
 
 def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, monkeypatch):
     monkeypatch.setattr("app.motion.inbetween_cache.EXPECTED", 1)
-    prepared.pin([clip], [], 0)
+    prepared.set_needed_clips([clip], [], 0)
     base = prepared.nbytes
     stream(prepared, clip, 0)
-    sizes = [prepared.interval(clip, i).series.nbytes for i in range(3)]
+    sizes = [prepared.segment(clip, i).series.nbytes for i in range(3)]
     prepared.budget = base + sizes[1] + max(sizes[0], sizes[2])
-    prepared.take(CacheUpdate(sampler=None, segments={}))
+    prepared.add(CacheUpdate(sampler=None, segments={}))
     assert streamed(prepared, clip) == [True, True, False]
     assert stream(prepared, clip, 0) == []
     assert prepared.nbytes <= prepared.budget
@@ -293,16 +295,16 @@ def test_memory_is_bounded_and_the_farthest_series_makes_room(clip, prepared, mo
 
 
 def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
-    prepared.pin([clip], [], 0)
+    prepared.set_needed_clips([clip], [], 0)
     extension = prepared.sampler.extension.nbytes
     assert prepared.releasable_bytes(clip) > extension > 0
     stream(prepared, clip, 0)
-    assert all(prepared.interval(clip, number).is_streamed for number in range(3))
+    assert all(prepared.segment(clip, number).is_streamed for number in range(3))
     frames = (0.5, 4, 9.9, 13, 21.7, 30)
     before = [prepared.positions(clip, frame) for frame in frames]
     size = prepared.nbytes
     assert prepared.releasable_bytes(clip) > extension
-    prepared.rest()
+    prepared.release_intermediates()
     assert prepared.releasable_bytes(clip) == 0
     assert prepared.nbytes < size / 2
     for frame, places in zip(frames, before, strict=True):
@@ -310,26 +312,26 @@ def test_at_rest_series_alone_show_all_of_what_nobody_edits(clip, prepared):
         assert prepared.is_exact(clip, frame)
     assert prepared.has(clip)
     assert prepared.velocity_shares(clip).keys() == {10, 20}
-    assert prepared.missing(clip, 0, is_edited=False) == []
+    assert prepared.missing_segments(clip, 0, is_edited=False) == []
     assert prepared.next_build(clip, 0, heat=True) is None
     # What is edited is measured, and made of its in-betweens: they are made again.
     assert prepared.prepared(clip) is None
-    assert prepared.missing(clip, 0) == [0, 1, 2]
+    assert prepared.missing_segments(clip, 0) == [0, 1, 2]
     prepare(prepared, clip)
     assert len(prepared.prepared(clip)) == 3
-    assert all(prepared.interval(clip, number).is_streamed for number in range(3))
+    assert all(prepared.segment(clip, number).is_streamed for number in range(3))
 
 
 def test_what_no_series_has_all_of_stays_prepared_at_rest(clip, prepared):
-    prepared.pin([clip], [], 0)
+    prepared.set_needed_clips([clip], [], 0)
     stream(prepared, clip, 0)
     pair = segment_key(clip, 1)
-    known = prepared.interval(clip, 1)
+    known = prepared.segment(clip, 1)
     holed = replace(known.series, pieces=known.series.pieces[1:])
-    prepared.take(CacheUpdate(None, {pair: CachedSegment(known.poses, series=holed)}))
-    prepared.rest()
-    assert prepared.interval(clip, 1).inbetweens is not None
-    assert prepared.interval(clip, 0).inbetweens is None
+    prepared.add(CacheUpdate(None, {pair: CachedSegment(known.poses, series=holed)}))
+    prepared.release_intermediates()
+    assert prepared.segment(clip, 1).inbetweens is not None
+    assert prepared.segment(clip, 0).inbetweens is None
     assert prepared.has(clip)
     assert np.isfinite(prepared.positions(clip, 11)).all()
 
@@ -370,7 +372,7 @@ def test_full_detail_is_prepared_as_far_as_there_is_room(clip, found):
 
 def test_what_a_series_leaves_out_is_shown_by_the_direct_path(clip, prepared):
     stream(prepared, clip, FRAME, heat=True)
-    known = prepared.interval(clip, 1)
+    known = prepared.segment(clip, 1)
     partly = InbetweenCache(mesh=prepared.mesh)
 
     def take(**series):
@@ -501,7 +503,7 @@ def test_the_worker_takes_few_steps_at_once(clip, prepared, monkeypatch):
         build.advance()
         batches += 1
     assert batches > 3
-    known: CachedSegment = prepared.interval(clip, 0)
+    known: CachedSegment = prepared.segment(clip, 0)
     whole = streaming.finish(
         streaming.build_series(streaming.Positions.of(known.inbetweens, known.sites))
     )

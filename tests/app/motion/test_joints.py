@@ -32,13 +32,13 @@ def check_closed(document, frames, earlier=None):
         if joint is None:
             continue
         for frame in frames:
-            own, carrier = joints.placement(layer.id, frame), joints.placement(joint.to, frame)
+            own, carrier = joints.placement(layer.id, frame), joints.placement(joint.parent, frame)
             anchor, _ = exactly(document, layer.id, layer.anchor, frame)
-            at, fz = exactly(document, joint.to, joint.at, frame)
+            at, fz = exactly(document, joint.parent, joint.parent_point, frame)
             there = carrier.apply(np.array([at]))[0]
             assert abs(own.apply(np.array([anchor]))[0] - there) < 1e-9 * SIZE
-            if joint.turns:
-                turned = carrier.factor * fz / abs(fz) * np.exp(-1j * joint.rest)
+            if joint.inherits_rotation:
+                turned = carrier.factor * fz / abs(fz) * np.exp(-1j * joint.rest_rotation)
                 assert abs(own.factor - turned) < 1e-9
     return joints
 
@@ -63,14 +63,14 @@ def test_what_hangs_on_nothing_is_where_it_is():
 def test_what_does_not_turn_only_moves():
     document = chain()
     layer = document.layer(1)
-    still = replace(layer.joints[0], turns=False)
+    still = replace(layer.attachments[0], inherits_rotation=False)
     document = layers.attach_layer(1, layer.anchor, still)(document)
     assert ParentTransforms(document).placement(1, 30.0).factor == 1
 
 
 def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     document = chain()
-    layer, joint = document.layer(0), document.layer(1).joints[0]
+    layer, joint = document.layer(0), document.layer(1).attachments[0]
     pose = bent(layer, 1.0, 2e-4, 5)
     posed = document.with_layer(
         replace(layer, keys=(replace(layer.keys[0], pose=pose), *layer.keys[1:]))
@@ -80,7 +80,7 @@ def test_a_pose_that_is_shown_takes_the_place_of_the_key_s():
     assert_allclose([*shown], [*keyed], rtol=0, atol=1e-9)
     f = layer.map_of(pose)
     own, _ = exactly(document, 1, document.layer(1).anchor, 0)
-    assert_allclose(shown.apply(own), f(np.array([joint.at]))[0], rtol=0, atol=1e-9)
+    assert_allclose(shown.apply(own), f(np.array([joint.parent_point]))[0], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize(("frame", "turns"), [(0, False), (11.5, True)])
@@ -188,7 +188,7 @@ def test_attached_layer_is_as_distorted_as_by_itself(variant):
     points = np.array([inside(rng) for _ in range(40)])
     points = points[np.abs(points - CENTRE) < 0.8 * 90]
     for layer in hung.layers[1:]:
-        free = hung.with_layer(replace(layer, joints=(), anchor=None))
+        free = hung.with_layer(replace(layer, attachments=(), anchor=None))
         both = [Animation(clip_of(each, layer.id), points=points) for each in (hung, free)]
         for frame in rng.uniform(0, 48, 5 if variant == "nu" else 2):
             one, other = (animation.frame(frame) for animation in both)
@@ -206,8 +206,8 @@ def test_streamed_joint_stays_closed_on_the_screen():
     for index, layer in enumerate(document.layers):
         finer = replace(layer, domain=replace(domain, mesh=mesh))
         if index:
-            joint = replace(layer.joints[0], at=complex(middle[1]))
-            finer = replace(finer, anchor=complex(middle[0]), joints=(joint,))
+            joint = replace(layer.attachments[0], parent_point=complex(middle[1]))
+            finer = replace(finer, anchor=complex(middle[0]), attachments=(joint,))
         document = document.with_layer(finer)
     joints = ParentTransforms(document)
     stores = []

@@ -114,14 +114,14 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
     keys = (replace(layer.keys[0], pose=pose),)
     spring = Spring(handle=0, frequency=2.0, damping=0.1)
     moves = tuple(TransformKey(frame=at) for at in (0, kicked, LAST))
-    carrier = replace(layer, id=1, name="carrier", movement=moves)
+    carrier = replace(layer, id=1, name="carrier", transform_keys=moves)
     child = replace(
         layer,
         handles=(handle,),
         next_handle=1,
         keys=keys,
         anchor=anchor,
-        joints=(Attachment(parent=1, parent_point=anchor),),
+        attachments=(Attachment(parent=1, parent_point=anchor),),
         springs=(spring,),
     )
     (found, *_) = reach(

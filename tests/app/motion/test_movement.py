@@ -19,7 +19,7 @@ MOVES = (
 
 
 def moving(document, identity, keys=MOVES):
-    return document.with_layer(replace(document.layer(identity), movement=keys))
+    return document.with_layer(replace(document.layer(identity), transform_keys=keys))
 
 
 def test_attached_layers_go_along_when_their_parent_moves():
@@ -69,9 +69,14 @@ def test_what_takes_hold_of_a_moving_layer_does_not_let_it_jump():
     document = moving(chain(), 1)
     layer = document.layer(1)
     later = (
-        Attachment(parent=0, parent_point=layer.joints[0].at, frame=12, keep_world_transform=True),
+        Attachment(
+            parent=0,
+            parent_point=layer.attachments[0].parent_point,
+            frame=12,
+            keep_world_transform=True,
+        ),
     )
-    document = document.with_layer(replace(layer, joints=later))
+    document = document.with_layer(replace(layer, attachments=later))
     joints = ParentTransforms(document)
     assert_allclose(
         joints.placement(1, 12), joints.placement(1, 12, before=True), rtol=0, atol=1e-9

@@ -113,7 +113,7 @@ def planted_child():
         id=1,
         name="child",
         anchor=60 + 45j,
-        joints=(Attachment(parent=0, parent_point=60 + 45j),),
+        attachments=(Attachment(parent=0, parent_point=60 + 45j),),
         bounds=RUBBERY.bounds,
         tracks=(track("top", ((0, place), (8, place)), planted=True),),
     )
@@ -141,7 +141,7 @@ def test_a_group_moves_together_and_a_handle_turns_where_that_is_asked():
     moved = animation.positions(15.0) - animation.base.frame(15.0).positions
     assert abs(moved[IDS["top"]] - moved[IDS["right"]]) < 0.05
     keys = tuple(replace(key, place=0j, turn=0.3) for key in track().keys)
-    turning = replace(track(keys=WAVE), keys=keys, turns=True)
+    turning = replace(track(keys=WAVE), keys=keys, keys_rotation=True)
     animation = animate(tracked(turning))
     turned = animation.frame(12.0).fz[2] / animation.base.frame(12.0).fz[2]
     assert np.angle(turned) == pytest.approx(0.3, abs=0.02)
@@ -419,7 +419,7 @@ def test_attached_spring_swings_with_its_parent():
         name="child",
         keys=document.layers[0].keys[:1],
         anchor=30 + 40j,
-        joints=(Attachment(parent=0, parent_point=90 + 45j),),
+        attachments=(Attachment(parent=0, parent_point=90 + 45j),),
         springs=(spring,),
     )
     scene = replace(document, layers=(document.layers[0], child))
@@ -474,8 +474,8 @@ def test_the_frames_of_a_window_are_those_of_an_export():
     finally:
         gc.enable()
     assert not frames.is_begun
-    exact = animation.corrections.at(12.0)
-    assert_array_equal(frames.at(clip, 12).known.h, exact.known.h)
+    exact = animation.corrections.correction_at(12.0)
+    assert_array_equal(frames.at(clip, 12).series.h, exact.series.h)
     # Until the frames of a changed clip are there, those of before stand in.
     changed = with_layer(document, tracks=(track(keys=((5, 0), (12, 4j), (20, 0))),))
     later = CorrectedFrames(clip_of(changed, 0), frames)
@@ -553,5 +553,5 @@ def test_what_one_outline_knows_is_changed_by_one_thread_at_a_time(monkeypatch):
 
     outline.corrections = Guarded()
     for frame in (8.0, 9.0):
-        assert animation.corrections.at(frame).steps > 0
+        assert animation.corrections.correction_at(frame).steps > 0
     assert len(outline.corrections) == 1

@@ -77,7 +77,7 @@ def test_a_bone_keeps_its_limb_straight_and_within_its_own_limits():
     after = pulled(boned, boned.keys[0].pose, UP)
     assert bent_in(boned, after, 110, 160) < 0.6 * bent_in(usual, before, 110, 160)
     assert bent_in(boned, after, 110, 160) <= boned.bounds.k / np.sqrt(40)
-    assert max(boned.lags(after).values()) < 1
+    assert max(boned.target_errors(after).values()) < 1
 
 
 def test_what_is_stiff_is_known_to_rigs_and_taken_from_earlier_ones():
@@ -213,7 +213,7 @@ def test_a_hand_that_is_pulled_too_far_draws_the_elbow_straight_and_stops():
         drag = drag.step_towards(targets, 10, hands)
     assert drag.is_over
     shoulder, elbow, hand = drag.rig.deformer.positions(drag.state).tolist()
-    longest = float(layer.bounds.stiffened(np.array(30.0)).sigma_a) * 210
+    longest = float(layer.bounds.scaled_by(np.array(30.0)).sigma_a) * 210
     for length in (abs(elbow - shoulder), abs(hand - elbow)):
         assert 210 < length < 1.005 * longest
     assert abs(shoulder - 30 - 40j) < 1

@@ -139,8 +139,8 @@ def test_leftovers_come_newest_first(tmp_path, autosave):
 def test_nothing_stays_of_what_is_forgotten(tmp_path, autosave):
     for _ in range(2):
         autosave.write(disc_document(), UNKNOWN_SOURCE)
-        autosave.forget()
-        autosave.forget()
+        autosave.remove()
+        autosave.remove()
         assert list(tmp_path.iterdir()) == []
 
 

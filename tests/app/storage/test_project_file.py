@@ -619,8 +619,8 @@ def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, mess
     ("way", "value", "message"),
     [
         ([], [], says(NOT_OBJECT, where="told")),
-        (["losses"], "glow", says(NOT_LIST, where="told.losses")),
-        (["matters", 0], 7, says(NOT_TEXT, where="told.matters[0]")),
+        (["losses"], "glow", says(NOT_LIST, where="told.warnings")),
+        (["matters", 0], 7, says(NOT_TEXT, where="told.notes[0]")),
     ],
 )
 def test_what_was_told_of_an_import_must_be_lines(tmp_path, way, value, message):
@@ -802,7 +802,7 @@ def test_too_many_members_and_members_of_one_name_are_refused(tmp_path, members)
     with pytest.raises(LissomError, match="members, more than the 65,535 of any"):
         load_project(path)
     path = pack(tmp_path / "b", members)
-    with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
+    with zipfile.ZipFile(path, "a") as archive, pytest.is_warning(UserWarning, match="Duplicate"):
         archive.writestr("project.json", b"{}")
     with pytest.raises(LissomError, match="two members of one name"):
         load_project(path)

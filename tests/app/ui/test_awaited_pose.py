@@ -175,7 +175,7 @@ def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):
     window.until(lambda: not bent.pulls)
     playback.stop_playback(window.session)
     target = bent.layer.key(FRAME).pose.targets[1]
-    assert bent.layer.lags(bent.layer.key(FRAME).pose)[1] < 1.0
+    assert bent.layer.target_errors(bent.layer.key(FRAME).pose)[1] < 1.0
     while bent.document is not before:
         editing.undo(window.session)
     playback.scrub(window.session, FRAME)

@@ -187,7 +187,7 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
 def test_menus_messages_and_dialogs(window, tmp_path, check):
     session = window.session
     for tone in ("info", "good", "error"):
-        session.tell(f"A message that is {tone}.", tone=tone, details="Its details")
+        session.show_notice(f"A message that is {tone}.", tone=tone, details="Its details")
     session.hint = "A hint"
     editing.select_handles(session, frozenset({0, 1}))
     check("messages")

@@ -73,7 +73,7 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
         hand.press(COPY)
 
     told = play(copy)
-    assert loose.chosen == {24}
+    assert loose.selected_frames == {24}
     assert told == [f"Pose at frame {frame} copied."]
     (copied,) = window.session.copied
     (key,) = copied.keys
@@ -108,7 +108,7 @@ def test_in_the_timeline_the_chosen_keys_are_copied(window, loose, play):
         hand.press(COPY)
 
     assert play(copy) == [KEYS_COPIED.format(count=2)]
-    assert loose.chosen == {0, 24}
+    assert loose.selected_frames == {0, 24}
     (copied,) = window.session.copied
     assert copied.keys == loose.layer.keys
 
@@ -264,18 +264,18 @@ def test_escape_deselects_after_it_has_ended_what_is_under_way(window, loose, pl
         hand.robot.mouse_down(0)
         hand.robot.mouse_move_to_pos(place + ImVec2(30, 30))
         hand.press(ESCAPE)
-        assert loose.selected == {0, 1}
+        assert loose.selected_handles == {0, 1}
         hand.robot.mouse_up(0)
 
     play(drag)
     assert loose.document is before
-    assert loose.selected == {0, 1}
+    assert loose.selected_handles == {0, 1}
     # A menu that is open is closed first.
     play(lambda hand: (hand.click_key(24, 1), hand.press(ESCAPE)))
-    assert loose.chosen == {24}
+    assert loose.selected_frames == {24}
     play(lambda hand: hand.press(ESCAPE))
     assert not loose.selected_keys
     editing.select_handles(window.session, frozenset({0, 1}))
     play(lambda hand: (hand.to_drawing(), hand.press(ESCAPE)))
-    assert not loose.selected
+    assert not loose.selected_handles
     assert loose.document is before

@@ -443,7 +443,7 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
     reached = boots.layer_runtime.shown.handle_positions
     assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)
     assert boots.layer.keys[0].pose.certificate.is_certified
-    sides = boots.layer_runtime.shown.mesh.posed(boots.layer_runtime.shown.pose)[
+    sides = boots.layer_runtime.shown.mesh.pose_vertices(boots.layer_runtime.shown.pose)[
         : len(layer.domain.outline)
     ]
     beside = np.abs(layer.domain.outline - (60 + 20j)) < 8
@@ -508,7 +508,7 @@ def test_a_line_of_the_knife_is_shown_while_it_is_drawn_and_can_be_cancelled(win
         robot.mouse_down()
         for place in FROM_BELOW[1:]:
             robot.mouse_move_to_pos(window.point(place))
-        shown.append(window.session.pointer.marks)
+        shown.append(window.session.active_tool.tool_overlays)
         robot.key_press(window.Key.escape)
         robot.mouse_up()
 

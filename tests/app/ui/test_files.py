@@ -80,7 +80,7 @@ def test_a_motion_that_is_not_known_here_is_told(window, project, tmp_path):
     assert any("motion that this version cannot show" in text for text in texts(window))
     window.act(preset_setup.begin_motion_setup)
     window.settle()
-    assert window.session.project.draft is not None
+    assert window.session.project.motion_setup is not None
 
 
 def test_several_dropped_pictures_become_layers(window, drop, tmp_path):

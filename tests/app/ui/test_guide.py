@@ -108,7 +108,7 @@ def test_a_card_covers_nothing_that_it_points_at(seed):
 
 def words(window):
     """What the card tells."""
-    return window.program.shell.callout.told
+    return window.program.shell.callout.shown_text
 
 
 def test_the_giraffe_bows(window):
@@ -123,7 +123,7 @@ def test_the_giraffe_bows(window):
     export = project.document.export
     assert (export.format, export.size) == (tutorials.FORMAT, tutorials.SIZE)
     window.frames(3)
-    aim, goal = session.tutorial.update_targets, session.tutorial.goal
+    aim, goal = session.tutorial.update_targets, session.tutorial.target_place
     pupil.tap(aim)
     assert pupil.step == "time"
     pupil.drag_playhead(0.5)
@@ -218,17 +218,17 @@ def test_a_guide_can_be_left_at_any_time(window):
     for place in places_of_bar(window):
         window.act(posing.add_handle, place)
     window.settle()
-    guide, selected = session.tutorial, session.project.selected
+    guide, selected = session.tutorial, session.project.selected_handles
     assert selected
     for step in tutorials.STEPS:
-        session.tutorial = type(guide)(project=guide.project, handles=guide.handles, step=step)
+        session.tutorial = type(guide)(project=guide.project, handles=guide.handles, stage=step)
         # The hand is at something, so that the step stays.
         window.run(press)
         window.frames(2)
         assert session.tutorial is None, step
-        assert session.project.selected == selected, "only the guide is left"
+        assert session.project.selected_handles == selected, "only the guide is left"
     window.run(press)
-    assert not session.project.selected
+    assert not session.project.selected_handles
     session.tutorial = guide
     window.frames(3)
     window.run(lambda robot: robot.item_click(f"//{NAME}###guide/###leave"))

@@ -72,7 +72,7 @@ def identity(project, name):
 
 def on_scene(project, name):
     shown = project.layer_runtimes[identity(project, name)].shown
-    return shown.placement.on(shown.positions)
+    return shown.placement.apply(shown.positions)
 
 
 @pytest.fixture
@@ -93,7 +93,7 @@ def drag(window, scene):
             robot.mouse_down(0)
             for place in places:
                 robot.mouse_move_to_pos(
-                    window.point(scene.layer_runtime.shown.placement.back(place))
+                    window.point(scene.layer_runtime.shown.placement.apply_inverse(place))
                 )
                 robot.yield_(3)
                 told.append(window.session.hint)
@@ -125,24 +125,24 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     assert "drag to hang it on another layer" in told[0].lower()
     assert "over the layer to hang it on" in told[1]
     assert "to hang arm on body" in told[2]
-    joint = scene.document.layer(arm).joints[0]
-    assert (joint.to, joint.turns) == (body, True)
-    assert abs(joint.at - SHOULDER) < 1
+    joint = scene.document.layer(arm).attachments[0]
+    assert (joint.parent, joint.inherits_rotation) == (body, True)
+    assert abs(joint.parent_point - SHOULDER) < 1
     assert np.abs(on_scene(scene, "arm") - was).max() < 1e-6 * WIDTH
     # One step of undo, which brings back the same document.
     window.act(editing.undo)
     assert scene.document is before
     window.act(editing.redo)
-    assert scene.document.layer(arm).joints[0].to == body
+    assert scene.document.layer(arm).attachments[0].parent == body
 
 
 def test_off_the_layer_itself_the_joint_is_where_both_are(scene, drag):
     drag(HIP)
     arm = scene.document.layer(identity(scene, "arm"))
-    assert arm.joints[0].to == identity(scene, "body")
-    assert 85 < arm.joints[0].at.real < 112
-    assert 100 < arm.joints[0].at.imag < 132
-    assert abs(arm.anchor - arm.joints[0].at) < 1e-6
+    assert arm.attachments[0].parent == identity(scene, "body")
+    assert 85 < arm.attachments[0].parent_point.real < 112
+    assert 100 < arm.attachments[0].parent_point.imag < 132
+    assert abs(arm.anchor - arm.attachments[0].parent_point) < 1e-6
 
 
 def test_the_layer_under_the_pointer_is_marked(window, scene):
@@ -175,7 +175,7 @@ def test_the_layer_under_the_pointer_is_marked(window, scene):
 def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag):
     before = scene.document
     drag(HIP, SHOULDER, gives_up=True)
-    assert window.session.pointer is None
+    assert window.session.active_tool is None
     drag(HIP, BESIDE)
     assert scene.document is before
     assert "over another layer" in window.session.toasts[-1].text
@@ -187,7 +187,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     window.act(layering.set_active_layer, hand)
     window.settle()
     drag(170 + 118j)
-    assert scene.document.layer(hand).joints[0].to == arm
+    assert scene.document.layer(hand).attachments[0].parent == arm
     before = scene.document
     window.act(layering.set_active_layer, body)
     window.settle()
@@ -221,8 +221,8 @@ def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(win
     window.settle()
     drag(SHOULDER + 6, HIP, key=window.Key.mod_ctrl)
     arm = scene.document.layer(identity(scene, "arm"))
-    assert arm.joints[0].to == identity(scene, "body")
-    assert abs(arm.joints[0].at - SHOULDER) < 1
+    assert arm.attachments[0].parent == identity(scene, "body")
+    assert abs(arm.attachments[0].parent_point - SHOULDER) < 1
     # A click with it takes the anchor back, as ever.
     window.act(editing.undo)
     drag(key=window.Key.mod_ctrl)
@@ -302,28 +302,28 @@ def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
 def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(window, swung):
     arm = identity(swung, "arm")
     moves = (TransformKey(frame=0), TransformKey(frame=12, shift=20 + 5j, turn=0.4))
-    moved = replace(swung.document.layer(arm), movement=moves)
+    moved = replace(swung.document.layer(arm), transform_keys=moves)
     window.act(editing.edit_document, Command("Move", lambda document: document.with_layer(moved)))
     window.act(playback.seek, 6)
     window.settle()
     shown = swung.layer_runtimes[arm].shown
-    before = shown.placement.on(shown.positions)
+    before = shown.placement.apply(shown.positions)
     window.act(layering.detach_layer, arm)
     window.settle()
     after = swung.layer_runtimes[arm].shown
     assert not swung.document.layer(arm).has_parent
     assert after.placement == transform_at(swung.document, swung.document.layer(arm), 6)
-    np.testing.assert_allclose(after.placement.on(after.positions), before, rtol=0, atol=0.01)
+    np.testing.assert_allclose(after.placement.apply(after.positions), before, rtol=0, atol=0.01)
 
 
 @pytest.mark.usefixtures("everything")
 def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, swung):
     (way,) = ways(window, swung)
-    joints = swung.joints.value
+    joints = swung.parent_transforms.value
     layer = swung.document.layer(identity(swung, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 50)
     editing.edit_document(window.session, key_commands.replace_key_pose(layer.id, 0, pose))
-    assert swung.joints.value is joints
+    assert swung.parent_transforms.value is joints
     assert swung.placements([0], IDENTITY_MOTION) == [IDENTITY_MOTION]
     assert swung.placed_at(swung.active, [0]) is None
     assert ways(window, swung) == [], "a way at a place where its layer is no more"
@@ -371,7 +371,7 @@ def nodding(window, swung):
         name="wall",
         handles=(),
         keys=swung.document.layers[0].keys[:1],
-        joints=(),
+        attachments=(),
     )
     wall = make_still_layer(wall)
     swung.history.do(layer_commands.add_layer(wall), gesture=None)
@@ -441,7 +441,7 @@ def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_w
     assert nodding.placed_at(layer.id, [0]) == [IDENTITY_MOTION]
     window.settle()
     (there,) = nodding.placed_at(identity(nodding, "arm"), [0])
-    assert there.on(np.array([SHOULDER]))[0] == pytest.approx(SHOULDER + 40j, abs=1e-6)
+    assert there.apply(np.array([SHOULDER]))[0] == pytest.approx(SHOULDER + 40j, abs=1e-6)
 
 
 def test_while_a_layer_is_posed_itself_its_way_stays_where_it_hangs(window, swung):
@@ -484,4 +484,4 @@ def test_the_cage_is_drawn_where_its_layer_hangs(window, swung):
     assert abs(shown.placement.factor - 1) > 0.1
     lines, _ = mark_all(window.session, swung, shown, PALETTES["dark"])
     (cage,) = [line.points for line in lines if line.dash]
-    np.testing.assert_allclose(cage, shown.placement.on(swung.layer.domain.cage))
+    np.testing.assert_allclose(cage, shown.placement.apply(swung.layer.domain.cage))

@@ -16,9 +16,9 @@ from app.motion.inbetweens import AutoPins, segment_key
 def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
     wish = Target(position=bar.document.layers[0].handle(1).position + by)
-    assert window.session.jobs.settle()
+    assert window.session.jobs.wait_until_idle()
     window.act(posing.drag_handles, {1: wish})
-    assert window.session.jobs.settle()
+    assert window.session.jobs.wait_until_idle()
     window.frames()
     return wish
 
@@ -35,7 +35,7 @@ def test_a_slow_solver_shows_every_step(window, bar):
     assert bar.pull.steps == 1
     # Nor does the picture wait while the hand rests.
     for steps in (2, 3):
-        assert window.session.jobs.settle()
+        assert window.session.jobs.wait_until_idle()
         window.frames()
         assert bar.pull.steps == steps
 
@@ -50,7 +50,7 @@ def test_a_hand_that_rests_gets_as_many_steps_as_fit_before_the_next_picture(win
     window.session.clock = lambda: 0.0  # all of them fit
     pull(window, bar, 60j)
     assert not bar.pull.drag.is_over
-    assert window.session.jobs.settle()
+    assert window.session.jobs.wait_until_idle()
     window.frames()
     assert bar.pull.drag.is_over
     assert bar.pull.steps > posing.STEPS
@@ -79,7 +79,7 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
     window.act(playback.scrub, 12)
     exact = []
     while bent.pulls:
-        assert window.session.jobs.settle()
+        assert window.session.jobs.wait_until_idle()
         window.frames()
         shown = bent.layer_runtime.shown
         assert (shown.frame, shown.clip) == (12, bent.clip)
@@ -125,7 +125,7 @@ def check(bent):
             pose = shown.pose or shown.placeholder
             around = [clip.keys[key].pose for key in segment_keys(clip)[moment.segment]]
             assert pose in ([key.pose for key in clip.keys] if shown.is_current else around)
-            expected = shown.mesh.posed(pose)
+            expected = shown.mesh.pose_vertices(pose)
         assert np.abs(shown.positions - expected).max() < 0.02, (shown.frame, shown.placeholder)
 
     return look
@@ -137,7 +137,7 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     pull(window, bent, 80j)
     window.act(posing.release_drag)
     while bent.pull.ready is None:
-        assert window.session.jobs.settle()
+        assert window.session.jobs.wait_until_idle()
         window.frames()
     newest, prepared = bent.layer_runtime.shown.pose, bent.pull.ready
     assert not bent.pull.is_at_rest
@@ -174,7 +174,7 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
         window.act(*verb)
         check()
         for _ in range(2):
-            assert window.session.jobs.settle()
+            assert window.session.jobs.wait_until_idle()
             window.frames()
             check()
 

@@ -80,7 +80,9 @@ def test_a_click_chooses_the_layer_that_is_seen(window, scene):
 
     def click(place, key=None):
         def run(robot):
-            robot.mouse_move_to_pos(window.point(scene.layer_runtime.shown.placement.back(place)))
+            robot.mouse_move_to_pos(
+                window.point(scene.layer_runtime.shown.placement.apply_inverse(place))
+            )
             if key is not None:
                 robot.key_down(int(key))
             robot.mouse_click(0)
@@ -270,7 +272,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
     window.settle()
-    assert scene.document.layer(arm).joints == ()
+    assert scene.document.layer(arm).attachments == ()
     assert scene.layer.name == "wall"
     window.act(editing.undo)
     assert scene.document is joined
@@ -341,7 +343,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     def over(rows):
         rows.robot.mouse_move(f"**/###row {body}")
         window.session.dialog = None
-        window.program.ask(do(layering.drop_files, [cap]))
+        window.program.queue_action(do(layering.drop_files, [cap]))
         rows.robot.yield_(3)
 
     listed(over)
@@ -381,11 +383,11 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     window.act(posing.set_targets, {top: Target(position=110 + 155j)})
     window.settle()
     hung, carrier = scene.layer_runtimes[arm].shown, scene.layer_runtimes[body].shown
-    joint = scene.document.layer(arm).joints[0]
-    at = carrier.hinge(joint.at)
-    place = hung.placement.on(np.array([hung.hinge(95 + 118j).place]))[0]
-    assert abs(place - at.place) < 1e-6 * WIDTH
-    assert abs(hung.placement.factor - at.turn) < 0.02
+    joint = scene.document.layer(arm).attachments[0]
+    at = carrier.pivot_frame_at(joint.parent_point)
+    place = hung.placement.apply(np.array([hung.pivot_frame_at(95 + 118j).position]))[0]
+    assert abs(place - at.position) < 1e-6 * WIDTH
+    assert abs(hung.placement.factor - at.rotation) < 0.02
     assert hung.placement.factor.imag < -0.05
     window.act(layering.set_active_layer, arm)
     window.act(posing.add_handle, 190 + 118j)
@@ -394,13 +396,13 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     window.act(posing.set_targets, {hand: Target(position=170 + 170j)})
     window.settle()
     after = scene.layer_runtimes[arm].shown
-    held = after.placement.on(np.array([after.hinge(95 + 118j).place]))[0]
-    assert abs(held - at.place) < 1e-3 * WIDTH
-    before = after.placement.on(after.positions)
+    held = after.placement.apply(np.array([after.pivot_frame_at(95 + 118j).position]))[0]
+    assert abs(held - at.position) < 1e-3 * WIDTH
+    before = after.placement.apply(after.positions)
     window.act(layering.detach_layer, arm)
     window.settle()
     loose = scene.layer_runtimes[arm].shown
-    assert np.abs(loose.placement.on(loose.positions) - before).max() < 1e-3
+    assert np.abs(loose.placement.apply(loose.positions) - before).max() < 1e-3
 
 
 def test_a_layer_stands_still_and_is_posed_again(window, scene):
@@ -664,7 +666,7 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
     eased = told(lambda key: key.easing == PRESETS["in-out"])
     assert eased == {"body": [True, False], "arm": [False, True, True]}
     window.act(keys.set_revolutions, keyed.keys_with(body, 0), 2)
-    assert told(lambda key: key.turns) == {"body": [2, 0], "arm": [0, 2, 2]}
+    assert told(lambda key: key.revolutions) == {"body": [2, 0], "arm": [0, 2, 2]}
     window.act(keys.use_next_tangent_mode)
     passed = told(lambda key: key.tangent_mode is TangentMode.CORNER)
     assert passed == {"body": [True, False], "arm": [False, True, True]}
@@ -699,7 +701,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.v)))
     window.settle()
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
-    assert keyed.document.layer(arm).key(42).turns == 1
+    assert keyed.document.layer(arm).key(42).revolutions == 1
     assert keyed.selected_keys == {arm: {42}, body: {30, 48}}
     window.act(editing.undo)
     assert keyed.document is before
@@ -776,10 +778,10 @@ def test_rows_scroll_where_there_are_many(window, keyed):
         window.act(editing.edit_document, layer_commands.duplicate_layer(identity(keyed, "wall")))
     window.act(layering.set_active_layer, identity(keyed, "arm"))
     window.frames(3)
-    assert keyed.timing.scrolled == 0
+    assert keyed.timeline.scrolled == 0
     window.act(layering.set_active_layer, identity(keyed, "wall"))
     window.frames(3)
-    low = keyed.timing.scrolled
+    low = keyed.timeline.scrolled
     assert low > 0
 
     def wheel(robot):
@@ -788,7 +790,7 @@ def test_rows_scroll_where_there_are_many(window, keyed):
         robot.mouse_wheel_y(2)
 
     window.run(wheel)
-    assert keyed.timing.scrolled < low
+    assert keyed.timeline.scrolled < low
 
 
 def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_are_awaited(
@@ -849,7 +851,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     assert layer.picture is not old.picture
     assert (layer.name, layer.opacity, layer.handles) == ("limb", 0.75, old.handles)
     assert posed.document.layers.index(layer) == 1
-    assert (layer.anchor, layer.joints) == (old.anchor, old.joints)
+    assert (layer.anchor, layer.attachments) == (old.anchor, old.attachments)
     assert [key.frame for key in layer.keys] == [0, 24]
     for key, earlier in zip(layer.keys, old.keys, strict=True):
         assert key.pose.certificate.is_certified
@@ -873,7 +875,7 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     window.settle()
     again = load_project(path).layer(arm)
     assert again.picture.sha256 == layer.picture.sha256
-    assert (again.corner, again.attachments) == (layer.corner, layer.joints)
+    assert (again.corner, again.attachments) == (layer.corner, layer.attachments)
 
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
@@ -892,16 +894,16 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     rest, raised = layer.keys
     assert abs(rest.pose.targets[0].position - layer.handles[0].position) < 1e-9
     assert raised.pose.targets[0].position != before.layer(arm).keys[1].pose.targets[0].position
-    assert layer.joints == before.layer(arm).joints
+    assert layer.attachments == before.layer(arm).attachments
     # The body without the place where the arm hangs.
     legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
     window.act(layering.replace_picture, body, legs)
     window.settle()
-    joint = posed.document.layer(arm).joints[0]
-    assert posed.document.layer(body).domain.contains(np.array([joint.at])).all()
-    assert joint.at.imag < 82
-    assert not posed.joints.has_failed(posed.joints.source)
-    assert posed.joints.value is not None
+    joint = posed.document.layer(arm).attachments[0]
+    assert posed.document.layer(body).domain.contains(np.array([joint.parent_point])).all()
+    assert joint.parent_point.imag < 82
+    assert not posed.parent_transforms.has_failed(posed.parent_transforms.source)
+    assert posed.parent_transforms.value is not None
     for _ in range(2):
         window.act(editing.undo)
     assert posed.document is before
@@ -964,8 +966,8 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
     (toast,) = window.session.toasts
     assert "One thing looks different here" in toast.text
-    told = project.document.told
-    assert told.losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    told = project.document.import_log
+    assert told.warnings == ("shine, glow: drawn normally, not in the mode 'overlay'",)
     assert "wall: opaque all over, so that it stands still" in told.notes
     window.show_tab("Handle")
     window.act(toast.action.apply)
@@ -991,7 +993,7 @@ def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_p
     save_project(path, document)
     window.session.toasts = []
     project = window.open(path)
-    assert project.document.told == document.told != EMPTY_IMPORT_LOG
+    assert project.document.import_log == document.import_log != EMPTY_IMPORT_LOG
     assert not window.session.toasts
     assert not project.is_import_log_open
     window.show_tab("Handle")
@@ -1002,13 +1004,13 @@ def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_p
 
 
 def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
-    before = scene.document.told
+    before = scene.document.import_log
     window.act(layering.add_layers, [stranger])
     window.settle()
-    losses = scene.document.told.losses
+    losses = scene.document.import_log.warnings
     assert losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
     window.act(editing.undo)
-    assert scene.document.told == before
+    assert scene.document.import_log == before
     window.session.toasts = []
 
 
@@ -1041,7 +1043,7 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
 def test_layers_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(window, stranger):
     project = window.again(Harness.open, stranger)
     window.settle()
-    drawing = window.program.canvas.drawing
+    drawing = window.program.canvas.resources
     arm, glow, shine = (identity(project, name) for name in ("arm", "glow", "shine"))
     assert drawing.picture(arm) is drawing.picture(glow) is drawing.picture(shine)
     window.act(layering.set_active_layer, glow)

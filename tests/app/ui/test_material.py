@@ -93,9 +93,9 @@ def test_a_bone_is_drawn_from_handle_to_handle(window, tab):
     drag(window, [place_of(tab, ENDS[1]), place_of(tab, ENDS[0])])
     assert len(tab.layer.bones) == 1
     assert "already" in window.session.toasts[-1].text
-    assert window.session.poses is False
+    assert window.session.is_posing is False
     move_tool.return_to_posing(window.session)
-    assert window.session.poses
+    assert window.session.is_posing
 
 
 @pytest.mark.parametrize("way", [[0], [0, 100], [0, 100, 0, 60], [0, 0]])
@@ -124,7 +124,7 @@ def test_escape_takes_back_a_stroke_and_then_puts_the_brush_away(window, tab):
 
     window.run(act)
     assert tab.document is before
-    assert window.session.poses
+    assert window.session.is_posing
 
 
 def test_the_drawing_is_tinted_as_long_as_the_tab_is_in_front(window, tab):

@@ -35,10 +35,10 @@ def on_handle(window, loose, *items):
 
 
 def test_a_handle_is_pinned_by_its_menu(window, loose):
-    assert loose.selected == {1}
+    assert loose.selected_handles == {1}
     place = complex(loose.layer_runtime.shown.handle_positions[0])
     on_handle(window, loose, "Pin here")
-    assert loose.selected == {0}, "what the menu is of is selected"
+    assert loose.selected_handles == {0}, "what the menu is of is selected"
     assert loose.layer.key(BENT).pose.targets[0].position == pytest.approx(place, abs=0.1)
 
 

@@ -88,10 +88,10 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Give it a motion…"))
     window.frames(4)
     assert is_in_front("Motion")
-    assert (project.draft.kind, project.draft.motion) == ("biped-side", "walk")
-    foot = project.draft.joints["foot.L"]
+    assert (project.motion_setup.kind, project.motion_setup.motion) == ("biped-side", "walk")
+    foot = project.motion_setup.joints["foot.L"]
     press(window, foot, to=foot + 3)
-    assert project.draft.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
+    assert project.motion_setup.joints["foot.L"].real == pytest.approx(foot.real + 3, abs=2)
     preset_setup.set_motion_parameters(window.session, size=0.2, speed=4.0)
     assert project.document is before, "nothing is done to it yet"
     click(window, "//Motion/**/###give")
@@ -112,33 +112,33 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
 
 def test_joints_are_dragged_left_out_and_put_back(window, child):
     before = child.document
-    hand = child.draft.joints["hand.L"]
+    hand = child.motion_setup.joints["hand.L"]
     press(window, hand, to=hand - 12)
-    assert abs(child.draft.joints["hand.L"] - (hand - 12)) < 3
-    press(window, child.draft.joints["elbow.L"], key=window.Key.mod_alt)
-    assert "elbow.L" not in child.draft.joints
-    press(window, child.draft.joints["head"])
+    assert abs(child.motion_setup.joints["hand.L"] - (hand - 12)) < 3
+    press(window, child.motion_setup.joints["elbow.L"], key=window.Key.mod_alt)
+    assert "elbow.L" not in child.motion_setup.joints
+    press(window, child.motion_setup.joints["head"])
     window.run(lambda robot: robot.key_press(int(window.Key.delete)))
-    assert "head" not in child.draft.joints
+    assert "head" not in child.motion_setup.joints
     click(window, "//Motion/**/joint head")
-    assert "head" in child.draft.joints
+    assert "head" in child.motion_setup.joints
     for _ in range(4):
         window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl | window.Key.z)))
-    assert child.draft.joints["hand.L"] == hand
-    assert "elbow.L" in child.draft.joints
+    assert child.motion_setup.joints["hand.L"] == hand
+    assert "elbow.L" in child.motion_setup.joints
     assert child.document is before
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
-    assert child.draft is None
-    assert window.session.poses
+    assert child.motion_setup is None
+    assert window.session.is_posing
     assert child.document is before
 
 
 def test_one_side_is_mirrored_onto_the_other(window, child):
-    joints = child.draft.joints
+    joints = child.motion_setup.joints
     joint_placement.move_joint(window.session, "hand.R", joints["hand.R"] + 8)
     joint_placement.mirror_joints(window.session)
-    axis = np.mean([child.draft.joints[name].real for name in ("hips", "chest", "head")])
-    right, left = (child.draft.joints[f"hand.{side}"] for side in "RL")
+    axis = np.mean([child.motion_setup.joints[name].real for name in ("hips", "chest", "head")])
+    right, left = (child.motion_setup.joints[f"hand.{side}"] for side in "RL")
     assert right.real + left.real == pytest.approx(2 * axis, abs=1)
     assert right.imag == pytest.approx(left.imag, abs=1)
 
@@ -148,14 +148,14 @@ def test_what_a_motion_needs_is_told(window, child):
     window.frames()
     assert "needs foot.R" in preset_setup.apply_motion_disabled_reason(child)
     apply_motion.apply_motion_preset(window.session)
-    assert child.draft is not None
+    assert child.motion_setup is not None
     assert child.motion_job is None
     joint_placement.include_joint(window.session, "foot.R")
     assert not preset_setup.apply_motion_disabled_reason(child)
     preset_setup.set_body_kind(window.session, "anything")
-    assert child.draft.motion in {"breathe", "sway", "hop"}
+    assert child.motion_setup.motion in {"breathe", "sway", "hop"}
     preset_setup.set_body_kind(window.session, "biped-front")
-    assert "foot.R" in child.draft.joints, "as they were left"
+    assert "foot.R" in child.motion_setup.joints, "as they were left"
 
 
 def test_handles_that_are_there_are_joints(window):
@@ -163,7 +163,7 @@ def test_handles_that_are_there_are_joints(window):
     posing.suggest_handles(window.session)
     head = next(each for each in project.layer.handles if each.name == "head")
     preset_setup.begin_motion_setup(window.session)
-    assert project.draft.joints["head"] == head.position
+    assert project.motion_setup.joints["head"] == head.position
 
 
 def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for_it(
@@ -172,7 +172,7 @@ def test_a_motion_is_given_again_in_another_way_as_one_step_and_a_save_waits_for
     before = ghost.document
     (given,) = ghost.layer.motions
     preset_setup.begin_motion_setup(window.session)
-    assert ghost.draft.given is given
+    assert ghost.motion_setup.applied_motion is given
     preset_setup.set_motion_parameters(window.session, speed=4.0)
     apply_motion.apply_motion_preset(window.session)
     ghost.path = tmp_path / "ghost.lissom"
@@ -198,7 +198,7 @@ def test_given_again_its_handles_go_where_joints_were_dragged(window):
     handles = {handle.name: handle.id for handle in project.layer.handles}
     playback.scrub(window.session, 0)
     preset_setup.begin_motion_setup(window.session)
-    place = project.draft.joints["joint.2"] + 6
+    place = project.motion_setup.joints["joint.2"] + 6
     joint_placement.move_joint(window.session, "joint.2", place)
     apply_motion.apply_motion_preset(window.session)
     arrive(window, project)
@@ -247,7 +247,7 @@ def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
     else:
         editing.undo(window.session)
     assert child.motion_job is None
-    assert child.draft is not None
+    assert child.motion_setup is not None
     window.settle()
     assert child.document is before
 

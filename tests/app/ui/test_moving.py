@@ -59,7 +59,7 @@ def test_v_and_a_drag_and_escape(window, loose):
     assert loose.layer.key(0) is first
     press(window, imgui.Key.escape)
     assert not window.session.moves
-    assert loose.selected, "Escape puts one thing away at a time"
+    assert loose.selected_handles, "Escape puts one thing away at a time"
     editing.undo(window.session)
     assert loose.document is document
 
@@ -84,14 +84,14 @@ def test_arrows_move_all_of_it_only_with_the_tool(window, loose):
 
 
 def test_it_is_one_tool_of_several(window, loose):
-    session, chosen = window.session, loose.selected
+    session, chosen = window.session, loose.selected_handles
     press(window, imgui.Key.v, imgui.Key.x)
     assert session.cutting == "remove"
     press(window, imgui.Key.v)
     assert (session.cutting, session.moves) == (None, True)
     press(window, imgui.Key.v)
     assert not session.moves
-    assert loose.selected == chosen
+    assert loose.selected_handles == chosen
     press(window, imgui.Key.v)
     window.again(open_bar)
     assert not session.moves, "another project begins with posing"

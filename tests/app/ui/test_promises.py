@@ -117,13 +117,13 @@ def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key)
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
     goal = drag_bar(window, loose)
     posing.add_handle(window.session, complex(loose.layer_runtime.shown.handle_positions.mean()))
-    (added,) = loose.selected
+    (added,) = loose.selected_handles
     posing.remove_handles(window.session, frozenset({0}))
     window.settle()
     layer, pose = loose.layer, loose.layer.key(24).pose
     assert pose.targets.keys() == {1, added}
     check_at_rest(loose.document, goal)
-    assert layer.lags(pose)[added] < 1e-6
+    assert layer.target_errors(pose)[added] < 1e-6
 
 
 def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
@@ -349,7 +349,7 @@ def beside_the_axis(window, project):
         window.session, complex(project.layer_runtime.shown.handle_positions.mean()) + 60
     )
     window.settle()
-    (added,) = project.selected
+    (added,) = project.selected_handles
     return added
 
 
@@ -445,7 +445,7 @@ def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(wi
         posing.set_targets(window.session, {0: Target(position=places[0] + 5j)})
         posing.release_drag(window.session)
         posing.add_handle(window.session, complex(places.mean()))
-        (added,) = loose.selected
+        (added,) = loose.selected_handles
         # Of a document that is not shown yet, nobody knows where a drag begins.
         posing.set_targets(window.session, {1: Target(position=places[1] + 5j)})
         posing.release_drag(window.session)

@@ -41,7 +41,7 @@ def test_the_places_lead_from_the_welcome_view_to_each_export(window, hand):
     session = window.session
 
     def step():
-        return session.tutorial.step
+        return session.tutorial.stage
 
     hand("begin")
     window.until(lambda: session.tutorial is not None and step() == "handle")

@@ -149,7 +149,7 @@ def test_screenshots_of_the_main_states(window, dragon, save):
             assert near(around(window, export, edge, 3), palette.accent, 50).any()
 
     window.show_tab("Handle")
-    session.tell(
+    session.show_notice(
         "cow.png cannot be opened: it is damaged or cut short. Save it again, or take another.",
         tone="error",
     )

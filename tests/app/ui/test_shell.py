@@ -233,7 +233,7 @@ def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):
     done = []
     job = Job(kind=JobKind("A job"), work=lambda: 0, done=done.append, failed=done.append)
     window.session.jobs.put(job)
-    window.session.jobs.settle()
+    window.session.jobs.wait_until_idle()
     window.frames(1)
     assert done == [0]
     refreshes.clear()
@@ -244,7 +244,7 @@ def test_what_a_job_leads_to_is_drawn_at_once(window, refreshes):
 def test_a_tooltip_covers_no_message(window, bar):
     del bar
     for number in range(3):
-        window.session.tell(f"Message {number}", tone="error")
+        window.session.show_notice(f"Message {number}", tone="error")
 
     places = []
 

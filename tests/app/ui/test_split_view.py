@@ -47,11 +47,11 @@ def press_u(window):
 def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between):
     session = window.session
     depth = between.history.undo_label
-    assert session.split is None
+    assert session.compare_view is None
     alone = window.picture()
     press_u(window)
-    assert session.split is not None
-    assert session.split.method is Variant.LINEAR
+    assert session.compare_view is not None
+    assert session.compare_view.method is Variant.LINEAR
     twin = between.layer_runtime.comparison
     own, other = between.layer_runtime.shown.positions, twin.shown.positions
     # Halfway round, straight ways are shorter than arcs.
@@ -59,7 +59,7 @@ def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between
     assert (np.abs(np.asarray(window.picture()).astype(int) - np.asarray(alone)) > 24).any()
     assert between.history.undo_label == depth
     press_u(window)
-    assert session.split is None
+    assert session.compare_view is None
     assert between.layer_runtime.comparison is None
 
 
@@ -67,7 +67,7 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
     session = window.session
     viewing.toggle_comparison(session)
     window.settle()
-    before = session.split.place
+    before = session.compare_view.divider
     x, top = divider(window)
 
     def drag(robot):
@@ -78,9 +78,9 @@ def test_the_divider_is_dragged_and_the_methods_change_sides_there(window, betwe
 
     window.run(drag)
     width = session.screen[0]
-    assert session.split.place == pytest.approx(before - 150 / width, abs=3 / width)
+    assert session.compare_view.divider == pytest.approx(before - 150 / width, abs=3 / width)
     assert divider(window)[0] == pytest.approx(x - 150, abs=3)
-    assert session.pointer is None
+    assert session.active_tool is None
     assert len(between.layer.handles) == 2
 
 
@@ -178,13 +178,13 @@ def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between
 def test_nothing_is_compared_where_the_panel_says_so(window):
     session = window.session
     viewing.compare_with_method(session, Variant.ETA)
-    assert session.split.method is Variant.ETA
+    assert session.compare_view.method is Variant.ETA
     viewing.compare_with_method(session, None)
-    assert session.split is None
+    assert session.compare_view is None
     viewing.toggle_comparison(session)
-    assert session.split.method is Variant.ETA
+    assert session.compare_view.method is Variant.ETA
     viewing.move_comparison_divider(session, 2.0)
-    assert session.split.place == 1 - viewing.LEAST_PART
+    assert session.compare_view.divider == 1 - viewing.LEAST_PART
 
 
 @pytest.mark.usefixtures("between")

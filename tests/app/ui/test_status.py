@@ -83,7 +83,7 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
     posing.set_targets(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
-    lag = layer.lags(layer.key(24).pose)[1]
+    lag = layer.target_errors(layer.key(24).pose)[1]
     told = bars.describe_pose_limit(window.session)
     assert re.fullmatch(
         r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
@@ -96,7 +96,7 @@ def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
     window.run(loosen)
     window.settle()
     assert loose.layer.bounds == RUBBERY.bounds
-    assert loose.layer.lags(loose.layer.key(24).pose)[1] < 0.5 * lag
+    assert loose.layer.target_errors(loose.layer.key(24).pose)[1] < 0.5 * lag
     assert loose.layer.is_proven(loose.layer.key(24).pose)
     editing.undo(window.session)
     assert loose.layer is layer, "looser limits and the pose within them are one step"

@@ -85,7 +85,7 @@ def largest(project, field):
 
 def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
     tab("Handle", lambda robot: robot.item_click("**/###handle 0"))
-    assert project.selected == {0}
+    assert project.selected_handles == {0}
 
     def change(robot):
         robot.item_input_value("**/##name", "paw")
@@ -215,7 +215,7 @@ def test_cancelled_solving_changes_nothing(project, window):
         window.run(act)
     window.settle()
     assert project.document is before
-    assert project.renewal is None
+    assert project.key_resolver is None
 
 
 @pytest.mark.usefixtures("everything")
@@ -336,7 +336,7 @@ def test_domain_that_cannot_be_built_is_told(window, project, tab):
 
     tab("Mesh", act)
     assert project.document is before
-    assert project.renewal is None
+    assert project.key_resolver is None
     assert [toast.tone for toast in window.session.toasts] == ["error"]
 
 
@@ -532,7 +532,7 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
         assert "12 px short of its target" in told, title
         assert reason in told, title
         assert "by the limits" not in told
-    assert project.timing.target_errors.value[pose] == {1: pytest.approx(12, abs=1e-6)}
+    assert project.timeline.target_errors.value[pose] == {1: pytest.approx(12, abs=1e-6)}
 
 
 def test_the_canvas_has_a_size_of_its_own(window, project, tab):

@@ -124,7 +124,7 @@ def undo_all(window):
 
 def test_click_chooses_a_key_and_goes_there(window, project, play):
     play(lambda hand: hand.click("key 24"))
-    assert project.chosen == {24}
+    assert project.selected_frames == {24}
     assert playback.current_frame(window.session, project) == 24
 
     def add(hand):
@@ -135,7 +135,7 @@ def test_click_chooses_a_key_and_goes_there(window, project, play):
         hand.robot.key_up(int(window.Key.mod_shift))
 
     play(add)
-    assert project.chosen == {0, 48}
+    assert project.selected_frames == {0, 48}
     assert project.history.undo_label is None
 
 
@@ -143,7 +143,7 @@ def test_drag_moves_keys_by_whole_frames_in_one_step(window, project, play):
     first = project.document
     moved = play(lambda hand: hand.drag("key 24", 26.4, 29.7))
     assert frames_of(moved) == (0, 12, 30, 48)
-    assert project.chosen == {30}
+    assert project.selected_frames == {30}
     assert moved.layers[0].keys[2].pose is first.layers[0].keys[2].pose
     editing.undo(window.session)
     assert project.document is first
@@ -183,7 +183,7 @@ def test_escape_takes_a_drag_back(window, project, play):
         hand.robot.mouse_up(0)
 
     assert play(escape) is first
-    assert project.chosen == {24}
+    assert project.selected_frames == {24}
 
 
 def test_keys_stop_before_others_and_at_frame_0(play):
@@ -210,16 +210,16 @@ def test_several_keys_move_together(window, project, play):
         hand.robot.mouse_up(0)
 
     play(box)
-    assert project.chosen == {12, 24}
+    assert project.selected_frames == {12, 24}
     assert frames_of(play(lambda hand: hand.drag("key 12", 17))) == (0, 17, 29, 48)
-    assert project.chosen == {17, 29}
+    assert project.selected_frames == {17, 29}
 
     def click_beside(hand):
         hand.go_to(55)
         hand.robot.mouse_click(0)
 
     play(click_beside)
-    assert project.chosen == frozenset()
+    assert project.selected_frames == frozenset()
     assert undo_all(window) == 1
 
 
@@ -234,7 +234,7 @@ def test_ctrl_drag_copies_and_del_deletes(window, project, play):
     copied = play(copy)
     assert frames_of(copied) == (0, 12, 24, 36, 48)
     assert copied.layers[0].keys[3].pose is first.layers[0].keys[1].pose
-    assert project.chosen == {36}
+    assert project.selected_frames == {36}
     deleted = play(lambda hand: hand.robot.key_press(int(window.Key.delete)))
     assert frames_of(deleted) == FRAMES
     assert undo_all(window) == 2
@@ -410,7 +410,7 @@ def test_menu_reverses_and_scales(window, project, play):
     assert frames_of(choose("###Scale time/Half as long")) == (0, 12, 18, 24)
     editing.select_keys(window.session, frozenset({18, 24}))
     assert frames_of(choose("###Scale time/Twice as long")) == (0, 12, 18, 30)
-    assert project.chosen == {18, 30}
+    assert project.selected_frames == {18, 30}
     undo_all(window)
     assert project.document is first
 
@@ -441,11 +441,11 @@ def test_a_strip_that_is_scrolled_by_a_drag_stays_so(window, project, play):
         hand.robot.mouse_move_to_pos(ImVec2(1275, edge.y))
         for _ in range(10):
             hand.robot.yield_()
-        assert project.timing.gesture_time_range.start > 0
+        assert project.timeline.gesture_time_range.start > 0
         hand.robot.mouse_up(0)
 
     play(drag_beyond_the_edge)
-    assert project.timing.strip.start > 0
+    assert project.timeline.time_range.start > 0
 
 
 def test_wheel_zooms_at_the_pointer_and_scrolls(window, project, play):
@@ -458,25 +458,25 @@ def test_wheel_zooms_at_the_pointer_and_scrolls(window, project, play):
         assert hand.place("key 24").x == pytest.approx(hand.x(24), abs=3.0)
 
     play(zoom)
-    zoomed = project.timing.strip
+    zoomed = project.timeline.time_range
     assert zoomed is not None
     window.run(lambda robot: robot.mouse_wheel_y(-1.0))
-    assert project.timing.strip.start > zoomed.start
-    assert project.timing.strip.scale == zoomed.scale
+    assert project.timeline.time_range.start > zoomed.start
+    assert project.timeline.time_range.scale == zoomed.scale
     timeline_drag.fit_timeline(window.session)
-    assert project.timing.strip is None
+    assert project.timeline.time_range is None
 
 
 def test_timeline_follows_the_playhead_while_playing(window, project):
     timeline_drag.set_time_range(window.session, TimeRangeView(0.0, 4.0))
     window.frames(2)
-    assert project.timing.strip.start == 0.0
+    assert project.timeline.time_range.start == 0.0
     playback.toggle_play(window.session)
     playback.set_playback_speed(window.session, 2.0)
     window.frames(45)
     frame = playback.current_frame(window.session, project)
     assert frame > 30
-    assert project.timing.strip.start > 10
+    assert project.timeline.time_range.start > 10
     playback.stop_playback(window.session)
 
 
@@ -516,7 +516,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
 
 
 def test_keys_that_fall_short_are_known(project):
-    lags = [project.timing.target_errors.value[key.pose] for key in project.layer.keys]
+    lags = [project.timeline.target_errors.value[key.pose] for key in project.layer.keys]
     assert [set(lag) for lag in lags] == [set(), set(), {1}, set()]
 
 

@@ -191,7 +191,7 @@ def test_rows_of_tracks_are_folded_away_until_somebody_asks(window, bent, play):
 
     play(look)
     assert is_there == [False, True]
-    assert bent.timing.expanded_layers == {bent.active}
+    assert bent.timeline.expanded_layers == {bent.active}
 
 
 def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
@@ -382,13 +382,13 @@ def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
         editing.edit_document(window.session, track_commands.put_track(bent.active, track))
     timeline_drag.toggle_track_rows(window.session, bent.active)
     window.settle()
-    assert bent.timing.scrolled == 0, "the row of the poses is to be seen"
+    assert bent.timeline.scrolled == 0, "the row of the poses is to be seen"
     tracks.select_track(window.session, bent.layer.handles[-1].id)
     window.frames(3)
-    assert bent.timing.scrolled > 0
+    assert bent.timeline.scrolled > 0
     tracks.select_track(window.session, None)
     window.frames(3)
-    assert bent.timing.scrolled == 0
+    assert bent.timeline.scrolled == 0
 
 
 def test_a_row_switches_its_track_off(window, bent, play):
@@ -510,7 +510,7 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
     press("on##track")
     assert not bent.layer.track_of(RIGHT).enabled
     press("Keys turn it, too")
-    assert bent.layer.track_of(RIGHT).turns
+    assert bent.layer.track_of(RIGHT).keys_rotation
 
     def enter(name, value):
         window.run(
@@ -671,7 +671,7 @@ def test_handles_that_stay_have_a_mark_and_can_be_freed(window, bent, press):
     marked = lines()
     window.act(editing.select_handles, frozenset({LEFT}))
     press("Free between keys")
-    assert bent.layer.handle(LEFT).free
+    assert bent.layer.handle(LEFT).is_unpinned
     assert not find_auto_pinned(bent.layer_runtime.shown)
     assert len(lines()) < len(marked)
     press("Free between keys")
@@ -722,6 +722,6 @@ def test_a_track_of_several_handles_is_set_with_all_of_them_selected(window, ben
     for chosen in ({LEFT, RIGHT}, {RIGHT}):
         window.act(editing.select_handles, frozenset(chosen))
         window.settle()
-        was = bent.layer.track_of(LEFT).turns
+        was = bent.layer.track_of(LEFT).keys_rotation
         press("Keys turn it, too")
-        assert bent.layer.track_of(LEFT).turns != was
+        assert bent.layer.track_of(LEFT).keys_rotation != was

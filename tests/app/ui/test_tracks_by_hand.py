@@ -34,7 +34,7 @@ def place_of(project, handle=END):
 def ground(project, frame, handle=END):
     index = [each.id for each in project.layer.handles].index(handle)
     found = project.layer_runtime.corrected.ground(frame)
-    return complex(found.places[index]), complex(found.turns[index])
+    return complex(found.positions[index]), complex(found.rotations[index])
 
 
 def drag(window, start, end, *, then=lambda robot: robot.mouse_up(0)):
@@ -111,7 +111,7 @@ def test_the_shape_follows_while_the_hand_moves_and_escape_takes_it_back(window,
 
     def then(robot):
         while not keyed.layer_runtime.shown.is_current:
-            window.session.jobs.settle()
+            window.session.jobs.wait_until_idle()
             robot.yield_()
         seen.append(place_of(keyed))
         robot.key_press(int(window.Key.escape))
@@ -176,7 +176,7 @@ def test_the_ring_turns_the_track_of_a_chosen_row_and_not_the_pose(window, keyed
     turn_by(window, keyed, 0.5)
     (track,) = keyed.layer.tracks
     assert keyed.layer.keys == poses, "the pose stays"
-    assert track.turns, "what turned nothing does from now on"
+    assert track.keys_rotation, "what turned nothing does from now on"
     assert any(toast.topic == "turning" for toast in window.session.toasts)
     assert [(key.frame, key.place) for key in track.keys] == [(EARLIER, 0), (HALF, 8j), (LATER, 0)]
     assert [key.turn for key in track.keys[::2]] == [0, 0]
@@ -302,7 +302,7 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     window.settle()
     before = bent.document
     record(window, bent, CIRCLE)
-    take = bent.take
+    take = bent.recording
     assert take is not None
     assert take.is_over
     assert bent.playhead.since is None
@@ -324,7 +324,7 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     fewest = len(bent.layer.tracks[0].keys)
     assert many > few >= fewest
     window.run(lambda robot: robot.item_click("**/Keep"))
-    assert bent.take is None
+    assert bent.recording is None
     assert bent.selected_track == END
     bent.history.undo()
     assert bent.document is before, "one take is one step"
@@ -335,7 +335,7 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     playback.scrub(window.session, 0)
     window.settle()
     record(window, bent, CIRCLE)
-    take, scale = bent.take, bent.view(window.session.screen).scale
+    take, scale = bent.recording, bent.view(window.session.screen).scale
     assert take.scale == scale
     keys = {}
     for factor in (0.1, 1.0, 10.0):
@@ -373,7 +373,7 @@ def test_escape_ends_a_recording_and_takes_it_back(window, brief):
 
     record(window, brief, ARC, until=until)
     assert brief.document is before
-    assert brief.take is None
+    assert brief.recording is None
     assert brief.playhead.since is None
     assert playback.current_frame(window.session, brief) == 0
 
@@ -385,12 +385,12 @@ def test_the_end_of_the_range_ends_a_recording_and_other_keys_stay(window, brief
     window.settle()
     taken = [key for key in brief.layer.tracks[0].keys if key.frame == 1]
     record(window, brief, CIRCLE)
-    assert brief.take.is_over
+    assert brief.recording.is_over
     (track,) = brief.layer.tracks
     frames = [key.frame for key in track.keys]
     assert track.keys[0] == taken[0]
     assert frames[-1] == last
-    assert window.session.pointer is None
+    assert window.session.active_tool is None
     assert brief.playhead.speed == 1.0
 
 
@@ -399,7 +399,7 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
     playback.scrub(window.session, 5)
     window.settle()
     record(window, brief, CIRCLE)
-    take = brief.take
+    take = brief.recording
     assert take.is_over
     assert take.samples[-1].time == 5 + LAST
     (track,) = brief.layer.tracks
@@ -420,7 +420,7 @@ def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
             tracking.stop_recording(session)
         window.act(posing.remove_handles, frozenset({END}))
         window.frames(2)
-        assert brief.take is None
+        assert brief.recording is None
         assert END not in [handle.id for handle in brief.layer.handles]
         assert not [toast for toast in session.toasts if toast.details]
 
@@ -429,7 +429,7 @@ def test_a_click_records_nothing(window, brief):
     before = brief.document
     record(window, brief, [])
     assert brief.document is before
-    assert brief.take is None
+    assert brief.recording is None
     assert brief.playhead.since is None
 
 
@@ -461,7 +461,7 @@ def in_scene(window, project, frames):
         playback.scrub(window.session, frame)
         window.settle()
         seen.append(
-            complex(project.layer_runtime.shown.placement.on(np.array([place_of(project)]))[0])
+            complex(project.layer_runtime.shown.placement.apply(np.array([place_of(project)]))[0])
         )
     return np.array(seen)
 
@@ -474,8 +474,8 @@ def test_a_still_pointer_over_a_hopping_body_records_a_still_handle(window, brie
     (start,) = in_scene(window, brief, [0])
 
     def until(robot):
-        while brief.take is None or brief.take.samples[-1:] < [(LATER,)]:
-            window.session.jobs.settle()
+        while brief.recording is None or brief.recording.samples[-1:] < [(LATER,)]:
+            window.session.jobs.wait_until_idle()
             robot.yield_()
         robot.mouse_up(0)
 
@@ -504,7 +504,7 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
 
     begun = session.clock()
     tracking.start_recording(session, END, place(), gesture=object())
-    while not brief.take.is_over:
+    while not brief.recording.is_over:
         tracking.drag_recorded_handle(session, place())
         window.frames()
     window.settle()
@@ -522,11 +522,11 @@ def test_passes_add_up_and_undo_takes_back_the_last(window, brief):
     record(window, brief, ARC / 5, handle=0)
     assert {track.handles for track in brief.layer.tracks} == {(END,), (0,)}
     assert brief.layer.track_of(END) == first
-    assert brief.take is not None
+    assert brief.recording is not None
     editing.undo(window.session)
     window.settle()
     assert brief.layer.tracks == (first,)
-    assert brief.take is None, "there is nothing to be kept"
+    assert brief.recording is None, "there is nothing to be kept"
 
 
 def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
@@ -540,7 +540,7 @@ def test_a_planted_track_is_recorded_in_places_of_the_picture(window, brief):
     record(window, brief, ARC)
     (track,) = brief.layer.tracks
     assert track.is_scene_space
-    places = {sample.time: sample.place for sample in brief.take.samples}
+    places = {sample.time: sample.place for sample in brief.recording.samples}
     for key in track.keys:
         time = min(places, key=lambda time: abs(time - key.frame))
         assert abs(key.place - places[time]) < 5
@@ -572,7 +572,7 @@ def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(wi
         for _ in range(MOST_FRAMES):
             if keyed.layer_runtime.shown.is_current:
                 break
-            window.session.jobs.settle()
+            window.session.jobs.wait_until_idle()
             robot.yield_()
         seen.append(keyed.layer_runtime.shown.is_current)
         robot.mouse_up(0)

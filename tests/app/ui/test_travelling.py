@@ -27,7 +27,7 @@ def open_walker(window, folder):
     save_project(path, walker())
     project = window.open(path)
     # No test is to have it from another one's hands.
-    project.hold.release()
+    project.file_lock.release()
     project.hold = project.path = None
     choose(window, "near leg")
     for handle, way in ((1, 18 + 8j), (2, -20 + 30j)):

@@ -99,7 +99,7 @@ def place(project, name, window):
     shown = project.layer_runtimes[
         next(f.id for f in project.document.layers if f.name == name)
     ].shown
-    return complex(shown.placement.on(shown.positions).mean())
+    return complex(shown.placement.apply(shown.positions).mean())
 
 
 def test_layers_take_turns_by_one_click(window, scene, ids, use):
@@ -117,9 +117,9 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
         robot.item_click("//$FOCUSED/Let them take turns")
 
     use(let_take_turns)
-    (choice,) = scene.document.choices
+    (choice,) = scene.document.switch_groups
     assert set(choice.layers) == {ids["ah"], ids["oh"]}
-    first = scene.document.layer(choice.at(0)).name
+    first = scene.document.layer(choice.layer_at(0)).name
     other = ({"ah", "oh"} - {first}).pop()
     assert {"ah", "oh"} & seen(scene, 0) == {first}
     window.act(playback.seek, 12)
@@ -156,7 +156,7 @@ def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
         around = picture[y - half : y + half, x - half : x + half]
         return np.count_nonzero(np.abs(around - around[0, 0]).sum(axis=2) > 90)
 
-    on = scene.document.layer(scene.document.choices[0].at(0)).name
+    on = scene.document.layer(scene.document.switch_groups[0].layer_at(0)).name
     (off,) = {"ah", "oh"} - {on}
     assert 0 < inked(boxes[off]) < inked(boxes[on])
 
@@ -166,7 +166,9 @@ def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
         editing.edit_document,
         switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
     )
-    other = next(i for i in (ids["ah"], ids["oh"]) if i != scene.document.choices[0].at(0))
+    other = next(
+        i for i in (ids["ah"], ids["oh"]) if i != scene.document.switch_groups[0].layer_at(0)
+    )
     window.act(editing.edit_document, switch_group_commands.choose_at(other, 12))
     window.frames(3)
     places = {}
@@ -190,9 +192,9 @@ def test_where_a_turn_begins_is_dragged_in_the_timeline(window, scene, ids):
     window.run(measure)
     window.run(drag)
     window.frames(3)
-    assert [turn.frame for turn in scene.document.choices[0].turns][-1] == 20
+    assert [turn.frame for turn in scene.document.switch_groups[0].keys][-1] == 20
     window.act(editing.undo)
-    assert [turn.frame for turn in scene.document.choices[0].turns][-1] == 12
+    assert [turn.frame for turn in scene.document.switch_groups[0].keys][-1] == 12
 
 
 @pytest.mark.usefixtures("scene")
@@ -258,14 +260,14 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     before = place(scene, "hat", window)
     use(lambda robot: drop(robot, ids["hat"], ids["head"]))
     window.settle()
-    (joint,) = scene.document.layer(ids["hat"]).joints
-    assert joint.to == ids["head"]
+    (joint,) = scene.document.layer(ids["hat"]).attachments
+    assert joint.parent == ids["head"]
     assert abs(place(scene, "hat", window) - before) < 0.1
     # Beside what it does not touch, it hangs as well, and nothing moves.
     before = place(scene, "stick", window)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
-    (joint,) = scene.document.layer(ids["stick"]).joints
+    (joint,) = scene.document.layer(ids["stick"]).attachments
     assert abs(joint.offset) > 10
     assert abs(place(scene, "stick", window) - before) < 0.1
     # In a circle nothing can hang, which is told, and nothing moves.
@@ -294,7 +296,7 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
     window.act(layering.select_layers, *both)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
-    assert [scene.document.layer(each).joints[0].to for each in both] == [ids["head"]] * 2
+    assert [scene.document.layer(each).attachments[0].parent for each in both] == [ids["head"]] * 2
     for name, there in zip(("hat", "stick"), places, strict=True):
         assert abs(place(scene, name, window) - there) < 0.1
     assert scene.history.undo_label == "Attach 2 layers"
@@ -310,11 +312,11 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
 def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use):
     window.act(layering.create_switch, ids["ah"], ids["oh"])
     before = scene.document
-    (choice,) = before.choices
-    (row,) = (row for row in scene.tree if row.choice is choice)
+    (choice,) = before.switch_groups
+    (row,) = (row for row in scene.tree if row.switch_group is choice)
     window.act(layering.select_layers, ids["hat"], ids["stick"])
     use(lambda robot: drop(robot, ids["stick"], row.key))
-    (joined,) = scene.document.choices
+    (joined,) = scene.document.switch_groups
     assert set(joined.layers) == {*choice.layers, ids["hat"], ids["stick"]}
     window.act(editing.undo)
     assert scene.document is before
@@ -331,7 +333,7 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     there = place(scene, "ah", window)
     window.act(layering.delete_layers, ids["hat"])
     window.settle()
-    assert scene.document.layer(ids["ah"]).joints[0].to == ids["head"]
+    assert scene.document.layer(ids["ah"]).attachments[0].parent == ids["head"]
     assert abs(place(scene, "ah", window) - there) < 0.1
     assert scene.history.undo_label == "Delete layer"
     window.act(editing.undo)
@@ -346,8 +348,8 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     window.act(playback.seek, 0)
     window.act(layering.delete_layers, ids["hat"])
     window.settle()
-    joints = scene.document.layer(ids["ah"]).joints
-    assert [(each.frame, each.to) for each in joints] == [(0, ids["stick"]), (10, ids["head"])]
+    joints = scene.document.layer(ids["ah"]).attachments
+    assert [(each.frame, each.parent) for each in joints] == [(0, ids["stick"]), (10, ids["head"])]
     window.act(playback.seek, 10)
     assert abs(place(scene, "ah", window) - there) < 0.1
 
@@ -367,15 +369,15 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
 
         use(hand_over)
         window.settle()
-        assert scene.document.layer(ids["stick"]).joints[-1].frame == frame
+        assert scene.document.layer(ids["stick"]).attachments[-1].frame == frame
         assert abs(place(scene, "stick", window) - before) < 0.5
-    assert [each.to for each in scene.document.layer(ids["stick"]).joints] == [
+    assert [each.parent for each in scene.document.layer(ids["stick"]).attachments] == [
         ids["head"],
         ids["hat"],
         None,
     ]
     window.act(layering.delete_parent_key, ids["stick"], 20)
-    assert len(scene.document.layer(ids["stick"]).joints) == 2
+    assert len(scene.document.layer(ids["stick"]).attachments) == 2
 
 
 def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
@@ -388,12 +390,16 @@ def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, id
     before, document = place(scene, "stick", window), scene.document
     window.act(layering.reparent_layer, ids["stick"], ids["hat"])
     window.settle()
-    assert [joint.frame for joint in scene.document.layer(ids["stick"]).joints] == [0, 6]
+    assert [joint.frame for joint in scene.document.layer(ids["stick"]).attachments] == [0, 6]
     assert abs(place(scene, "stick", window) - before) < 0.5
-    parents = [scene.document.carriers(ids["stick"], frame)[1].id for frame in (5, 7, 14, 19, 30)]
+    parents = [
+        scene.document.parent_chain(ids["stick"], frame)[1].id for frame in (5, 7, 14, 19, 30)
+    ]
     assert parents == [ids[name] for name in ("head", "hat", "head", "hat", "hat")]
     use(lambda robot: robot.item_click("**/No change at frame 6###joint"))
-    assert scene.document.layer(ids["stick"]).joints == document.layer(ids["stick"]).joints
+    assert (
+        scene.document.layer(ids["stick"]).attachments == document.layer(ids["stick"]).attachments
+    )
 
 
 def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
@@ -406,7 +412,7 @@ def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
     window.settle()
     assert blue() < whole / 2
     assert layering.layer_at(scene, 120 + 100j) is None
-    assert len(scene.document.exported) == 5
+    assert len(scene.document.exported_layers) == 5
     window.act(layering.solo_layers, ids["stick"])
     window.settle()
     assert blue() == whole
@@ -454,7 +460,7 @@ def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
     window.act(editing.edit_document, command)
     window.frames(3)
     use(lambda robot: robot.item_click("**/Let them take turns"))
-    (choice,) = scene.document.choices
+    (choice,) = scene.document.switch_groups
     assert (choice.name, set(choice.layers)) == ("mouth", {ids["ah"], ids["oh"]})
     window.act(editing.undo)
     window.frames(3)
@@ -512,7 +518,7 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
     assert scene.document is before
     # The layers that are by themselves are offered, and the group stays as it is.
     use(lambda robot: robot.item_click("**/Let them take turns"))
-    (choice,) = scene.document.choices
+    (choice,) = scene.document.switch_groups
     assert set(choice.layers) == {ids["ah"], ids["oh"]}
 
 
@@ -523,13 +529,13 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     before = place(scene, "stick", window)
     use(lambda robot: robot.item_input_value("**/##moved right", 25.0))
     assert abs(place(scene, "stick", window) - before - 25) < 0.5
-    assert [key.frame for key in scene.document.layer(ids["stick"]).movement] == [12]
+    assert [key.frame for key in scene.document.layer(ids["stick"]).transform_keys] == [12]
     window.act(playback.seek, 3)
     window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/change 12"))
     assert playback.current_frame(window.session, scene) == 12
     window.frames(3)
     use(lambda robot: robot.item_click("**/No movement key at frame 12"))
-    assert scene.document.layer(ids["stick"]).movement == ()
+    assert scene.document.layer(ids["stick"]).transform_keys == ()
 
     def paint_in_front(robot):
         robot.item_click("##painted")

@@ -332,7 +332,7 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
 
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
-    window.session.autosave.forget()
+    window.session.autosave.remove()
     with monkeypatch.context() as patch:
         patch.setattr("app.storage.files.atomic.os.fsync", full)
         project.autosaved = None
@@ -355,7 +355,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     middle = complex(*project.document.canvas) / 2
     window.act(posing.add_handle, middle)
     window.settle()
-    window.session.autosave.forget()
+    window.session.autosave.remove()
     project.autosaved = None
     busy = Job(kind=JobKind("Busy", lane="keep"), work=end.wait, done=lambda _: None, failed=print)
     window.session.jobs.put(busy)
@@ -448,7 +448,7 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
 ):
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     window.settle()
-    window.session.autosave.forget()
+    window.session.autosave.remove()
     project.autosaved = None
 
     def lost(*_, **__):

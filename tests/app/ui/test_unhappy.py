@@ -74,13 +74,13 @@ def test_undo_during_a_drag(window, loose):
         robot.mouse_move_to_pos(window.point(start))
         robot.mouse_down(0)
         robot.mouse_move_to_pos(window.point(start - 20j))
-        window.session.jobs.settle()
+        window.session.jobs.wait_until_idle()
         robot.yield_()
         assert loose.document is not first
         press(robot, window.Key.mod_ctrl, window.Key.z)
         # Nor does it come again as Ctrl is let go.
         robot.yield_(3)
-        window.session.jobs.settle()
+        window.session.jobs.wait_until_idle()
         robot.yield_()
         assert loose.document is first
         robot.mouse_move_to_pos(window.point(start - 40j))
@@ -177,7 +177,7 @@ def test_deleting_a_handle_while_it_is_dragged(window, loose):
     window.run(play)
     window.settle()
     assert [handle.id for handle in loose.document.layers[0].handles] == [0]
-    assert loose.selected == frozenset()
+    assert loose.selected_handles == frozenset()
     assert loose.pull is None
 
 
@@ -196,8 +196,8 @@ def test_deleting_a_key_while_it_is_dragged(window, loose):
     window.run(play)
     window.settle()
     assert frames_of(loose) == [0]
-    assert loose.chosen == frozenset()
-    assert loose.timing.gesture is None
+    assert loose.selected_frames == frozenset()
+    assert loose.timeline.gesture is None
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_other_changes_leave_the_solver_at_work(window, loose):
     keys.set_fps(window.session, 12.0)
     assert loose.pull is not None
     window.settle()
-    assert loose.document.layers[0].lags(loose.document.layers[0].key(24).pose)[1] < 10
+    assert loose.document.layers[0].target_errors(loose.document.layers[0].key(24).pose)[1] < 10
 
 
 def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
@@ -243,7 +243,7 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
         pose = loose.layer.key(24).pose
         assert abs(loose.layer.map_of(pose)(np.array([rest]))[0] - wish) < 2
     # Of the point that the handle was put on nothing was wished.
-    assert loose.layer.lags(pose)[1] < 1e-6
+    assert loose.layer.target_errors(pose)[1] < 1e-6
 
 
 def test_playhead_that_goes_elsewhere_ends_the_pull(window, loose):
@@ -276,16 +276,16 @@ def test_end_of_the_preview_range_before_its_beginning_takes_that_along(window):
 
 def test_only_what_is_there_is_selected(window, loose):
     editing.select_handles(window.session, frozenset({1, 7}))
-    assert loose.selected == {1}
+    assert loose.selected_handles == {1}
     timeline_drag.begin_timeline_drag(
         window.session,
         KeyBox(start=0.0, row=loose.active, keeps={loose.active: frozenset({24, 31})}),
-        loose.timing.strip,
+        loose.timeline.time_range,
     )
     timeline_drag.move_timeline_drag(window.session, 10.0, loose.active)
-    assert loose.chosen == {0, 24}
+    assert loose.selected_frames == {0, 24}
     timeline_drag.cancel_timeline_drag(window.session)
-    assert loose.chosen == {24}
+    assert loose.selected_frames == {24}
 
 
 def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
@@ -356,7 +356,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
     mark, text = marks.mark_handles, imgui.text_colored
 
     def marked(marks, **options):
-        wishes.extend(mark.wish for mark in marks)
+        wishes.extend(mark.target for mark in marks)
         return mark(marks, **options)
 
     def told(colour, words):
@@ -432,7 +432,7 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
     keys.set_inbetween_method(window.session, "metric")
     for _ in range(20):
         window.frames()
-        window.session.jobs.settle()
+        window.session.jobs.wait_until_idle()
     prepared = loose.layer_runtime.store.prepared(loose.clip)
     assert prepared is not None
     assert prepared[0] is prepared[2]
@@ -519,7 +519,7 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     posing.add_handle(window.session, complex(*loose.layer_runtime.picture.size) / 2)
     window.settle()
     assert loose.layer_runtime.shown.is_current
-    assert loose.renewal is None
+    assert loose.key_resolver is None
 
 
 @pytest.mark.usefixtures("loose")
@@ -574,7 +574,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, loose
             shown = loose.layer_runtime.shown
             assert not shown.is_current
             assert shown.mesh is mesh
-            np.testing.assert_array_equal(shown.positions, mesh.posed(key.pose))
+            np.testing.assert_array_equal(shown.positions, mesh.pose_vertices(key.pose))
             window.frames(2)
             assert loose.layer_runtime.shown is shown, "nothing is worked out again while it waits"
         # Where the handles will be is not known yet: what is wished comes once it is.
@@ -605,7 +605,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     assert len(other.document.layers[0].keys) == 1
     assert other.history.undo_label is None
     assert other.extent.source in (None, extent_key(other.document))
-    assert (other.pull, other.renewal, other.preview_pose) == (None, None, None)
+    assert (other.pull, other.key_resolver, other.preview_pose) == (None, None, None)
     assert other.layer_runtime.shown.is_current
     assert loose.document is closed
     assert closed.layers[0].handles == before.layers[0].handles

@@ -93,7 +93,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
     )  # no autosave is to keep it awake
     window.settle()
     window.act(exporting.start_export, tmp_path / "frames")
-    session.jobs.settle()
+    session.jobs.wait_until_idle()
     session.toasts = []
     steps = []
     for _ in range(MOST_FRAMES):
@@ -533,7 +533,7 @@ def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window,
     assert len(list((tmp_path / "frames").iterdir())) == FRAMES
     posing.remove_handles(window.session, frozenset({0}))
     window.act(exporting.start_export, tmp_path / "more frames")
-    window.session.jobs.settle()
+    window.session.jobs.wait_until_idle()
     # In-betweens of the same maps, whatever handles they have.
     assert {id(pose.phi) for pose in sampler._samples} == {id(pose.phi) for pose in known}
 
@@ -560,7 +560,7 @@ def test_models_are_exported_and_cancelled_as_all_else(window, tmp_path, name):
     session = window.session
     exporting.set_export_settings(session, ExportSettings(format=name[4:], size=SIZE))
     window.act(exporting.start_export, tmp_path / name)
-    session.jobs.settle()
+    session.jobs.wait_until_idle()
     window.frames()
     window.act(exporting.cancel_export)
     window.settle()
@@ -597,7 +597,7 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
     window.settle()
     rest = project.layer.keys[0].pose
     moved = replace(rest, phi=rest.phi + 20)
-    project.history.pose(PreviewPose(layer=project.active, frame=4, pose=moved))
+    project.history.set_preview_pose(PreviewPose(layer=project.active, frame=4, pose=moved))
     assert project.preview_pose is moved
     out = tmp_path / "pose.png"
 

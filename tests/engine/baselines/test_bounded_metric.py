@@ -40,7 +40,7 @@ def test_the_blended_metric_keeps_the_conformal_bound_in_every_triangle(seed, ti
     between = prepared(maps, mesh)
     domain = between.domain
     ends = np.max([k_of(*domain.derivatives(f(mesh.vertices))) for f in maps], axis=0)
-    k = k_of_lengths(domain, between.intervals[0].blended_lengths(time))
+    k = k_of_lengths(domain, between.segments[0].blended_lengths(time))
     assert np.all(k <= ends + 1e-9)
     frame = between.frame(time)
     assert frame.angle_defect <= 1e-8
@@ -53,7 +53,7 @@ def test_what_flattening_adds_to_the_conformal_distortion_of_a_triangle_dies_wit
         mesh = meshed_bar(count)
         between = prepared(maps, mesh)
         frame = between.frame(0.5)
-        before = k_of_lengths(between.domain, between.intervals[0].blended_lengths(0.5))
+        before = k_of_lengths(between.domain, between.segments[0].blended_lengths(0.5))
         excess.append((k_of(frame.fz, frame.fzbar) - before).max())
         assert frame.angle_defect <= 1e-8
     assert excess[1] < excess[0] / 2
@@ -67,7 +67,7 @@ def test_lengths_on_the_border_are_those_of_the_blended_metric(time):
     start, end = domain.corners, np.roll(domain.corners, -1, axis=1)
     outer = np.setdiff1d(np.arange(start.size), domain.twins.ravel())
     found = np.abs(frame.positions[end] - frame.positions[start]).ravel()[outer]
-    blended = between.intervals[0].blended_lengths(time).ravel()[outer]
+    blended = between.segments[0].blended_lengths(time).ravel()[outer]
     assert_allclose(found, blended, rtol=1e-8, atol=0)
 
 
@@ -94,7 +94,7 @@ def test_the_lengths_differ_from_the_blend_by_a_factor_of_each_end():
     domain, frame = between.domain, between.frame(0.5)
     start, end = domain.corners, np.roll(domain.corners, -1, axis=1)
     found = np.abs(frame.positions[end] - frame.positions[start])
-    ratio = np.log(found / between.intervals[0].blended_lengths(0.5)).ravel()
+    ratio = np.log(found / between.segments[0].blended_lengths(0.5)).ravel()
     rows = np.zeros((ratio.size, len(domain.points)))
     rows[np.arange(ratio.size), start.ravel()] = rows[np.arange(ratio.size), end.ravel()] = 0.5
     logarithms, *_ = np.linalg.lstsq(rows, ratio, rcond=None)

@@ -70,7 +70,7 @@ def test_three_keyframes_and_a_loop_pass_every_keyframe_once(name):
     first, second = stretched_pair()
     maps = [first, rigid(0.3, 0j), second]
     between = prepared(name, maps, loop=True)
-    assert len(between.intervals) == 3
+    assert len(between.segments) == 3
     for time, f in enumerate([*maps, first]):
         assert_allclose(between.frame(time).positions, f(MESH.vertices), rtol=0, atol=1e-8)
 

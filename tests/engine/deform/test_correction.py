@@ -112,11 +112,11 @@ def test_rows_and_bending_are_derivatives():
         return CorrectedFrame.of(known, base, x + s * step)
 
     change = (at(e).places() - at(-e).places()) / (2 * e)
-    rows = at(0).rows() @ step
+    rows = at(0).constraint_rows() @ step
     assert_allclose(rows, [*change.real, *change.imag], atol=1e-8)
     weights = np.concatenate([pulls.real, pulls.imag])
-    bend = weights @ (at(e).rows() - at(-e).rows()) / (2 * e)
-    assert_allclose(at(0).singularity_strengths(pulls)(step), bend, atol=1e-7)
+    bend = weights @ (at(e).constraint_rows() - at(-e).constraint_rows()) / (2 * e)
+    assert_allclose(at(0).curvature(pulls)(step), bend, atol=1e-7)
 
 
 def test_corrections_are_the_least():
@@ -257,7 +257,7 @@ def test_a_share_of_a_correction_keeps_the_limits():
 
     def moduli(s):
         values = known.variables.at_samples
-        conformal, own, factor = samples.corrected(values, s * found.x)
+        conformal, own, factor = samples.apply_correction(values, s * found.x)
         return np.abs(conformal), np.abs(own + factor * values.q_of(s * found.x))
 
     def are_kept(a, b):

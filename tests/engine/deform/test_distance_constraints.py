@@ -29,7 +29,7 @@ def objective(*links):
 
 def bent_jet():
     cage = BOUNDARY.cage
-    return objective().evaluation(cage + 0.03j * cage**2, 0.02 * cage)
+    return objective().evaluate(cage + 0.03j * cage**2, 0.02 * cage)
 
 
 def test_links_cost_what_their_distances_are_beyond_their_range():
@@ -43,13 +43,13 @@ def test_links_cost_what_their_distances_are_beyond_their_range():
 def test_their_derivatives_are_those_of_their_energy():
     rng, jet = np.random.default_rng(4), bent_jet()
     linked, free = objective(*LINKS), objective()
-    gradient = linked.gradient(jet, linked.radial(jet))
+    gradient = linked.gradient(jet, linked.radial_derivatives(jet))
     for _ in range(3):
-        change = linked.change(direction := rng.normal(size=len(gradient)))
+        change = linked.evaluate_change(direction := rng.normal(size=len(gradient)))
         ahead, behind = (linked.energy(jet.advanced(by, change)) for by in (1e-6, -1e-6))
         assert (ahead - behind) / 2e-6 == pytest.approx(gradient @ direction, rel=1e-5)
     # The projection leaves out what is negative: across a link that is too short.
-    rows, radial = linked.distance_constraint_rows(jet), linked.radial(jet)
+    rows, radial = linked.distance_constraint_rows(jet), linked.radial_derivatives(jet)
     assert len(rows) == 3
     products = [hessian_product(each, jet, radial, change) for each in (linked, free)]
     assert_allclose(rows.T @ (rows @ direction), np.subtract(*products), rtol=1e-9, atol=1e-6)
@@ -57,7 +57,7 @@ def test_their_derivatives_are_those_of_their_energy():
     rows = objective(LINKS[1]).distance_constraint_rows(jet)
     ends = [jet.advanced(by, change) for by in (1e-6, -1e-6)]
     slopes = [
-        np.subtract(*(each.gradient(end, each.radial(end)) for end in ends)) / 2e-6
+        np.subtract(*(each.gradient(end, each.radial_derivatives(end)) for end in ends)) / 2e-6
         for each in (objective(LINKS[1]), free)
     ]
     wanted = np.subtract(*slopes)
@@ -79,7 +79,7 @@ def test_a_link_stops_a_hand_that_pulls_too_far_and_the_pose_stays_when_it_lets_
     _, _, usual = pulled(())
     assert abs(np.diff(deformer.positions(usual))[1]) > 2.2
     left = wish.released(places, HANDLES.stiffness)
-    assert left.hands is left.links is None
+    assert left.pulls is left.distance_constraints is None
     after, _ = deformer.settle(state, left)
     assert_allclose(deformer.positions(after), places, atol=1e-3)
     assert not wish.is_same(HANDLES.targets(wish.positions, None, [BoundedPull([2])]))

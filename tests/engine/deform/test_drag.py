@@ -42,7 +42,7 @@ BENT = BAR_POINTS + np.array([0, 0.3j, 0])
 
 def dragged(deformer, targets, steps, state=None):
     state = deformer.start() if state is None else state
-    wish = deformer.handles.wish(targets)
+    wish = deformer.handles.targets(targets)
     for _ in range(steps):
         state = deformer.step(state, wish)
     return state
@@ -112,7 +112,7 @@ def test_poses_turn_with_a_drawing_that_is_turned():
     deformer, turn = star(), np.exp(0.8j)
     here, _ = deformer.settle(deformer.start(), deformer.handles.targets(targets))
     other = moved_star(turn, 0)
-    there, _ = other.settle(other.start(), other.handles.wish(turn * targets))
+    there, _ = other.settle(other.start(), other.handles.targets(turn * targets))
     assert there.statistics.objective == pytest.approx(here.statistics.objective, rel=1e-9)
     points = 0.8 * deformer.boundary.outline
     assert_allclose(there.map(turn * points) / turn, here.map(points), rtol=0, atol=1e-6)

@@ -153,12 +153,12 @@ def problem(*, rotations=None, barrier=True, seed=3):
 @pytest.mark.parametrize("barrier", [True, False])
 def test_gradient_agrees_with_finite_differences(rotations, barrier):
     objective, phi, psi, rng = problem(rotations=rotations, barrier=barrier)
-    jet = objective.evaluation(phi, psi)
-    gradient = objective.gradient(jet, objective.radial(jet))
+    jet = objective.evaluate(phi, psi)
+    gradient = objective.gradient(jet, objective.radial_derivatives(jet))
     n = len(phi)
     for _ in range(5):
         x = rng.normal(size=4 * n - 2)
-        moved = objective.evaluation(*objective.coefficients(x))
+        moved = objective.evaluate(*objective.coefficients(x))
         h = 1e-6
         ahead = objective.value(jet.advanced(h, moved))
         behind = objective.value(jet.advanced(-h, moved))
@@ -168,15 +168,15 @@ def test_gradient_agrees_with_finite_differences(rotations, barrier):
 @pytest.mark.parametrize("barrier", [True, False])
 def test_hessian_is_exact_where_nothing_is_projected(barrier):
     objective, phi, psi, rng = problem(barrier=barrier)
-    jet = objective.evaluation(phi, psi)
-    assert np.all(objective.radial(jet).around_a > 0)
+    jet = objective.evaluate(phi, psi)
+    assert np.all(objective.radial_derivatives(jet).around_a > 0)
     assert_products(objective, jet, len(phi), rng)
 
 
 def test_hessian_of_rotations_is_exact_at_their_wish():
     objective, phi, psi, rng = problem()
-    jet = objective.evaluation(phi, psi)
-    wish = objective.handles.wish(jet.positions, np.angle(jet.fz))
+    jet = objective.evaluate(phi, psi)
+    wish = objective.handles.targets(jet.positions, np.angle(jet.fz))
     objective = Objective(
         boundary=objective.boundary, handles=objective.handles, targets=wish, barrier=None
     )
@@ -185,23 +185,23 @@ def test_hessian_of_rotations_is_exact_at_their_wish():
 
 def test_hessian_of_rotations_is_the_projection():
     objective, phi, psi, _ = problem(barrier=False)
-    jet = objective.evaluation(phi, psi)
+    jet = objective.evaluate(phi, psi)
     handles = objective.handles
     turned = np.full(6, np.nan)
     turned[2] = np.angle(jet.fz[2]) - 0.4
     both = [
         np.triu(
             projected_hessian(
-                replace(objective, wish=handles.wish(jet.positions, r)),
+                replace(objective, targets=handles.targets(jet.positions, r)),
                 jet,
-                objective.radial(jet),
+                objective.radial_derivatives(jet),
             )
         )
         for r in (None, turned)
     ]
     difference = both[1] - both[0]
     difference = difference + np.triu(difference, 1).T
-    stiffness = 2 * handles.arm**2 * handles.stiffness[2]
+    stiffness = 2 * handles.lever**2 * handles.stiffness[2]
     exact = 2 * stiffness * np.array([[0, -0.4], [-0.4, 1.0]])
     values, vectors = np.linalg.eigh(exact)
     kept = values[1] * np.outer(vectors[:, 1], vectors[:, 1])
@@ -215,17 +215,17 @@ def test_hessian_of_rotations_is_the_projection():
 
 def assert_products(objective, jet, n, rng, *, removed=0.0, tolerance=1e-6):
     """Compare the Hessian less what is `removed` from that of the map with differences."""
-    hessian = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
+    hessian = np.triu(projected_hessian(objective, jet, objective.radial_derivatives(jet)))
     hessian = hessian + np.triu(hessian, 1).T
     hessian[: 2 * n, : 2 * n] -= removed
     h = 1e-6
     for _ in range(3):
         x = rng.normal(size=4 * n - 2)
-        moved = objective.evaluation(*objective.coefficients(x))
+        moved = objective.evaluate(*objective.coefficients(x))
         ahead, behind = jet.advanced(h, moved), jet.advanced(-h, moved)
         by_gradient = (
-            objective.gradient(ahead, objective.radial(ahead))
-            - objective.gradient(behind, objective.radial(behind))
+            objective.gradient(ahead, objective.radial_derivatives(ahead))
+            - objective.gradient(behind, objective.radial_derivatives(behind))
         ) / (2 * h)
         product = hessian @ x
         assert_allclose(product, by_gradient, rtol=0, atol=tolerance * np.abs(product).max())
@@ -235,11 +235,11 @@ def assert_products(objective, jet, n, rng, *, removed=0.0, tolerance=1e-6):
 def test_the_hessian_without_its_projection_is_exact(barrier):
     # A shrunk map, where the projection removes something at most samples, and turned handles.
     objective, phi, psi, rng = problem(barrier=barrier)
-    jet = objective.evaluation(0.6 * phi, 0.3 * psi)
+    jet = objective.evaluate(0.6 * phi, 0.3 * psi)
     n = len(phi)
     turned = np.where(np.arange(6) % 2, np.nan, np.angle(jet.fz) - 0.4)
-    objective = replace(objective, wish=objective.handles.wish(jet.positions, turned))
-    radial = objective.radial(jet)
+    objective = replace(objective, targets=objective.handles.targets(jet.positions, turned))
+    radial = objective.radial_derivatives(jet)
     assert np.count_nonzero(radial.around_a < 0) > 100
     # But for the tiny stiffness against turning as a whole.
     negative = negative_part(objective, jet, radial)
@@ -248,21 +248,24 @@ def test_the_hessian_without_its_projection_is_exact(barrier):
 
 def test_samples_that_were_added_change_the_hessian_hardly():
     objective, phi, psi, _ = problem(barrier=False)
-    jet = objective.evaluation(phi, psi)
-    hessian = np.triu(projected_hessian(objective, jet, objective.radial(jet)))
+    jet = objective.evaluate(phi, psi)
+    hessian = np.triu(projected_hessian(objective, jet, objective.radial_derivatives(jet)))
     boundary = objective.boundary.refined(np.arange(0, len(objective.boundary.points), 3))
     walls = Barrier(bounds=BarrierBounds.for_samples(WALLS, len(boundary.points)), weight=1e-9)
     finer = replace(objective, boundary=boundary, barrier=walls)
-    jet = finer.evaluation(phi, psi)
+    jet = finer.evaluate(phi, psi)
     assert_allclose(
-        np.triu(projected_hessian(finer, jet, finer.radial(jet))), hessian, rtol=1e-5, atol=1e-3
+        np.triu(projected_hessian(finer, jet, finer.radial_derivatives(jet))),
+        hessian,
+        rtol=1e-5,
+        atol=1e-3,
     )
 
 
 def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near():
     objective, phi, psi, _ = problem()
-    jet = objective.evaluation(phi, psi)
-    radial = objective.radial(jet)
+    jet = objective.evaluate(phi, psi)
+    radial = objective.radial_derivatives(jet)
     single, double = (
         single_hessian(objective, jet, radial),
         projected_hessian(objective, jet, radial),
@@ -270,8 +273,8 @@ def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near(
     assert single.dtype == np.float32
     assert_allclose(np.triu(single), np.triu(double), rtol=1e-5, atol=1e-3)
     alone = Handles.place(objective.boundary, STAR_POINTS[:1])
-    free = replace(objective, handles=alone, wish=alone.targets(STAR_POINTS[:1]))
-    assert single_hessian(free, jet, free.radial(jet)) is None
+    free = replace(objective, handles=alone, targets=alone.targets(STAR_POINTS[:1]))
+    assert single_hessian(free, jet, free.radial_derivatives(jet)) is None
     radial.aa[7] *= 1e6
     assert single_hessian(objective, jet, radial) is None
 
@@ -280,12 +283,12 @@ def test_single_precision_serves_where_handles_hold_a_shape_and_no_wall_is_near(
 def test_a_newton_step_is_that_of_the_whole_hessian(barrier):
     rotations = np.array([0.3, np.nan, -0.2, np.nan, np.nan, 3.0])
     objective, phi, psi, rng = problem(rotations=rotations, barrier=barrier)
-    jet = objective.evaluation(phi, psi)
-    radial = objective.radial(jet)
+    jet = objective.evaluate(phi, psi)
+    radial = objective.radial_derivatives(jet)
     hessian = np.triu(projected_hessian(objective, jet, radial))
     hessian = hessian + np.triu(hessian, 1).T
     x = rng.normal(size=len(hessian))
-    product = hessian_product(objective, jet, radial, objective.change(x))
+    product = hessian_product(objective, jet, radial, objective.evaluate_change(x))
     assert_allclose(product, hessian @ x, rtol=0, atol=1e-5 * np.abs(product).max())
     exact = list(newton_models(objective, jet))[-1].direction().evaluation.f
     direction = newton_direction(objective, jet).evaluation.f
@@ -313,6 +316,6 @@ def test_newton_finds_the_free_minimum_in_30_steps():
 @pytest.mark.parametrize("size", [1e160, 1e300])
 def test_a_trial_step_may_lead_farther_than_numbers_reach(size):
     objective, phi, psi, _ = problem()
-    far = objective.evaluation(size * phi, size * psi)
+    far = objective.evaluate(size * phi, size * psi)
     assert objective.energy(far) == np.inf
     assert objective.value(far) == np.inf

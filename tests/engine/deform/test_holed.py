@@ -46,11 +46,11 @@ def problem(shape, name, seed=3):
 def test_derivatives_agree_with_finite_differences(shape, name):
     objective, phi, psi = problem(shape, name)
     boundary, h = objective.boundary, 1e-6
-    jet = objective.evaluation(phi, psi)
-    radial = objective.radial(jet)
+    jet = objective.evaluate(phi, psi)
+    radial = objective.radial_derivatives(jet)
     assert np.all(radial.around_a > 0)  # nothing is projected
     # Only at their wish rotations have no projected part.
-    objective = replace(objective, wish=objective.handles.wish(objective.wish.positions))
+    objective = replace(objective, targets=objective.handles.targets(objective.targets.positions))
     gradient = objective.gradient(jet, radial)
     hessian = np.triu(projected_hessian(objective, jet, radial))
     hessian = hessian + np.triu(hessian, 1).T
@@ -61,13 +61,13 @@ def test_derivatives_agree_with_finite_differences(shape, name):
     rng = np.random.default_rng(0)
     for _ in range(4):
         x = rng.normal(size=len(gradient))
-        moved = objective.evaluation(*objective.coefficients(x))
+        moved = objective.evaluate(*objective.coefficients(x))
         ahead, behind = jet.advanced(h, moved), jet.advanced(-h, moved)
         slope = (objective.value(ahead) - objective.value(behind)) / (2 * h)
         assert_allclose(gradient @ x, slope, rtol=1e-5)
         by_gradient = (
-            objective.gradient(ahead, objective.radial(ahead))
-            - objective.gradient(behind, objective.radial(behind))
+            objective.gradient(ahead, objective.radial_derivatives(ahead))
+            - objective.gradient(behind, objective.radial_derivatives(behind))
         ) / (2 * h)
         product = (hessian - idle) @ x
         assert_allclose(product, by_gradient, rtol=0, atol=2e-6 * np.abs(product).max())

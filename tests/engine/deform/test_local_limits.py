@@ -40,7 +40,7 @@ def extremes_of(f, half):
 
 
 def come_to_rest(deformer, start=None, wanted=WANTED):
-    wish = deformer.handles.wish(wanted)
+    wish = deformer.handles.targets(wanted)
     state = deformer.start() if start is None else start
     for _ in range(500):
         state = deformer.step(state, wish)
@@ -53,7 +53,7 @@ def come_to_rest(deformer, start=None, wanted=WANTED):
 def test_bounds_that_are_alike_everywhere_are_those_of_the_shape_to_the_last_bit(bounds):
     single, each = come_to_rest(bar(bounds)), come_to_rest(bar(two_halves(bounds, bounds)))
     assert_array_equal(each.map.coefficients, single.map.coefficients)
-    assert (each.status, each.tried) == (single.status, single.tried)
+    assert (each.status, each.search_steps) == (single.status, single.search_steps)
 
 
 def test_each_half_keeps_its_own_bounds_and_uses_them():

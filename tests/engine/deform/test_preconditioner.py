@@ -59,10 +59,10 @@ def test_a_factor_that_takes_too_many_rounds_is_made_anew(maps, monkeypatch):
 
 def test_a_factor_serves_its_own_handles_only(maps):
     objective, jet, factored = maps
-    turned = objective.handles.wish(objective.wish.positions, np.zeros(len(STAR_POINTS)))
+    turned = objective.handles.targets(objective.targets.positions, np.zeros(len(STAR_POINTS)))
     softened = objective.handles.softened(0.5)
-    for other in (replace(objective, handles=softened), replace(objective, wish=turned)):
-        assert not factored.serves(other)
+    for other in (replace(objective, handles=softened), replace(objective, targets=turned)):
+        assert not factored.can_serve(other)
         direction, _ = preconditioned_direction(other, jet, factored)
         assert_array_equal(direction.phi, newton_direction(other, jet).phi)
 

@@ -63,13 +63,13 @@ def shape():
 def pulled_out():
     """Return the star at rest with one arm pulled beyond reach, and its wish."""
     deformer = shape()
-    wish = deformer.handles.wish(OUT, None, (BoundedPull([1]),))
+    wish = deformer.handles.targets(OUT, None, (BoundedPull([1]),))
     return wish, settled(deformer, wish)
 
 
 @pytest.mark.parametrize("away", [1e-4, 3e-3, 0.1, 1.0, 1e5])
 def test_a_hand_pulls_as_it_was_until_its_force_is_spent_and_no_stronger_then(away):
-    jet = objective(OUT, ()).evaluation(*coefficients())
+    jet = objective(OUT, ()).evaluate(*coefficients())
     stiffness, gives = HANDLES.stiffness[1], FORCE / (2 * HANDLES.stiffness[1] * SIZE)
     arrived, wanted = OUT.copy(), OUT.copy()
     arrived[1] = jet.positions[1]
@@ -81,30 +81,30 @@ def test_a_hand_pulls_as_it_was_until_its_force_is_spent_and_no_stronger_then(aw
     far = away * SIZE
     huber = stiffness * (2 * gives * far - gives**2 if far > gives else far**2)
     assert_allclose(pulled.energy(jet), others + huber, rtol=1e-9)
-    force = 2 * stiffness * abs(pulled.wish.errors(jet.positions)[1])
+    force = 2 * stiffness * abs(pulled.targets.target_errors(jet.positions)[1])
     assert_allclose(force, min(FORCE / SIZE, 2 * stiffness * far), rtol=1e-7)
 
 
 @pytest.mark.parametrize("hands", [TWO, (BoundedPull([0, 1, 2, 3, 4, 5], 3.0),)])
 def test_its_gradient_and_its_hessian_are_those_of_its_energy(hands):
     mine = objective(1.4 * STAR_POINTS * np.exp(0.3j), hands)
-    jet = mine.evaluation(*coefficients())
-    assert np.count_nonzero(mine.wish.hands.given(jet.positions - mine.wish.positions)) == len(
-        hands
-    )
-    gradient = mine.gradient(jet, mine.radial(jet))
+    jet = mine.evaluate(*coefficients())
+    assert np.count_nonzero(
+        mine.targets.pulls.slack(jet.positions - mine.targets.positions)
+    ) == len(hands)
+    gradient = mine.gradient(jet, mine.radial_derivatives(jet))
     rng, step = np.random.default_rng(1), 1e-5
     for _ in range(5):
         direction = rng.normal(size=len(gradient))
-        change = mine.change(direction)
+        change = mine.evaluate_change(direction)
         there, back = (jet.advanced(sign * step, change) for sign in (1, -1))
         assert_allclose(
             (mine.energy(there) - mine.energy(back)) / (2 * step), gradient @ direction, rtol=1e-6
         )
         # The Hessian of the handles alone: positions are linear in the unknowns.
         positions = [moved.positions for moved in (there, back)]
-        pull = [2 * HANDLES.stiffness * mine.wish.errors(place) for place in positions]
-        curved = 2 * HANDLES.stiffness * mine.held_change(jet, change.positions)
+        pull = [2 * HANDLES.stiffness * mine.targets.target_errors(place) for place in positions]
+        curved = 2 * HANDLES.stiffness * mine.target_error_change(jet, change.positions)
         assert_allclose(
             (pull[0] - pull[1]) / (2 * step), curved, rtol=1e-5, atol=1e-6 * np.abs(curved).max()
         )
@@ -113,13 +113,13 @@ def test_its_gradient_and_its_hessian_are_those_of_its_energy(hands):
 @pytest.mark.parametrize("secant", [False, True])
 def test_the_matrix_and_the_products_of_its_hessian_agree(secant):
     mine = objective(1.4 * STAR_POINTS * np.exp(0.3j), TWO, secant=secant)
-    jet = mine.evaluation(*coefficients())
-    radial = mine.radial(jet)
+    jet = mine.evaluate(*coefficients())
+    radial = mine.radial_derivatives(jet)
     upper = projected_hessian(mine, jet, radial)
     hessian = np.triu(upper) + np.triu(upper, 1).T
     assert np.linalg.eigvalsh(hessian).min() > -1e-4
     direction = np.random.default_rng(2).normal(size=len(hessian))
-    product = hessian_product(mine, jet, radial, mine.change(direction))
+    product = hessian_product(mine, jet, radial, mine.evaluate_change(direction))
     assert_allclose(product, hessian @ direction, rtol=0, atol=2e-3 * np.abs(product).max())
 
 
@@ -138,7 +138,7 @@ def test_a_hand_beyond_reach_moves_what_it_holds_and_nothing_else():
     assert pixels(places[others], STAR_POINTS[others]) < 3
     assert pixels(places[1], OUT[1]) > 100
     # All of its force is in use, and no more.
-    force = 2 * deformer.handles.stiffness[1] * abs(wish.errors(places)[1])
+    force = 2 * deformer.handles.stiffness[1] * abs(wish.target_errors(places)[1])
     assert_allclose(force, 10.0 / SIZE, rtol=1e-9)
     # A wish that is within reach is met like any other.
     near = STAR_POINTS.copy()
@@ -155,7 +155,7 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     wish, state = pulled_out()
     places, shape = deformer.positions(state), state.map(BOUNDARY.outline)
     left = wish.released(places, deformer.handles.stiffness)
-    assert left.hands is None
+    assert left.pulls is None
     assert_array_equal(left.positions[[0, 2, 3, 4, 5]], STAR_POINTS[[0, 2, 3, 4, 5]])
     beyond = left.positions[1] - places[1]
     assert_allclose(np.angle(beyond / (OUT[1] - places[1])), 0, atol=1e-9)
@@ -174,7 +174,7 @@ def within_reach():
     """Return a wish that the star meets."""
     targets = STAR_POINTS.copy()
     targets[1] *= 1 + 0.15 * SIZE / abs(targets[1])
-    return shape().handles.wish(targets, None, (BoundedPull([1]),))
+    return shape().handles.targets(targets, None, (BoundedPull([1]),))
 
 
 @pytest.mark.parametrize("is_reached", [True, False])
@@ -193,7 +193,7 @@ def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
     gradients = []
     for each in (wish, left):
         mine, jet = deformer.measured(state, each)
-        gradients.append(mine.gradient(jet, mine.radial(jet)))
+        gradients.append(mine.gradient(jet, mine.radial_derivatives(jet)))
     assert_allclose(*gradients, rtol=0, atol=1e-9)
     again = settled(deformer, left, state)
     off = pixels(again.map(BOUNDARY.outline), state.map(BOUNDARY.outline))
@@ -215,7 +215,7 @@ def test_a_short_search_comes_to_rest_where_a_long_one_does(monkeypatch):
     moved = deformer.start()
     for share in np.linspace(0, 1, 6)[1:]:
         targets = STAR_POINTS + share * (wish.positions - STAR_POINTS)
-        moved = deformer.step(moved, deformer.handles.wish(targets, None, (BoundedPull([1]),)))
+        moved = deformer.step(moved, deformer.handles.targets(targets, None, (BoundedPull([1]),)))
     short, few = deformer.settle(moved, wish)
     # Heavier at first, slowly lighter, and hands with nothing along their pull in the Hessian.
     monkeypatch.setattr("engine.deform.interior_point.continuation.HERE_PER_ENERGY", 1e-2)

@@ -30,7 +30,7 @@ def certificate(k=0.26, sigma_a=1.51, sigma_b=0.89):
 
 
 def after(schedule, length, shortfall=0.5):
-    return schedule.after(length=length, shortfall=shortfall, moving=True)
+    return schedule.after_step(length=length, shortfall=shortfall, moving=True)
 
 
 def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
@@ -45,10 +45,10 @@ def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
 def test_a_drag_without_progress_is_at_rest():
     schedule = after(BarrierSchedule(), 1.0)
     for _ in range(IDLE_AT_REST):
-        assert not schedule.at_rest
+        assert not schedule.is_at_rest
         schedule = after(schedule, 0.1)
-    assert schedule.at_rest
-    assert not schedule.for_new_targets().at_rest
+    assert schedule.is_at_rest
+    assert not schedule.for_new_targets().is_at_rest
     progress = after(schedule, 0.1, shortfall=0.4)
     assert progress.idle_steps == 0
 

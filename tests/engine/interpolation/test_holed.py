@@ -68,7 +68,7 @@ def test_both_ways_around_a_hole_lead_to_the_same_place(name, variant):
     halves = [half for each in circles(shape) for half in each]
     points = np.concatenate([z for z, _ in halves])
     motion = between(shape, keys(shape), variant, points)
-    diameter = motion.sites.diameter
+    diameter = motion.sampled_domain.diameter
     for time in TIMES:
         frame = motion.frame(time)
         steps = [
@@ -83,7 +83,7 @@ def test_both_ways_around_a_hole_lead_to_the_same_place(name, variant):
         for one, two in zip(steps[::2], steps[1::2], strict=True):
             assert abs(one) > 0.1
             assert abs(one - two) < 1e-9 * diameter
-        assert motion.intervals[0].correction > 1e-4
+        assert motion.segments[0].correction > 1e-4
 
 
 @pytest.mark.parametrize(
@@ -100,8 +100,8 @@ def test_keyframes_are_met_exactly(name, variant):
     motion = between(shape, maps, variant)
     for time, f in enumerate(maps):
         frame = motion.frame(float(time))
-        assert_allclose(frame.positions, f(motion.sites.points), rtol=0, atol=1e-11)
-        fz, fzbar = f.derivatives(motion.sites.points)
+        assert_allclose(frame.positions, f(motion.sampled_domain.points), rtol=0, atol=1e-11)
+        fz, fzbar = f.derivatives(motion.sampled_domain.points)
         assert_allclose(frame.fz, fz, rtol=0, atol=1e-9)
         assert_allclose(frame.fzbar, fzbar, rtol=0, atol=1e-9)
 
@@ -314,9 +314,13 @@ def test_the_correction_is_the_smallest():
     """Any other holomorphic function that closes the period is larger on the boundary."""
     shape = ring()
     motion = between(shape, keys(shape), "nu")
-    loops, boundary, inbetweens = motion.sites.loops, motion.sites.boundary, motion.intervals[0]
+    loops, boundary, inbetweens = (
+        motion.sampled_domain.loops,
+        motion.sampled_domain.boundary,
+        motion.segments[0],
+    )
     plain = replace(inbetweens.keyframe_blend, residuals=())
-    blend = replace(inbetweens.blend, keyframe_blend=plain.at(motion.sites.paths.around))
+    blend = replace(inbetweens.blend, keyframe_blend=plain.at(motion.sampled_domain.paths.around))
     here, closing = blend.derivatives(0.5), inbetweens.closing
     (modes,) = boundary.span.evaluate(closing.functions.coefficients, boundary.points, orders=(0,))
 

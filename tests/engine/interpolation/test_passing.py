@@ -60,8 +60,8 @@ def velocity(place, step):
 
 def velocities(prepared, key):
     """Return the velocities of the points just before a keyframe and just after it."""
-    count = len(prepared.intervals)
-    before, after = prepared.intervals[(key - 1) % count], prepared.intervals[key % count]
+    count = len(prepared.segments)
+    before, after = prepared.segments[(key - 1) % count], prepared.segments[key % count]
     return (
         -velocity(lambda s: before.frame(1.0 - s).positions, STEP),
         velocity(lambda s: after.frame(s).positions, STEP),
@@ -82,7 +82,7 @@ def velocities(prepared, key):
 )
 def test_keyframes_are_met_exactly_and_passed_at_one_velocity(variant, loop):
     prepared = between(variant=variant, loop=loop, bounds=WIDE)
-    size = prepared.sites.diameter
+    size = prepared.sampled_domain.diameter
     for time, f in enumerate(MAPS):
         assert_allclose(prepared.frame(time).positions, f(POINTS), rtol=0, atol=1e-12 * size)
     if loop:
@@ -147,7 +147,7 @@ def test_two_keyframes_have_the_in_betweens_of_the_paper(variant):
     )
     assert_array_equal(plain.frame(0.3).positions, passed.frame(0.3).positions)
     # A stop at both ends is the same way at another pace.
-    sites = plain.sites
+    sites = plain.sampled_domain
     sheets = root_sheets(np.array([key.anchor_fz for key in plain.keyframes]))
     passage = KeyframeBlend.of(plain.keyframes, sheets, TimeWeights.between(0.0, 0.0))
     extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
@@ -287,7 +287,7 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
 )
 def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
     prepared = between(MAPS[:3], variant=variant, through=through)
-    interval, sites = prepared.intervals[0], prepared.sites
+    interval, sites = prepared.segments[0], prepared.sampled_domain
     passage = interval.keyframe_blend
     own = KeyframeBlend.of(passage.keyframes, passage.sheets, passage.eta_time_weights)
     alone = KeyframeSegment(

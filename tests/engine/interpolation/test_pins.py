@@ -123,7 +123,7 @@ def test_an_anchor_that_stays_is_where_the_base_has_it():
 def test_a_stream_holds_the_pins():
     points = inner_points(SHAPE[0], 300, 2)
     known = at(points, Variant.METRIC)
-    series = finish(build_series(Positions.of(known, known.sites)))
+    series = finish(build_series(Positions.of(known, known.sampled_domain)))
     assert series.is_whole
     for time in (0.13, 0.5, 0.77):
         streamed = series.values(time).view(np.complex64)
@@ -144,7 +144,7 @@ def test_derivatives_at_some_points_are_the_frames_own():
 @pytest.mark.parametrize("variant", list(Variant))
 def test_whole_segments_are_proven_with_their_pins(variant):
     boundary = pinned(variant)[0].boundary
-    ends = boundary.points[boundary.following]
+    ends = boundary.points[boundary.next_samples]
     dense = [boundary.points * (1 - s) + ends * s for s in (0.3, 0.7)]
     known = at(np.concatenate([boundary.points, *dense]), variant)
     proof = prove(known)

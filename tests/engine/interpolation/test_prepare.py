@@ -65,7 +65,7 @@ def test_frames_are_pure_and_their_inputs_frozen():
     assert_array_equal(first.positions, again.positions)
     first.positions[:] = 0  # a frame is the caller's own
     assert_array_equal(prepared.frame(0.3).positions, again.positions)
-    for array in (prepared.sites.paths.nodes, prepared.keyframes[0].log_fz):
+    for array in (prepared.sampled_domain.paths.nodes, prepared.keyframes[0].log_fz):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
 
@@ -94,7 +94,7 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
 
 @pytest.mark.parametrize("variant", Variant)
 def test_derivatives_at_some_points_are_those_of_the_frame(variant):
-    piece = between(variant=variant).intervals[0]
+    piece = between(variant=variant).segments[0]
     which = np.array([7, 3, 0])
     times = np.array([0.0, 0.3, 0.75, 1.0])
     for time, fz, fzbar in zip(times, *piece.derivatives_at(which)(times), strict=True):

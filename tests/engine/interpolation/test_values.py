@@ -80,15 +80,15 @@ def test_values_are_those_of_full_paths_at_few_nodes(name, variant):
     handles, beside = points_of(name)
     few = between(name, variant, handles, beside)
     full = between(name, variant, np.concatenate([handles, beside]))
-    assert len(few.sites.paths.nodes) < len(full.sites.paths.nodes) / 2
-    count, places = len(handles), full.sites.paths.places
+    assert len(few.sampled_domain.paths.nodes) < len(full.sampled_domain.paths.nodes) / 2
+    count, places = len(handles), full.sampled_domain.paths.places
     # The Cauchy integral's own error depends on which points are looked at together.
     tolerance = 5e-9 if variant.needs_transform else 1e-10
     at_times = few.values_at(np.array(TIMES))
     for number, time in enumerate(TIMES):
         frame, values = few.frame_with_values(time)
         expected = full.frame(time)
-        plain = full.keyframe_blend.plain_log_fz(time)[0][places]
+        plain = full.keyframe_blend.log_fz_without_residuals(time)[0][places]
         assert_allclose(frame.positions, expected.positions[:count], rtol=0, atol=tolerance)
         assert_allclose(values.fz, expected.fz[count:], rtol=tolerance, atol=0)
         assert_allclose(values.g, expected.fzbar[count:].conj(), rtol=0, atol=tolerance)

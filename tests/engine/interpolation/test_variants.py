@@ -61,7 +61,7 @@ def test_property_1_keyframes_are_reproduced_without_a_jump(variant, case):
     maps = pair(name, seed)
     points = np.concatenate([inner_points(SHAPES[name][0], 40, 1), SHAPES[name][0]])
     between = prepared(name, maps, variant, points)
-    size = between.sites.diameter
+    size = between.sampled_domain.diameter
     for time, f in enumerate(maps):
         frame = between.frame(time)
         fz, fzbar = f.derivatives(points)

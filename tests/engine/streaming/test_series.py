@@ -70,8 +70,8 @@ class Curves:
 @settings(max_examples=2)
 def test_positions_are_those_of_the_direct_path(variant, case, seed):
     between = prepared(case[0], variant, random_pair(*case))
-    channels = Positions.of(between, between.sites)
-    diameter = between.sites.diameter
+    channels = Positions.of(between, between.sampled_domain)
+    diameter = between.sampled_domain.diameter
     largest = max(np.abs(key.positions).max() for key in between.keyframe_blend.ends)
     assert channels.tolerance <= max(1e-6 * diameter, 5e-7 * largest)
     series = finish(build_series(channels))
@@ -85,7 +85,7 @@ def test_positions_are_those_of_the_direct_path(variant, case, seed):
 @pytest.mark.parametrize("variant", Variant)
 def test_keyframes_are_exact_to_float32(variant):
     between = prepared("letter L", variant, random_pair("letter L", 5))
-    series = finish(build_series(Positions.of(between, between.sites)))
+    series = finish(build_series(Positions.of(between, between.sampled_domain)))
     for time, key in enumerate(between.keyframe_blend.ends):
         expected = key.positions.astype(np.complex64)
         assert_array_equal(series.values(float(time)).view(np.complex64), expected)
@@ -96,7 +96,7 @@ def test_keyframes_are_exact_to_float32(variant):
 @pytest.mark.parametrize("variant", Variant)
 def test_distortions_are_those_of_the_direct_path(variant):
     between = prepared("letter L", variant, random_pair("letter L", 8))
-    series = finish(build_series(Distortions.of(between, between.sites)))
+    series = finish(build_series(Distortions.of(between, between.sampled_domain)))
     for time in np.random.default_rng(0).random(12):
         fz, fzbar = as_complex(series.values(time)).reshape(2, -1)
         frame = direct(between, time)
@@ -116,10 +116,10 @@ def test_a_scaled_map_far_from_its_bounds_has_its_rho_in_the_series():
     maps[1] = type(maps[0])(cage=cage, phi=grown, psi=0.4 * grown)
     between = prepared("bar", "scaled-eta", maps)
     assert min(between.rho(time) for time in (0.25, 0.5, 0.75)) < 0.9
-    series = finish(build_series(Positions.of(between, between.sites)))
+    series = finish(build_series(Positions.of(between, between.sampled_domain)))
     for time in np.random.default_rng(3).random(60):
         expected = direct(between, time).positions
-        atol = 1e-6 * between.sites.diameter
+        atol = 1e-6 * between.sampled_domain.diameter
         assert_allclose(as_complex(series.values(time)), expected, rtol=0, atol=atol)
 
 
@@ -143,7 +143,7 @@ def extreme_pair(kind):
 @pytest.mark.parametrize("kind", ["k .95", "k .99", "from 20 to .05"])
 def test_extreme_keys_are_streamed_as_accurately_and_from_few_samples(variant, kind):
     between = prepared("bar", variant, extreme_pair(kind))
-    channels = Positions.of(between, between.sites)
+    channels = Positions.of(between, between.sampled_domain)
     times = []
     counted = Curves(lambda t: times.append(t) or channels.sample(t), channels.tolerance)
     counted = replace(counted, probe=channels.probe)
@@ -276,7 +276,7 @@ def test_what_jumps_is_left_to_the_direct_path():
 def test_far_from_the_origin_the_tolerance_is_what_float32_holds():
     maps = [bent(SHAPES["bar"], shift=9000j), bent(SHAPES["bar"], bend=0.7, shift=9000j)]
     between = prepared("bar", "nu", maps)
-    series = finish(build_series(Positions.of(between, between.sites)))
+    series = finish(build_series(Positions.of(between, between.sampled_domain)))
     assert len(series.pieces) == 1
     found = as_complex(series.values(0.4))
     assert_allclose(found, direct(between, 0.4).positions, rtol=0, atol=9000 * 2**-21)
@@ -284,7 +284,7 @@ def test_far_from_the_origin_the_tolerance_is_what_float32_holds():
 
 def test_building_goes_in_small_steps_that_may_take_turns():
     motions = [prepared("bar", variant, random_pair("bar", 2)) for variant in ("nu", "metric")]
-    channels = [Positions.of(motion, motion.sites) for motion in motions]
+    channels = [Positions.of(motion, motion.sampled_domain) for motion in motions]
     calls = []
 
     @dataclass(frozen=True)

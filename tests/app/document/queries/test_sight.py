@@ -193,7 +193,7 @@ def test_time_edits_carry_all_of_them_along():
         camera=KEYS,
         movement=(TransformKey(frame=4), TransformKey(frame=8, shift=1j)),
         opacities=(OpacityKey(frame=2, opacity=0.5),),
-        placings=(DrawOrderKey(6, None),),
+        draw_order_keys=(DrawOrderKey(6, None),),
     )
     twice = scene_commands.scale_time(2.0)(document)
     layer = twice.layers[0]
@@ -216,9 +216,9 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=40)):
         scene_commands.set_frames(FrameRange(0, 39))(filmed())
     with pytest.raises(LissomError, match="in front of itself"):
-        altered(EMPTY, placings=(DrawOrderKey(0, 0),))
+        altered(EMPTY, draw_order_keys=(DrawOrderKey(0, 0),))
     with pytest.raises(LissomError, match=says(NO_LAYER, identity=7)):
-        altered(EMPTY, placings=(DrawOrderKey(0, 7),))
+        altered(EMPTY, draw_order_keys=(DrawOrderKey(0, 7),))
     with pytest.raises(LissomError, match="between 0 and 1"):
         OpacityKey(frame=0, opacity=1.5)
     with pytest.raises(LissomError, match="within"):

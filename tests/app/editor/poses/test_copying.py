@@ -40,7 +40,7 @@ def test_a_pose_is_pasted_at_another_frame_as_one_step(session):
         pose = project.layer.key(frame).pose
         assert (pose.phi is bent.phi, pose.psi is bent.psi) == (True, True)
         assert pose.targets == bent.targets
-        assert project.chosen == {frame}
+        assert project.selected_frames == {frame}
         editing.undo(session)
         assert project.document is before
 
@@ -61,7 +61,7 @@ def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     go(session, 4)
     pasting.paste_copied(session)
     assert project.layer.key_frames == {0, 4, 6, 10}
-    assert project.chosen == {4, 10}
+    assert project.selected_frames == {4, 10}
     assert project.layer.key(4).pose is project.layer.key(0).pose
     assert project.layer.key(4).easing == HOLD
     assert project.layer.key(10).pose is project.layer.key(6).pose
@@ -110,7 +110,7 @@ def test_a_pose_is_pasted_with_the_handles_of_now(session):
     pasting.paste_copied(session)
     pose = project.layer.key(6).pose
     assert set(pose.targets) == {1}
-    assert project.layer.lags(pose)[1] == pytest.approx(0.0, abs=1e-9)
+    assert project.layer.target_errors(pose)[1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_a_pose_is_proven_against_the_limits_of_now(session):

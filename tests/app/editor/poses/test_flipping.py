@@ -34,8 +34,8 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     playback.scrub(session, 20)
     pasting.paste_copied(session, "flipped")
     settle(session)
-    assert project.chosen == {20, 26}
-    assert (project.layer.key(20).turns, project.layer.key(26).turns) == (-2, 1)
+    assert project.selected_frames == {20, 26}
+    assert (project.layer.key(20).revolutions, project.layer.key(26).revolutions) == (-2, 1)
     assert dict(project.layer.key(20).depths) == {1: 1.0}
     assert flipping.can_flip_again(project)
     editing.select_keys(session, frozenset({20}))

@@ -106,7 +106,7 @@ def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
     check_invariants(session)
     close(ways(session, "far leg", 12), ways(session, "near leg", 0))
     assert layer(session, "far leg").key(12).pose.certificate.is_certified
-    assert project.chosen == {12}
+    assert project.selected_frames == {12}
     assert layer(session, "near leg").key_frames == {0}
     editing.undo(session)
     assert project.document is before
@@ -130,7 +130,7 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     far = layer(session, "far leg")
     assert far.key_frames == {0, 12, 20}
     one, other = far.key(12), far.key(20)
-    assert (one.easing, one.turns, dict(one.depths)) == (PRESETS["in-out"], 1, {knee: 0.5})
+    assert (one.easing, one.revolutions, dict(one.depths)) == (PRESETS["in-out"], 1, {knee: 0.5})
     assert other.tangent_mode is TangentMode.STOP
     close(ways(session, "far leg", 20), ways(session, "near leg", 8))
 
@@ -186,7 +186,7 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     go(session, 12)
     pasting.paste_copied(session, FLIPPED)
     settle(session)
-    assert layer(session, "leg.R").key(12).turns == -2
+    assert layer(session, "leg.R").key(12).revolutions == -2
     was = ways(session, "leg.L", 0)
     close(ways(session, "leg.R", 12), {name: -way.conjugate() for name, way in was.items()})
     close(ways(session, "leg.L", 12), dict.fromkeys(was, 0j))
@@ -320,7 +320,7 @@ def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     (promised,) = session.project.pulls
     while promised.kept is None:
         maintain(session)
-        assert session.jobs.settle()
+        assert session.jobs.wait_until_idle()
         session.jobs.deliver()
     assert not promised.is_settled
     copying.copy_pose_or_keys(session)
@@ -469,7 +469,7 @@ def test_pairs_of_the_document_tell_partners_of_handles_too(session):
     pasting.set_mirror_names(session, "L/R, Spielknie/Standknie")
     editing.select_handles(session, frozenset({1}))
     editing.select_mirrored(session)
-    assert session.project.selected == {2}
+    assert session.project.selected_handles == {2}
     editing.edit_document(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
     pairs = session.project.document.pairs
     editing.edit_layer(session, track_commands.mirror_track, 1, pairs)

@@ -89,7 +89,7 @@ def where(project):
 def picture(session):
     """Let one picture pass, with a step of the worker in it."""
     maintain(session)
-    assert session.jobs.settle()
+    assert session.jobs.wait_until_idle()
     session.jobs.deliver()
 
 

@@ -99,7 +99,7 @@ def test_with_the_tool_it_does_so_from_anywhere(session, at):
     assert len(session.project.layer.handles) == 2
     move_tool.return_to_posing(session)
     tool_pointer.press_pointer(session, PointerHit(place=LEFT, handle=0))
-    assert type(session.pointer).__name__ == "Pulling"
+    assert type(session.active_tool).__name__ == "Pulling"
 
 
 def test_ctrl_click_still_sets_the_anchor(session):
@@ -160,7 +160,7 @@ def joined(blob, tmp_path):
 def places_of(session, layer):
     """Where all points of a layer are in the scene."""
     shown = session.project.layer_runtimes[layer].shown
-    return shown.placement.on(shown.positions)
+    return shown.placement.apply(shown.positions)
 
 
 def test_a_layer_moves_what_it_hangs_on(joined):

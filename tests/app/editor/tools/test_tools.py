@@ -36,7 +36,7 @@ def frames(session, count=2):
     """Let the worker take some steps."""
     for _ in range(count):
         maintain(session)
-        assert session.jobs.settle()
+        assert session.jobs.wait_until_idle()
         session.jobs.deliver()
 
 
@@ -49,7 +49,13 @@ def drag(session, spot, *places):
 
 def state(project):
     unkeyed = project.history.preview_pose
-    return project.document, unkeyed, project.selected, project.chosen, project.pull
+    return (
+        project.document,
+        unkeyed,
+        project.selected_handles,
+        project.selected_frames,
+        project.pull,
+    )
 
 
 AT_LEFT, AT_RIGHT = PointerHit(place=LEFT, handle=0), PointerHit(place=RIGHT, handle=1)
@@ -76,7 +82,7 @@ ON_RING = PointerHit(place=LEFT + 20, on_shape=True, on_ring=True)
 )
 def test_a_press_is_for_one_tool(session, spot, name):
     tool_pointer.press_pointer(session, spot)
-    assert type(session.pointer).__name__ == name
+    assert type(session.active_tool).__name__ == name
 
 
 @pytest.mark.parametrize(("auto_key", "most_keys"), [(True, 3), (False, 1)])
@@ -92,11 +98,11 @@ def test_whatever_a_press_began_is_taken_back_wholly(session, auto_key, most_key
         for held in flags:
             before = state(project)
             drag(session, replace(spot, **held), spot.place + 6, spot.place + 9j)
-            assert session.pointer is not None, (spot, held)
+            assert session.active_tool is not None, (spot, held)
             tool_pointer.cancel_tool(session)
             frames(session)
             assert state(project) == before, (spot, held)
-            assert session.pointer is None
+            assert session.active_tool is None
             # What could be done again still can.
             assert project.history.redo_label == "Set frames per second"
             # The hand goes on, and lets go.
@@ -151,7 +157,7 @@ def test_selected_handles_are_pulled_together(session):
 def test_a_turn_begins_where_the_pointer_leaves_the_handle(session):
     end = RIGHT + 15j * np.exp(0.2j)
     drag(session, replace(AT_RIGHT, alt=True), RIGHT + 15j, end)
-    (mark,) = session.pointer.marks
+    (mark,) = session.active_tool.tool_overlays
     assert mark == RotationOverlay(
         handle=1, angle=pytest.approx(0.2), swept_angle=pytest.approx(0.2)
     )
@@ -191,9 +197,9 @@ def test_a_box_selects_what_is_in_it(session, shift):
         editing.select_handles(session, frozenset({0}))
         tool_pointer.press_pointer(session, PointerHit(place=corner, shift=shift))
         tool_pointer.move_pointer(session, opposite)
-        assert session.pointer.marks == (BoxOverlay(corner=corner, opposite=opposite),)
+        assert session.active_tool.tool_overlays == (BoxOverlay(corner=corner, opposite=opposite),)
         tool_pointer.release_pointer(session, opposite)
-        assert session.project.selected == inside | kept
+        assert session.project.selected_handles == inside | kept
 
 
 def test_a_playhead_that_leaves_a_drag_does_not_leave_it_half_taken_back(session):
@@ -232,7 +238,7 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
         held = dict.fromkeys(filter(None, hint.key.split("+")), True)
         there = ON_RING if "its ring" in hint.how else spot
         tool_pointer.press_pointer(session, replace(there, **held))
-        named = type(session.pointer)
+        named = type(session.active_tool)
         assert hint in named.hints(session, session.project, spot)
         tool_pointer.cancel_tool(session)
 
@@ -246,11 +252,11 @@ def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
     drag(session, AT_LEFT, LEFT + 3)
     tool_pointer.type_in_tool(session, "4")
     tool_pointer.type_in_tool(session, "0")
-    assert [mark.text for mark in session.pointer.marks] == ["40 px"]
+    assert [mark.text for mark in session.active_tool.marks] == ["40 px"]
     tool_pointer.move_pointer(session, LEFT + 6j)
     assert wish(session).position == pytest.approx(LEFT + 40j)
     tool_pointer.type_in_tool(session, "y")
-    assert [mark.text for mark in session.pointer.marks] == ["Y 40 px"]
+    assert [mark.text for mark in session.active_tool.marks] == ["Y 40 px"]
     assert wish(session).position == pytest.approx(LEFT - 40j)
     tool_pointer.release_pointer(session, LEFT)
     assert wish(session).position == pytest.approx(LEFT - 40j)

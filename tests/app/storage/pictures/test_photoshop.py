@@ -116,7 +116,7 @@ def test_what_an_empty_layer_clips_is_nowhere_and_what_an_adjustment_does_is_eve
         "leg": False,
         "shade": True,
     }
-    assert found.summary.losses == ("levels: left out, since it is an adjustment layer",)
+    assert found.summary.warnings == ("levels: left out, since it is an adjustment layer",)
     assert found.summary.notes == (
         "blank, hollow: left out, since it is empty",
         "gone: left out, since it is clipped by the empty layer blank",
@@ -149,14 +149,14 @@ def test_a_group_whose_mask_lets_its_layers_shine_through_each_other_is_told():
 
     half = Mask(pixels=HALF // 2, left=10, top=20)
     told = ("limbs: half seen through its mask, so that its layers shine through each other",)
-    assert grouped(half, drawn("arm"), drawn("hand"), drawn("hat")).summary.losses == told
+    assert grouped(half, drawn("arm"), drawn("hand"), drawn("hat")).summary.warnings == told
     aside = Drawn(name="aside", pixels=FULL, left=-5, top=50)
-    assert not grouped(half, drawn("arm"), aside).summary.losses
+    assert not grouped(half, drawn("arm"), aside).summary.warnings
     sharp = Mask(pixels=HALF, left=10, top=20)
-    assert not grouped(sharp, drawn("arm"), drawn("hand")).summary.losses
+    assert not grouped(sharp, drawn("arm"), drawn("hand")).summary.warnings
     # What is clipped is cut once, by what clips it.
     clipped = grouped(half, drawn("arm"), drawn("shade", clipped=True))
-    assert not clipped.summary.losses
+    assert not clipped.summary.warnings
     arm, shade = clipped.layers
     assert on_canvas(arm)[30, 20, 3] == 127
     assert on_canvas(shade)[30, 20, 3] == 255
@@ -212,7 +212,7 @@ def test_what_is_not_taken_over_is_told_once_with_all_names():
         drawn("hole", blocks=((b"knko", bytes([2, 0, 0, 0])),)),
         drawn("bright", ranges=(50, 0, 255, 255)),
     )
-    assert found.summary.losses == (
+    assert found.summary.warnings == (
         "limbs, a, b: drawn normally, not in the mode 'overlay'",
         "paint: left out, since it is a fill layer",
         "hole: drawn over what is behind, which it knocks out in the file",

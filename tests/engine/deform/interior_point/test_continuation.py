@@ -26,7 +26,7 @@ from engine.maps import Boundary, Bounds, segment_enclosures
 
 
 def measured(search):
-    objective = Objective(boundary=search.boundary, handles=search.handles, targets=search.wish)
+    objective = Objective(boundary=search.boundary, handles=search.handles, targets=search.targets)
     return objective.evaluate(*search.map.columns)
 
 
@@ -46,7 +46,7 @@ def test_a_segment_that_broke_a_bound_gets_a_sample_though_there_are_too_many(mo
     middles = (search.boundary.points[broken] + search.boundary.points[ends]) / 2
     assert_array_equal(finer.boundary.points[[4, 42]], middles)
     assert finer.duals.shape == (3, len(finer.boundary.points))
-    assert len(finer.walls.k) == len(finer.boundary.points)
+    assert len(finer.bounds.k) == len(finer.boundary.points)
 
 
 def test_samples_are_added_where_segments_bulge_most_first(monkeypatch):

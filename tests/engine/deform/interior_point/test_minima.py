@@ -33,7 +33,7 @@ from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
 
 def settled(deformer, targets, state=None, **options):
-    wish = deformer.handles.wish(targets)
+    wish = deformer.handles.targets(targets)
     return deformer.settle(deformer.start() if state is None else state, wish, **options)[0]
 
 
@@ -50,7 +50,7 @@ def test_no_direction_that_the_bounds_allow_lowers_the_energy(deformer, targets)
     assert state.statistics.optimality <= OPTIMAL
     assert_sound(state, TIGHT)
     boundary, handles = state.outcome.boundary, deformer.handles
-    objective = Objective(boundary=boundary, handles=handles, targets=handles.wish(targets))
+    objective = Objective(boundary=boundary, handles=handles, targets=handles.targets(targets))
     jet, n, h = objective.evaluate(state.map.phi, state.map.psi), len(boundary.cage), 1e-6
     inner = TIGHT.towards_identity(MARGIN)
 
@@ -170,10 +170,10 @@ def wound_up():
 
 def test_a_turned_start_that_finds_a_better_pose_shows_it_once():
     deformer, shown = wound_up(), []
-    state, wish = deformer.start(), deformer.handles.wish(WOUND_UP)
+    state, wish = deformer.start(), deformer.handles.targets(WOUND_UP)
     while not state.status.is_final:
         before, state = state, deformer.step(state, wish)
-        if before.tried > 0 and state.map is not before.map:
+        if before.search_steps > 0 and state.map is not before.map:
             shown.append((before, state))
     # The aligned shape does not find it, and what is shown is clearly better.
     ((before, after),) = shown
@@ -181,11 +181,11 @@ def test_a_turned_start_that_finds_a_better_pose_shows_it_once():
     worth = (1 - WORTH_A_JUMP) * before.statistics.objective
     assert after.statistics.objective < worth
     assert state.status is Status.AT_LIMITS
-    assert state.outcome.way.is_turned
+    assert state.outcome.starting_point.is_rotated
     assert state.statistics.objective < 0.9 * 2449
     assert_sound(state, deformer.bounds)
     assert state.steps <= 60
-    assert state.tried <= 250
+    assert state.search_steps <= 250
     assert deformer.step(state, wish) is state
 
 
@@ -265,12 +265,12 @@ def test_resuming_never_loses_and_gains_little(targets):
     ids=["swapped", "collapsed", "far too large"],
 )
 def test_hard_requests_are_proven_minima_within_few_steps(deformer, targets):
-    wish = deformer.handles.wish(targets)
+    wish = deformer.handles.targets(targets)
     state, steps = deformer.settle(deformer.start(), wish)
     assert state.status in (Status.AT_LIMITS, Status.CONVERGED)
     assert state.statistics.optimality <= OPTIMAL
     assert state.steps <= 45
-    assert steps == state.tried <= 100
+    assert steps == state.search_steps <= 100
     assert_sound(state, deformer.bounds)
 
 

@@ -20,9 +20,9 @@ from engine.deform.model.newton import newton_models
 
 def problem(search):
     """Return what the next step of a search minimises, its barrier, and the map as it sees it."""
-    barrier = Barrier(bounds=search.walls, weight=search.weight, duals=search.duals)
+    barrier = Barrier(bounds=search.bounds, weight=search.weight, duals=search.duals)
     objective = Objective(
-        boundary=search.boundary, handles=search.handles, targets=search.wish, barrier=barrier
+        boundary=search.boundary, handles=search.handles, targets=search.targets, barrier=barrier
     )
     return objective, barrier, objective.evaluate(*search.map.columns)
 
