@@ -47,8 +47,8 @@ from engine.interpolation.time_weights import (
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
-# Largest sum of the omitted modes, in ln |f_z|; it changes the eighth digit of positions. The second
-# value holds at tangents, since the velocity must be the same on both sides.
+# Largest sum of the omitted modes, in ln |f_z|; it changes the eighth digit of positions. At
+# tangents the second value holds, since the velocity must be the same on both sides.
 LEFT_OUT, LEFT_OUT_PASSING = 2e-6, 1e-7
 # Limit of the last Legendre coefficients of the residual on a panel, in ln |f_z|; the sampled
 # times; and how often a panel may be halved.
