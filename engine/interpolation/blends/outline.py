@@ -96,7 +96,7 @@ def control_curves(
 ) -> BoundaryBezier[np.float64]:
     """Return the control values of 𝒜 with error bounds along pieces of the boundary.
 
-    `trace` and `eta` are those of the keyframes; `course` are the time weights of η.
+    `trace` and `eta` are those of the keyframes; `course` has the time weights of η.
 
     Notes
     -----

@@ -60,7 +60,7 @@ def shorten_tangent(
     quantities : complex128, shape (3, 2, p, PARTS + 1)
         The blended quantities of a keyframe and its neighbours, along the boundary's segments.
     stretches : callable
-        Returns σ_a and σ_b of two such quantities.
+        Returns σ_a and σ_b, given the two quantities.
     bounds : Bounds
         Widened by the keyframe's own extremes.
     """
