@@ -111,7 +111,6 @@ class Expansions:
 
     @classmethod
     def of(cls, panels: Panels, acting: Interactions, *, single: bool) -> Self:
-        """Compute the matrices."""
         clusters, count = acting.clusters, len(panels)
         centre, radius = clusters.centre[:count, None], clusters.radius[:count, None]
         differentials = panels.differentials() / (2j * np.pi)

@@ -114,7 +114,6 @@ class Panels:
         )
 
     def __len__(self) -> int:
-        """Return the number of panels."""
         return len(self.origin)
 
     @property

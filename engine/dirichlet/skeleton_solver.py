@@ -104,7 +104,6 @@ class SkeletonSolver:
 
     @property
     def nbytes(self) -> int:
-        """Memory of the arrays, in bytes."""
         return nbytes_of(self)
 
     def __call__(self, right: Floats) -> Floats:

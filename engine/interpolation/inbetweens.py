@@ -99,7 +99,6 @@ class Inbetweens:
 
     @property
     def boundary(self) -> Boundary:
-        """Boundary of the domain."""
         return self.sampled_domain.boundary
 
     @property
@@ -138,7 +137,6 @@ class Inbetweens:
         return self.blend.sign or -1
 
     def anchor_position(self, time: float) -> complex:
-        """Return the position of the anchor."""
         return complex(self.anchor_positions(np.array([time]))[0])
 
     def anchor_positions(self, times: Floats) -> Complexes:
@@ -221,7 +219,6 @@ class Inbetweens:
         return blended, mixing
 
     def _blended(self, time: float) -> Derivatives:
-        """Return the derivatives of a frame."""
         return self._mixed(time)[0] if self.corrections else self._uncorrected(time)
 
     def _uncorrected(self, time: float) -> Derivatives:

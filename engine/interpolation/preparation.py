@@ -57,7 +57,6 @@ class Prepared:
 
     @property
     def nbytes(self) -> int:
-        """Memory of all arrays, in bytes."""
         return nbytes_of(self)
 
     def frame(self, time: float) -> Frame:

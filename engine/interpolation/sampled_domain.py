@@ -123,7 +123,6 @@ class SampledDomain:
 
     @property
     def nbytes(self) -> int:
-        """Memory of the arrays, in bytes."""
         return nbytes_of(self)
 
 

@@ -117,7 +117,6 @@ class _Snapshots:
 
     @property
     def rank(self) -> int:
-        """Number of shapes in the basis."""
         return len(self._rows)
 
     def take(self, points: Complexes) -> Floats:
@@ -136,7 +135,6 @@ class _Snapshots:
         return coordinates
 
     def append(self, time: float, coordinates: Floats) -> None:
-        """Add a time by its coordinates."""
         self._times.append(time)
         self._moments.append(coordinates)
 

@@ -55,7 +55,6 @@ class Series:
 
     @property
     def nbytes(self) -> int:
-        """Memory of the arrays, in bytes."""
         return nbytes_of(self)
 
     @property

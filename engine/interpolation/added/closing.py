@@ -105,7 +105,6 @@ class Functions(NamedTuple):
         )
 
     def joined(self, more: "Functions") -> "Functions":
-        """Return these functions and more."""
         return Functions(
             np.hstack([self.coefficients, more.coefficients]),
             np.vstack([self.values, more.values]),

@@ -35,7 +35,6 @@ class EtaBlend(Blend):
 
     @classmethod
     def of(cls, interval: KeyframeSegment) -> Self:
-        """Compute η of the keyframes."""
         values, derivatives = [], []
         for key in interval.keyframe_blend.keyframes:
             squared = np.exp(2 * key.log_fz)

@@ -28,7 +28,6 @@ class LinearBlend(Blend):
 
     @classmethod
     def of(cls, interval: KeyframeSegment) -> Self:
-        """Compute the derivatives of the keyframes."""
         known = []
         for key in interval.keyframe_blend.keyframes:
             fz = np.exp(key.log_fz)
@@ -46,7 +45,6 @@ class LinearBlend(Blend):
         return combine_arrays(weights, fz), combine_arrays(weights, g)
 
     def derivatives(self, time: float) -> Derivatives:
-        """Blend all derivatives linearly."""
         weights = self.keyframe_blend.time_weights(time)
         return Derivatives(
             *(weighted_sum(parts, weights) for parts in zip(*self.known, strict=True))
@@ -59,7 +57,6 @@ class LinearBlend(Blend):
 
     @staticmethod
     def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
-        """Return f_z and conj(f_z̄) themselves."""
         return fz, g
 
     @staticmethod
@@ -76,5 +73,4 @@ class LinearBlend(Blend):
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], _changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells."""
         return enclose_linear(first, second)

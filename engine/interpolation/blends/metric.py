@@ -191,7 +191,6 @@ class MetricBlend(EtaBlend):
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells."""
         if changes is None:
             return enclose_metric(first, second)
         return enclose_changed_metric(first, second, changes)

@@ -60,7 +60,6 @@ class BernsteinPatch(NamedTuple, Generic[number]):
         return BernsteinPatch((1.0 - share) * first + share * last, self.error)
 
     def times(self, factor: float) -> "BernsteinPatch[number]":
-        """Return a multiple."""
         return BernsteinPatch(factor * self.controls, abs(factor) * self.error)
 
     def corners(self) -> "BernsteinPatch[number]":

@@ -151,7 +151,6 @@ class EndpointValues(NamedTuple):
         )
 
     def log_modulus(self) -> BoundaryBezier[np.float64]:
-        """Return ln |F|."""
         ends = np.log(np.abs(np.stack([self.f0, self.f1], axis=2)))
         return BoundaryBezier(ends, self._errors_of_log())
 
@@ -179,7 +178,6 @@ class EndpointValues(NamedTuple):
         return BoundaryBezier(ends, _where_clear(clear, errors))
 
     def conj_eta(self) -> BoundaryBezier[np.complex128]:
-        """Return conj(η)."""
         middle = (self.f0 * self.g1 + self.f1 * self.g0) / 2
         a, b = self.largest
         return BoundaryBezier(

@@ -52,15 +52,12 @@ class BilinearPatch(NamedTuple):
 
     @property
     def real(self) -> "BilinearPatch":
-        """The real part."""
         return BilinearPatch(self.corners.real, self.error)
 
     def plus(self, other: "BilinearPatch") -> "BilinearPatch":
-        """Return the sum."""
         return BilinearPatch(self.corners + other.corners, self.error + other.error)
 
     def times(self, factor: float) -> "BilinearPatch":
-        """Return a multiple."""
         return BilinearPatch(factor * self.corners, abs(factor) * self.error)
 
     def product(self, other: "BilinearPatch") -> "BilinearPatch":

@@ -51,7 +51,6 @@ class KeyframeSamples:
 
     @property
     def anchor_fz(self) -> complex:
-        """f_z at the anchor."""
         return complex(np.exp(self.log_fz[0]))
 
     def at(self, which: Indices) -> "KeyframeSamples":

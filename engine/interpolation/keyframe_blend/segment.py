@@ -22,7 +22,6 @@ class BoundaryResidual(NamedTuple):
 
     @property
     def nbytes(self) -> int:
-        """Memory of the arrays, in bytes."""
         return nbytes_of(self)
 
 

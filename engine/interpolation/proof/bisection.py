@@ -75,7 +75,6 @@ def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
 
 
 def _bisect(pieces: Subdivision, enclosures: CellEnclosures, cuts: Floats) -> Proof:
-    """Cut cells until they are tight."""
     none = np.array([0.0])
     attained = proven = Enclosures(none, none, none + inf)
     count = len(pieces.halves)

@@ -56,7 +56,6 @@ class CorrectedCellEnclosures(CellEnclosures):
         return cuts
 
     def of(self, chosen: Cells) -> CellResults:
-        """Enclose cells."""
         self._catch_up()
         first, second = self._blended(chosen)
         known = [tuple(each.on(*chosen) for each in both) for both in self._corrections]

@@ -28,7 +28,6 @@ class Cells(NamedTuple):
     end: Floats
 
     def at(self, which: Booleans | slice) -> "Cells":
-        """Return some of the cells."""
         return Cells(self.piece[which], self.start[which], self.end[which])
 
 
@@ -66,7 +65,6 @@ class CellEnclosures:
         return cuts
 
     def of(self, chosen: Cells) -> CellResults:
-        """Enclose cells."""
         self._catch_up()
         first, second = self._blended(chosen)
         changes, off_in_time = self._changes(chosen)
@@ -80,7 +78,6 @@ class CellEnclosures:
         )
 
     def _blended(self, chosen: Cells) -> tuple[BernsteinPatch[Any], BernsteinPatch[Any]]:
-        """Return the two blended quantities."""
         first, second = (
             blend_curves(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
             for curves, course in zip(self._curves, self._blend.curve_weights, strict=True)

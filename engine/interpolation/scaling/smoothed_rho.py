@@ -77,7 +77,6 @@ class SmoothedRho:
         return float(self.at(np.array([time]))[0])
 
     def at(self, times: Floats) -> Floats:
-        """Return ρ at times (t,)."""
         place = _places(times)
         nearest = np.rint(place)
         fit, mean = _weights(place - nearest)

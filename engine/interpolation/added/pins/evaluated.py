@@ -30,7 +30,6 @@ class SpanBasis(NamedTuple):
 
     @property
     def nbytes(self) -> int:
-        """Memory of the arrays, in bytes."""
         return self.values.nbytes + self.slopes.nbytes
 
     def evaluate(self, functions: Complexes) -> tuple[Complexes, Complexes]:
