@@ -1,13 +1,13 @@
 """The matrix of the integral equation, entry by entry.
 
-Row i is the equation at node i, μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b: plain quadrature far from a
-panel, and exact integrals of its polynomials near it. Both sides are taken times the roots of the
-nodes' weights, and μ as well, so that the matrix is nearly symmetric.
+Row i is the equation at node i, μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b. Far from a panel it uses
+plain quadrature, near a panel exact integrals of the panel's polynomials. Both sides and μ are
+multiplied by the square roots of the nodes' weights, so the matrix is nearly symmetric.
 
-On the loop of a hole the mean of μ there is added. Constants there, which the integral does not
-see, are ruled out by it, and what the mean is in the end is what the real part lacks: a function
-that is to be the real part of a single-valued one may have to give way by a constant around each
-hole (S. Mikhlin, *Integral Equations*, 1957, section 31).
+On the loop of a hole the mean of μ there is added. Without it a constant μ on the loop solves the
+homogeneous equation; the mean makes the solution unique. The mean of the solution is the error of
+the real part: around a hole, a single-valued function attains its real part only up to a constant
+(S. Mikhlin, *Integral Equations*, 1957, section 31).
 """
 
 from dataclasses import dataclass
@@ -28,15 +28,14 @@ from engine.geometry import as_xy
 class BoundaryOperator:
     """The collocated operator of some panels.
 
-    Parameters
+    Attributes
     ----------
-    panels : Panels
     nodes, directions : complex128, shape (N,)
-        And dζ there over its length.
+        The nodes, and the unit tangents dζ / |dζ| there.
     roots : float64, shape (N,)
-        Of the lengths.
+        Square roots of the nodes' weights.
     near : csr_array, float64, shape (N, N)
-        Entries of panels at the nodes near them, zeros among them.
+        Entries of panels at the nodes near them, including zeros.
     near_by_column : csr_array, float64, shape (N, N)
         The transpose.
     means : float64, shape (holes, N)
@@ -63,7 +62,7 @@ class BoundaryOperator:
             each = _near_entries(panels, nodes, int(power))
             rows.append(each[0])
             values.append(each[1])
-        # On a straight panel the kernel of a node of the same panel vanishes, but for the jump.
+        # Within a straight panel the kernel vanishes but for the jump.
         rows.append(np.column_stack([np.arange(size), np.arange(size) // NODES]))
         values.append(np.tile(np.pi * np.eye(NODES), (len(panels), 1)))
         pairs, entries = np.concatenate(rows), np.concatenate(values) / (2 * np.pi)
@@ -86,9 +85,9 @@ class BoundaryOperator:
         )
 
     def entries(self, rows: Indices, columns: Indices) -> tuple[Floats, Floats]:
-        """Return a part of the matrix, and that of its transpose: what columns do there, (r, c).
+        """Return a part of the matrix, and the same part of its transpose, (r, c) each.
 
-        The second is what acts on the columns' nodes from those of the rows.
+        The second part maps the rows' nodes to the columns' nodes.
         """
         # Im dζ / (ζ − z) and, from the other end, Im dz / (z − ζ), without complex numbers.
         to, of = self.nodes[rows, None], self.nodes[columns]
@@ -129,8 +128,8 @@ def _near_entries(panels: Panels, nodes: Complexes, power: int) -> tuple[Indices
     panel, node = panel[node // NODES != panel], node[node // NODES != panel]
     w = (nodes[node] - panels.origin[panel]) / panels.span[panel]
     if power != 1:
-        # Across a corner both panels start there, and nodes as close to it as 1e-10 of a panel keep
-        # all their digits only if the corner is never added and subtracted.
+        # Across a corner both panels start at the corner. Nodes as close to it as 1e-10 of a panel
+        # keep all their digits only if the corner is never added and subtracted.
         across = np.where(
             panels.forward[panel], panels.previous_panels[panel], panels.next_panels[panel]
         )

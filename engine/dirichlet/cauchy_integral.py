@@ -1,9 +1,9 @@
 """Cauchy integrals of densities on panels, evaluated at many points up to the outline itself.
 
-What panels far from a point contribute comes through expansions (`engine.dirichlet.expansions`).
-Panels near a point are integrated exactly. Which is which, and the weights of both, depend on the
-panels and the points alone and are worked out once; time and memory grow with the sum of points and
-nodes, not with their product.
+Panels far from a point contribute through expansions (`engine.dirichlet.expansions`). Panels near a
+point are integrated exactly. The lists of both, and their weights, depend on the panels and the
+points only and are computed once. Time and memory grow with the sum of points and nodes, not with
+their product.
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from engine.dirichlet.interactions import find_interactions
 from engine.dirichlet.near_field import near_matrices, near_matrix
 from engine.dirichlet.panels import Panels
 
-BLOCK = 2048  # points whose results are put together at a time, so that they stay in cache
+BLOCK = 2048  # points whose results are combined at a time, to stay in cache
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -29,18 +29,18 @@ class CauchyIntegral:
 
     Build it with `CauchyIntegral.of`.
 
-    Parameters
+    Attributes
     ----------
-    expansions : Expansions
     near : tuple of bsr_array, shape (4 t, N)
-        From densities to what near panels add to Re g, Im g, Re g' and Im g' at the points in the
-        order of the leaves: the sum of what they say.
+        From densities to the near panels' part of Re g, Im g, Re g' and Im g' at the points, in the
+        order of the leaves. The matrices are added.
     leaves, counts : intp, shape (l,)
-        Squares that are not cut and the number of points in each, in ascending order.
+        Uncut squares in ascending order, and the number of points in each.
     offsets : complex, shape (t,)
-        Of the points in that order from the centres of their leaves, over the radius.
+        Positions of the points in this order relative to the centres of their leaves, over the
+        radius.
     places : intp, shape (t,)
-        Where in that order each point is.
+        Position of each point in this order.
     """
 
     expansions: Expansions
@@ -54,9 +54,8 @@ class CauchyIntegral:
     def of(cls, panels: Panels, points: Complexes, *, single: bool = False) -> Self:
         """Prepare the integrals at points (t,).
 
-        They lie strictly inside the outline, by some 1e-14 of its size at least. In single
-        precision what is not close to a point errs by 2e-7 of the largest density, and takes half
-        the memory.
+        They lie strictly inside the outline, by at least some 1e-14 of its size. Single precision
+        needs half the memory; its error away from a point is 2e-7 of the largest density.
         """
         acting = find_interactions(panels, points)
         squares, near = acting.squares, acting.near
@@ -77,7 +76,7 @@ class CauchyIntegral:
                 for beside in (panels.previous_panels, panels.next_panels)
             ]
         )
-        # The near pairs of a leaf belong to each of its points.
+        # The near pairs of a leaf hold for each of its points.
         first = np.searchsorted(near.squares, leaf)
         rows, place = ragged_indices(np.searchsorted(near.squares, leaf, side="right") - first)
         own = first[rows] + place
@@ -93,17 +92,7 @@ class CauchyIntegral:
         )
 
     def __call__(self, densities: Floats) -> tuple[Complexes, Complexes]:
-        """Return g and g' of some densities.
-
-        Parameters
-        ----------
-        densities : float64, shape (N, j)
-            At the nodes of the panels.
-
-        Returns
-        -------
-        values, derivatives : complex128, shape (t, j)
-        """
+        """Return g and g', complex128 (t, j), of densities (N, j) at the nodes of the panels."""
         columns, count = densities.shape[1], len(self.offsets)
         first, *others = self.near
         near = first @ densities
@@ -122,7 +111,7 @@ class CauchyIntegral:
         return results[0].T, results[1].T
 
     def _far(self, densities: Floats) -> AnyComplexes:
-        """Return what far panels add to g and g' in the order of the leaves, (t, 2, j)."""
+        """Return the far panels' part of g and g' in the order of the leaves, (t, 2, j)."""
         squares, columns = self.expansions.squares, densities.shape[1]
         polynomials = self.expansions(densities)[self.leaves]
         slopes = np.zeros_like(polynomials)
@@ -136,7 +125,7 @@ class CauchyIntegral:
         return found.reshape(-1, 2, columns)
 
     def _runs(self) -> Iterator[tuple[slice, slice, int]]:
-        """Yield runs of leaves with as many points each: leaves, all of their points, how many."""
+        """Yield runs of leaves with equal numbers of points: leaves, their points, the number."""
         changes = np.flatnonzero(np.diff(self.counts)) + 1
         first = 0
         for start, end in pairwise([0, *changes, len(self.counts)]):

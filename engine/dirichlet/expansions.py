@@ -1,10 +1,10 @@
-"""What far panels contribute to a Cauchy integral: a fast multipole method as small products.
+"""The far panels' part of a Cauchy integral: a fast multipole method as small matrix products.
 
-The moments of the densities about the centres of clusters become Taylor polynomials about those of
-squares, and these the polynomials of their quarters (Greengard and Rokhlin 1987). The matrices of
-all these translations depend on the panels and the points alone. They are kept, so that the
-translations of densities are products of matrices and nothing else; those from moments to
-polynomials, which are by far the most, as one matrix for all of them and a diagonal on each side.
+The moments of the densities about the centres of clusters become Taylor polynomials about the
+centres of squares. These become the polynomials of the squares' quarters (Greengard and Rokhlin
+1987). The matrices of all these translations depend on the panels and the points only. They are
+kept, so the translation of densities consists of matrix products only. Most translations are from
+moments to polynomials; they share one matrix, with a diagonal on each side.
 """
 
 from collections.abc import Iterator
@@ -25,21 +25,17 @@ from engine.dirichlet.quadtree import Squares
 
 AnyComplexes = npt.NDArray[np.complexfloating[Any, Any]]
 
-# Of expansions: they err by FAR^-TERMS = 7e-8 of the largest density at most.
+# Of expansions; their error is at most FAR^-TERMS = 7e-8 of the largest density.
 TERMS = 18
-NEGLIGIBLE = 1e-20  # of an entry: products of smaller ones would be slow
-BLOCK = 512  # pairs of sources and targets that are worked out at a time
+NEGLIGIBLE = 1e-20  # of an entry; products of smaller entries would be slow
+BLOCK = 512  # pairs of sources and targets that are computed at a time
 
 
 class Translation(NamedTuple):
-    """Matrices to some targets, each from as many sources.
+    """Matrices to some targets, each from the same number of sources.
 
-    Parameters
-    ----------
-    targets : intp, shape (n,)
-    sources : intp, shape (n, m)
-    matrices : complex, shape (n, TERMS, m · length)
-        From what is given at the sources, `length` numbers each.
+    `targets` are intp (n,), `sources` intp (n, m). `matrices` (n, TERMS, m · length) act on
+    `length` numbers of each source.
     """
 
     targets: Indices
@@ -47,23 +43,23 @@ class Translation(NamedTuple):
     matrices: AnyComplexes
 
     def add(self, given: npt.NDArray[np.inexact], into: AnyComplexes) -> None:
-        """Add what is given (c, length, j) at the sources to the targets' (q, TERMS, j)."""
+        """Add the image of values (c, length, j) of the sources to the targets' (q, TERMS, j)."""
         count, _, length = self.matrices.shape
         sources = given[self.sources].reshape(count, length, -1)
         into[self.targets] += self.matrices @ sources
 
 
 class MomentToLocal(NamedTuple):
-    """From the moments of clusters to the polynomials of squares that are far from them.
+    """From the moments of clusters to the polynomials of squares far from them.
 
-    1 / (ζ − z) = Σ binom(i + k, k) (z − c_T)^i (c_S − ζ)^k / (c_S − c_T)^(i + k + 1), so that the
-    matrices differ only in what their rows and columns are multiplied by.
+    1 / (ζ − z) = Σ binom(i + k, k) (z − c_T)^i (c_S − ζ)^k / (c_S − c_T)^(i + k + 1), so the
+    matrices differ only by factors of their rows and columns.
 
-    Parameters
+    Attributes
     ----------
     targets : intp, shape (n,)
     sources : intp, shape (p,)
-        Of the pairs, in the order of the targets.
+        Sources of the pairs, in the order of the targets.
     columns, rows : complex, shape (p, TERMS)
         (r_S / (c_S − c_T))^(k + 1) and (r_T / (c_S − c_T))^i.
     sums : csr_array, shape (n, p)
@@ -77,10 +73,10 @@ class MomentToLocal(NamedTuple):
     sums: csr_array
 
     def add(self, moments: AnyComplexes, into: AnyComplexes) -> None:
-        """Add what moments (c, TERMS, j) are at the targets to polynomials (q, TERMS, j)."""
+        """Add the image of moments (c, TERMS, j) to the targets' polynomials (q, TERMS, j)."""
         given = moments[self.sources]
         given *= self.columns[:, :, None]
-        # As real numbers: the binomials are.
+        # As real numbers, since the binomials are real.
         reals = given.view(given.real.dtype)
         added = (_binomials().astype(reals.dtype) @ reals).view(given.dtype)
         added *= self.rows[:, :, None]
@@ -93,18 +89,17 @@ class MomentToLocal(NamedTuple):
 class Expansions:
     """From densities to Taylor polynomials of squares; build it with `Expansions.of`.
 
-    All of it is complex128, or complex64.
+    All arrays are complex128, or all are complex64.
 
-    Parameters
+    Attributes
     ----------
-    squares : Squares
     panels : complex, shape (p, TERMS, NODES)
         From the densities on panels to their moments Σ m ((c − ζ) / r)^k / r.
-    joined : tuple of Translation
-        From the moments of clusters to those of the next level's, level by level.
-    far : tuple of MomentToLocal
+    m2m : tuple of Translation
+        From the moments of clusters to those of the next level, level by level.
+    m2l : tuple of MomentToLocal
         From moments to polynomials.
-    direct : tuple of Translation
+    p2l : tuple of Translation
         From densities on panels to polynomials.
     """
 
@@ -116,7 +111,6 @@ class Expansions:
 
     @classmethod
     def of(cls, panels: Panels, acting: Interactions, *, single: bool) -> Self:
-        """Work out the matrices."""
         clusters, count = acting.clusters, len(panels)
         centre, radius = clusters.centre[:count, None], clusters.radius[:count, None]
         differentials = panels.differentials() / (2j * np.pi)
@@ -160,7 +154,7 @@ def powers(base: AnyComplexes) -> AnyComplexes:
 
 
 def _kept(matrices: AnyComplexes, *, single: bool) -> AnyComplexes:
-    """Return matrices in the precision that is wanted, without entries that are nothing."""
+    """Return matrices in the requested precision, without negligible entries."""
     kept: AnyComplexes = matrices.astype(np.complex64 if single else np.complex128, order="C")
     for part in (kept.real, kept.imag):
         part[np.abs(part) < NEGLIGIBLE] = 0.0
@@ -174,7 +168,7 @@ def _m2m(clusters: Clusters, *, single: bool) -> Iterator[Translation]:
     for (below, first), (_, end) in pairwise(pairwise(clusters.firsts)):
         parents = np.arange(first, end)
         children = below + 2 * (parents - first)[:, None] + np.arange(2)
-        # The last one may have one child.
+        # The last cluster may have one child.
         alone = children >= first
         children[alone] -= 1
         shrunk = clusters.radius[children] / clusters.radius[parents, None]
@@ -193,7 +187,7 @@ def _m2l(acting: Interactions, *, single: bool) -> Iterator[MomentToLocal]:
     """Yield the conversions of far pairs, in blocks."""
     squares, clusters = acting.squares, acting.clusters
     targets, starts = np.unique(acting.far.squares, return_index=True)
-    # Few pairs more than a block: all those of a target are in one.
+    # Blocks hold slightly more pairs than BLOCK: all pairs of a target are in one block.
     heads = np.flatnonzero(np.diff(starts // BLOCK, prepend=-1))
     ends = np.append(starts, len(acting.far.squares))
     for head, tail in pairwise([*heads, len(targets)]):
@@ -212,7 +206,7 @@ def _m2l(acting: Interactions, *, single: bool) -> Iterator[MomentToLocal]:
 
 
 def _p2l(panels: Panels, acting: Interactions, *, single: bool) -> Iterator[Translation]:
-    """Yield the translations of panels, those to squares of as many panels together."""
+    """Yield the translations of panels; squares with equal numbers of panels come together."""
     squares, pairs = acting.squares, acting.direct
     nodes, differentials = panels.nodes, panels.differentials() / (2j * np.pi)
     targets, starts, counts = np.unique(pairs.squares, return_index=True, return_counts=True)
@@ -230,17 +224,17 @@ def _p2l(panels: Panels, acting: Interactions, *, single: bool) -> Iterator[Tran
 
 @cache
 def _binomials() -> Floats:
-    """Return binom(i + k, k), what the moment k adds to the power i."""
+    """Return binom(i + k, k), the part of moment k in the power i."""
     ranks = np.arange(TERMS)
     return freeze(comb(ranks[:, None] + ranks, ranks).astype(np.float64))
 
 
 @cache
 def _l2l() -> Complexes:
-    """Return the matrices (4, TERMS, TERMS) from the polynomial of a square to its quarters'."""
+    """Return the matrices (4, TERMS, TERMS) from a square's polynomial to its quarters'."""
     ranks = np.arange(TERMS)
     raised = np.maximum(ranks - ranks[:, None], 0)
-    # Of Σ c_k ((z − c) / r)^k, with half the radius about a centre that is off by half a side.
+    # For Σ c_k ((z − c) / r)^k, half the radius, and a centre moved by half a side.
     shifts = np.array([-1 - 1j, 1 - 1j, -1 + 1j, 1 + 1j]) / np.sqrt(8)
     binomials = comb(ranks, ranks[:, None])
     matrices = binomials * shifts[:, None, None] ** raised * 0.5 ** ranks[:, None]

@@ -6,9 +6,9 @@ with a real density,
     g(z) = 1/(2πi) ∮ μ(ζ) dζ / (ζ − z),      μ/2 + 1/(2π) ∮ μ Im(dζ / (ζ − z)) = b  on the outline,
 
 an integral equation of the second kind with one solution. It is collocated at the nodes of graded
-panels, with near and adjacent panels integrated exactly, and solved directly. Around holes a
-single-valued g has the real part b but for a constant on the loop of each, which comes out with it
-(`engine.dirichlet.boundary_operator`).
+panels, and solved directly. Near and adjacent panels are integrated exactly. Around holes a
+single-valued g has the real part b up to a constant on each hole's loop; the solution includes the
+constants (`engine.dirichlet.boundary_operator`).
 
 Departs from the paper: Section 7.4 uses the complex coordinates of Weber and Gotsman (2010) on the
 cage's own n-dimensional space. That is wrong by up to a percent of the diameter, does not return
@@ -48,18 +48,14 @@ OUTSIDE = (
     "boundary; leave them out."
 )
 PARTS_SHAPE = "Real parts must be of shape ({count}, j), one row for each node, not {shape}."
-EDGE_DEPTH, CORNER_DEPTH = 1e-9, 1e-13  # of points on the outline, over its size
+EDGE_DEPTH, CORNER_DEPTH = 1e-9, 1e-13  # of points on the outline, relative to its size
 
 
 class Extended(NamedTuple):
     """Holomorphic functions with given real parts on the boundary.
 
-    Parameters
-    ----------
-    values, derivatives : complex128, shape (t, j)
-        Of each function at the points.
-    lacking : float64, shape (holes, j)
-        By how much, a constant around each hole, the real parts are below what was given.
+    `values` and `derivatives` are complex128 (t, j), for each function at the points. `lacking`
+    (holes, j) is the constant by which the real part on each hole is below the given one.
     """
 
     values: Complexes
@@ -69,22 +65,21 @@ class Extended(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HilbertTransform:
-    """The integral equation of one domain, factorised; it serves all intervals.
+    """The factorised integral equation of one domain, for all segments.
 
     Build it with `HilbertTransform.on`.
 
-    Parameters
+    Attributes
     ----------
     loops : tuple of complex128
-        The outline, and those of holes.
+        The outline, and the loops of holes.
     centre : complex
-        From which the panels' places are told: far from the origin a hair's breadth beside an
-        outline would be lost in the rounding of coordinates.
-    panels : Panels
+        Origin of the panels' coordinates. Far from the coordinate origin, rounding would lose tiny
+        distances from an outline.
     solver : SkeletonSolver
         From real parts at the nodes to densities.
     means : float64, shape (holes, N)
-        From densities to the constants by which the real parts give way around holes.
+        From densities to the constants by which the real parts on holes are too low.
     """
 
     loops: tuple[Complexes, ...]
@@ -97,10 +92,10 @@ class HilbertTransform:
     def on(cls, domain: Domain, *, progress: Callable[[float], None] | None = None) -> Self:
         """Discretise and factorise the integral equation of a domain.
 
-        The number of nodes follows from the shape: it grows with the number of corners, and where
-        the outline comes near itself or near the cage. Time and memory grow with it, and somewhat
-        faster where the outline fills an area. `progress` is called again and again with the share
-        of the work that is done, from 0 to 1; what it raises ends the work.
+        The number of nodes depends on the shape. It grows with the number of corners, and where the
+        outline comes close to itself or to the cage. Time and memory grow with it, and somewhat
+        faster where the outline fills an area. `progress` is called repeatedly with the completed
+        share of the work, from 0 to 1; an exception that it raises ends the work.
 
         Raises
         ------
@@ -121,7 +116,7 @@ class HilbertTransform:
         centre: complex = 0j,
         progress: Callable[[float], None] | None = None,
     ) -> Self:
-        """Factorise the integral equation on given panels of some loops, told from a centre."""
+        """Factorise the integral equation on given panels of loops, relative to a centre."""
         operator = BoundaryOperator.of(panels)
         solver = SkeletonSolver.of(operator, progress)
         return cls(
@@ -130,19 +125,19 @@ class HilbertTransform:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
+        """Memory of the solver's arrays, in bytes."""
         return nbytes_of(self.solver)
 
     @property
     def nodes(self) -> Complexes:
-        """Points of the boundary (N,) at which real parts are given."""
+        """Points of the boundary (N,) for the given real parts."""
         return self.centre + self.panels.nodes.ravel()
 
     def at(self, points: Complexes, *, single: bool = False) -> "Extension":
         """Prepare the evaluation at points (t,) of the closed domain.
 
-        Time and memory grow with the number of points and nodes, and not with their product. In
-        single precision, what is far from a point errs by 2e-7 of the largest density.
+        Time and memory grow with the number of points and nodes, not with their product. In single
+        precision the error away from a point is 2e-7 of the largest density.
         """
         points = as_points(points, "points", at_least=1)
         rounding = 4 * np.finfo(np.float64).eps * float(np.abs(points).max())
@@ -154,18 +149,18 @@ class HilbertTransform:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Extension:
-    """A Hilbert transform at fixed points; it serves all intervals.
+    """A Hilbert transform at fixed points, for all segments.
 
     Build it with `HilbertTransform.at`.
 
-    Parameters
+    Attributes
     ----------
-    transform : HilbertTransform
-    points, inside : complex128, shape (t,)
-        And the same from the transform's centre, but that those on the boundary are a hair's
-        breadth from there.
+    points : complex128, shape (t,)
+    inside : complex128, shape (t,)
+        The points relative to the transform's centre; points on the boundary are moved slightly
+        inside.
     integral : CauchyIntegral
-        At the latter.
+        At `inside`.
     """
 
     transform: HilbertTransform
@@ -175,29 +170,24 @@ class Extension:
 
     @property
     def loops(self) -> tuple[Complexes, ...]:
-        """The outline, and those of holes."""
+        """The outline, and the loops of holes."""
         return self.transform.loops
 
     @property
     def nodes(self) -> Complexes:
-        """Points of the boundary (N,) at which real parts are given."""
+        """Points of the boundary (N,) for the given real parts."""
         return self.transform.nodes
 
     @property
     def nbytes(self) -> int:
-        """Memory beyond the transform's own, in bytes."""
+        """Memory without the transform, in bytes."""
         return nbytes_of(self.integral)
 
     def extend(self, real_parts: Floats) -> Extended:
-        """Return holomorphic functions with given real parts on the boundary.
+        """Return holomorphic functions with given real parts (N, j) at the nodes of the boundary.
 
-        They are so up to an imaginary constant. At a corner that turns inwards a derivative is
-        unbounded, and the value there means nothing.
-
-        Parameters
-        ----------
-        real_parts : float64, shape (N, j)
-            At `nodes`.
+        They are unique up to an imaginary constant. At a reflex corner a derivative is unbounded,
+        and its value there is meaningless.
         """
         if np.ndim(real_parts) != 2 or len(real_parts) != len(self.nodes):
             raise EngineError(PARTS_SHAPE.format(count=len(self.nodes), shape=np.shape(real_parts)))
@@ -206,15 +196,16 @@ class Extension:
 
 
 def _strictly_inside(loops: Sequence[Complexes], points: Complexes, rounding: float) -> Complexes:
-    """Move points on the boundary, or outside it by rounding, a hair's breadth inside.
+    """Move points on the boundary, or outside it by rounding, slightly inside.
 
-    There the limit from inside is meant. Where two panels meet on an edge, the logarithms of both
-    cancel only as far as the point's distance is known: 1e-9 of the size leaves seven digits. At a
-    corner both panels start from the same point, and 1e-13 keeps the root of a distance small.
+    There the result is the limit from inside. Where two panels meet on an edge, the logarithms of
+    both cancel only to the relative accuracy of the point's distance. A distance of 1e-9 of the
+    size leaves seven digits. At a corner both panels start from the same point, and 1e-13 keeps the
+    root of a distance small.
     """
     outline, *holes = loops
     size = diameter(outline)
-    # Nearly all points are inside a region that is a little smaller.
+    # Nearly all points are inside a slightly smaller region.
     area = shapely_region(outline, holes)
     room = area.buffer(-2 * EDGE_DEPTH * size, join_style="mitre")
     shapely.prepare(room)

@@ -1,10 +1,10 @@
-"""Which panels act on which points in which way: the lists of a fast multipole method.
+"""The interaction lists of a fast multipole method: which panels act on which points, and how.
 
-Panels are taken in clusters along the outline, each of two clusters of the level below; points in
-squares, each cut into quarters where that spares work. A cluster far from a square acts on all of
-its points through one multipole expansion and one Taylor polynomial (Greengard and Rokhlin 1987).
-A panel that is near by the measure of its disc but far by its segment goes into the polynomial
-directly. What is left at the smallest squares is near.
+Panels are grouped in clusters along the outline, each of two clusters of the level below. Points
+are grouped in squares, which are cut into quarters where this saves work. A cluster far from a
+square acts on all of its points through one multipole expansion and one Taylor polynomial
+(Greengard and Rokhlin 1987). A panel whose disc is near but whose segment is far contributes to the
+polynomial directly. All pairs left at the smallest squares are near.
 """
 
 from dataclasses import dataclass
@@ -18,21 +18,21 @@ from engine.dirichlet.panels import Panels
 from engine.dirichlet.product_integration import near_distance
 from engine.dirichlet.quadtree import DEEPEST, Grid, Level, Squares
 
-# Distance of what is far, over the radius of a square or cluster: expansions err by FAR^-TERMS.
+# Distance of far pairs, over the radius of a square or cluster; expansions err by FAR^-TERMS.
 FAR = 2.5
-# Pairs of points and clusters that a square holds at most before it is cut into quarters:
+# Pairs of points and clusters in a square above which it is cut into quarters:
 # integrating them exactly costs about as much as the expansions of four more squares.
 FEW_PAIRS = 128
 
 
 class Pairs(NamedTuple):
-    """Squares and clusters that act on them, intp (n,) each."""
+    """Squares and the clusters that act on them, intp (n,) each."""
 
     squares: Indices
     clusters: Indices
 
     def of(self, which: Booleans | Indices | slice) -> "Pairs":
-        """Return some of them."""
+        """Return some of the pairs."""
         return Pairs(self.squares[which], self.clusters[which])
 
 
@@ -40,13 +40,13 @@ class Pairs(NamedTuple):
 class Clusters:
     """Discs around panels, around pairs of these, and so on; the panels come first.
 
-    Parameters
+    Attributes
     ----------
     firsts : intp, shape (l + 1,)
         The first cluster of each level, and the number of all.
     centre, radius : complex128 and float64, shape (c,)
     reach : float64, shape (c,)
-        How far from the centre plain quadrature and the moments are accurate, for points.
+        Distance from the centre beyond which plain quadrature and the moments are accurate.
     level : intp, shape (c,)
     """
 
@@ -80,7 +80,7 @@ class Clusters:
         )
 
     def children(self, clusters: Indices) -> tuple[Indices, Indices]:
-        """Return the children (n,) of clusters above the panels, and of which (n,) each is one."""
+        """Return the children (n,) of clusters above the panels, and the parent (n,) of each."""
         level = self.level[clusters]
         first = self.firsts[level - 1] + 2 * (clusters - self.firsts[level])
         both = np.column_stack([first, first + 1])
@@ -91,7 +91,7 @@ class Clusters:
 class Interactions(NamedTuple):
     """The squares, the clusters, and the pairs of them, sorted by square.
 
-    `direct` and `near` are of panels, the latter of leaves only.
+    `direct` and `near` refer to panels; `near` refers to leaves only.
     """
 
     squares: Squares
@@ -102,7 +102,7 @@ class Interactions(NamedTuple):
 
 
 def find_interactions(panels: Panels, points: Complexes) -> Interactions:
-    """Sort points (t,), at least one, into squares, and find what acts on each."""
+    """Sort points (t,), at least one, into squares, and find the pairs of each square."""
     clusters = Clusters.of(panels)
     search = _Search(panels, clusters)
     grid = Grid.around(points)
@@ -143,7 +143,7 @@ def find_interactions(panels: Panels, points: Complexes) -> Interactions:
 
 
 class _Search:
-    """The pairs that are found, with the squares' numbers among all."""
+    """The pairs found so far, with the squares' numbers among all squares."""
 
     def __init__(self, panels: Panels, clusters: Clusters) -> None:
         self._clusters = clusters
@@ -154,7 +154,7 @@ class _Search:
         self.near: list[Pairs] = []
 
     def settled(self, pairs: Pairs, level: Level) -> Pairs:
-        """Take out what is far, opening clusters that are larger than the squares."""
+        """Remove far pairs, and open clusters that are larger than the squares."""
         waiting = []
         while len(pairs.squares):
             pairs = self._without_far(pairs, level)
@@ -172,10 +172,10 @@ class _Search:
             pairs = self._without_far(self._opened(pairs.of(above)), level)
 
     def is_leaf(self, waiting: Pairs, level: Level) -> Booleans:
-        """Tell which squares are not worth cutting."""
+        """Return which squares are not worth cutting."""
         count = len(level.starts)
         waits = np.bincount(waiting.squares, minlength=count)
-        # Quarters of what is much smaller than the panels near it would be near the same ones.
+        # Quarters of a square much smaller than its near panels would have the same near panels.
         small = self._clusters.radius[waiting.clusters] < 2 * level.radius
         gains = np.bincount(waiting.squares, small, minlength=count) > 0
         few: Booleans = waits * (level.ends - level.starts) <= FEW_PAIRS
@@ -217,7 +217,7 @@ def _distance(points: Complexes, starts: Complexes, ends: Complexes) -> Floats:
 
 
 def _handed_down(waiting: Pairs, level: Level, quarters: Level) -> Pairs:
-    """Return what waits for the quarters: whatever waited for their squares."""
+    """Return the pairs of the quarters: all pairs that were left for their squares."""
     parent = quarters.parent - level.first
     counts = np.bincount(waiting.squares, minlength=len(level.starts))
     order = np.argsort(waiting.squares, kind="stable")

@@ -7,10 +7,10 @@ from engine.arrays import Booleans, Complexes, Indices
 from engine.dirichlet.panels import NODES, Panels, end_values
 from engine.dirichlet.product_integration import panel_weights
 
-BLOCK = 2048  # pairs that are integrated at a time, so that they stay in cache
+BLOCK = 2048  # pairs that are integrated at a time, to stay in cache
 
-# Distance from a panel, over its length, from which on single precision loses no more than the
-# expansions of far panels do. Closer to it large weights of neighbours cancel.
+# Distance from a panel, over its length, beyond which single precision is as accurate as the
+# expansions of far panels. Closer to it large weights of neighbours cancel.
 AWAY = 0.2
 
 
@@ -23,11 +23,10 @@ def near_matrix(
     *,
     single: bool = False,
 ) -> bsr_array:
-    """Return what near panels add to Re g, Im g, Re g' and Im g' at points, (4 t, N).
+    """Return the near panels' part of Re g, Im g, Re g' and Im g' at points, (4 t, N).
 
     Parameters
     ----------
-    panels : Panels
     points : complex128, shape (t,)
         Strictly inside the outline.
     rows, columns : intp, shape (n,)
@@ -37,10 +36,11 @@ def near_matrix(
 
     Notes
     -----
-    g' is the integral of dμ / (ζ − z): by differentiating under the integral instead, the small
-    jumps of a discrete μ between panels would become poles on the outline. A panel that is not near
-    is differentiated under the integral, which differs by μ / (ζ − z) at its ends; where a near
-    panel meets it, the near one has that term as well, and only the jump is left, which is far.
+    g' is the integral of dμ / (ζ − z). With the derivative under the integral, the small jumps of
+    a discrete μ between panels would become poles on the outline. A panel that is not near has the
+    derivative under the integral; the difference is μ / (ζ − z) at its ends. Where such a panel
+    meets a near panel, the near panel includes this term, too. Then only the jump is left, which is
+    far.
     """
     data = np.empty((len(rows), 4, NODES), dtype=np.float32 if single else np.float64)
     for power in np.unique(panels.power):
@@ -60,10 +60,7 @@ def near_matrix(
 def near_matrices(
     panels: Panels, points: Complexes, rows: Indices, columns: Indices, alone: Booleans
 ) -> tuple[bsr_array, bsr_array]:
-    """Return two matrices with the sum of `near_matrix`: of what is close, and float32 of the rest.
-
-    The parameters are the same.
-    """
+    """Return two matrices that add up to `near_matrix`: of close pairs, and float32 of the rest."""
     place = (points[rows] - panels.origin[columns]) / panels.span[columns]
     away = np.abs(place - np.clip(place.real, 0.0, 1.0)) >= AWAY
     close, rest = (
@@ -82,7 +79,7 @@ def _weights(
     offset = z - panels.origin[panel]
     weights, slopes = panel_weights(offset / span, power)
     sign = np.where(forward, 1.0, -1.0) / (2j * np.pi)
-    # At τ = 0 and 1; `alone` is of the ends in the order along the outline.
+    # At τ = 0 and 1; `alone` is in the order of the ends along the outline.
     first, last = end_values()
     at_origin = np.where(forward, alone[0], alone[1]) / offset
     at_end = np.where(forward, alone[1], alone[0]) / (offset - span)

@@ -18,22 +18,22 @@ from engine.geometry import (
 
 NODES = 12  # Gauss-Legendre nodes of a panel
 POWER = 3  # grading at corners: arc length is the third power of the parameter
-# A panel is no longer than its distance to the nearest cage vertex (where the keyframes vary fast)
-# times the first, and to the nearest edge that is no neighbour times the second.
+# Upper limit of a panel's length: PANEL_PER_CAGE times the distance to the nearest cage vertex,
+# where the keyframes vary fast, and PANEL_PER_GAP times that to the nearest non-adjacent edge.
 PANEL_PER_CAGE = 2.0
 PANEL_PER_GAP = 8.0
-FINEST = 2.0**-20  # of an edge: panels are not cut below this
+FINEST = 2.0**-20  # of an edge: shorter panels are not cut
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Panels:
     """Pieces ζ(τ) = origin + span · τ^power of a boundary, 0 ≤ τ ≤ 1, in order along its loops.
 
-    A panel that ends at a corner has its origin there and the power `POWER`, the others have the
-    power 1. Solutions of the Dirichlet problem behave like s^β at a corner, with β above 1/2; in τ
-    that is smooth enough for polynomials.
+    A panel that ends at a corner has its origin there and the power `POWER`; the others have the
+    power 1. Solutions of the Dirichlet problem behave like s^β at a corner, with β above 1/2. In τ
+    they are smooth enough for polynomials.
 
-    Parameters
+    Attributes
     ----------
     origin, span : complex128, shape (p,)
     power : intp, shape (p,)
@@ -51,19 +51,15 @@ class Panels:
 
     @classmethod
     def on(cls, domain: Domain, *, coarseness: float = 1.0) -> Self:
-        """Cut a boundary into panels as short as its narrow places and the cages ask for.
+        """Cut a boundary into panels short enough for its narrow places and for the cages.
 
-        Parameters
-        ----------
-        domain : Domain
-        coarseness : float
-            Factor on how long the panels may be.
+        `coarseness` is a factor on the largest length of the panels.
         """
         loops, cages = domain.loops, np.concatenate(domain.cages)
         corners, following = np.concatenate(loops), loop_ends(loops)
         firsts = np.cumsum([0, *map(len, loops[:-1])])
         sides = Pieces.whole(corners, following)
-        # Every edge is first halved, so that a panel touches one corner at most.
+        # Every edge is first halved, so that a panel touches at most one corner.
         halves = sides.halved(np.ones(len(corners), dtype=np.bool_))
 
         def is_fine(pieces: Pieces) -> Booleans:
@@ -84,9 +80,9 @@ class Panels:
         )
 
     def unresolved(self, values: Floats, tolerance: float) -> Booleans:
-        """Tell on which panels (p,) polynomials through values (N, j) at the nodes are too coarse.
+        """Return the panels (p,) too coarse for polynomials through values (N, j) at the nodes.
 
-        That is where one of their last Legendre coefficients is above `tolerance`.
+        There one of the last Legendre coefficients is above `tolerance`.
         """
         to_legendre, _ = legendre_matrices()
         last = to_legendre[-2:] @ values.reshape(len(self), NODES, -1)
@@ -94,7 +90,7 @@ class Panels:
         return coarse
 
     def halved(self, chosen: Booleans) -> Self:
-        """Return panels of which the chosen ones (p,) are cut in the middle."""
+        """Return the panels with the chosen ones (p,) cut in the middle."""
         panel, place = ragged_indices(1 + chosen.astype(np.intp))
         at_origin = ~chosen[panel] | ((place == 0) == self.forward[panel])
         span = np.where(chosen[panel], self.span[panel] / 2, self.span[panel])
@@ -118,7 +114,6 @@ class Panels:
         )
 
     def __len__(self) -> int:
-        """Return the number of panels."""
         return len(self.origin)
 
     @property
@@ -128,12 +123,12 @@ class Panels:
 
     @property
     def previous_panels(self) -> Indices:
-        """The panel before each on its loop, intp (p,)."""
+        """The previous panel of each on its loop, intp (p,)."""
         return np.argsort(self.next_panels)
 
     @property
     def middles(self) -> Complexes:
-        """Half-way between the ends of each, (p,)."""
+        """Points halfway between the ends of each panel, (p,)."""
         result: Complexes = self.origin + self.span / 2
         return result
 
@@ -144,7 +139,7 @@ class Panels:
         return result
 
     def arcs(self) -> Floats:
-        """Return τ^power at the nodes, (p, NODES): their distance from the origin over the span."""
+        """Return τ^power at the nodes, (p, NODES): the distance from the origin over the span."""
         tau, _ = gauss_legendre()
         result: Floats = tau ** self.power[:, None]
         return result
@@ -179,14 +174,14 @@ def legendre_matrices() -> tuple[Floats, Floats]:
 
 @cache
 def end_values() -> tuple[Floats, Floats]:
-    """Return the weights (NODES,) that take values at the nodes to those at τ = 0 and at τ = 1."""
+    """Return the weights (NODES,) from values at the nodes to those at τ = 0 and at τ = 1."""
     to_legendre, _ = legendre_matrices()
     signs = (-1.0) ** np.arange(NODES)
     return freeze(signs @ to_legendre), freeze(to_legendre.sum(axis=0))
 
 
 def _room(pieces: Pieces, corners: Complexes, following: Indices, cage: Complexes) -> Floats:
-    """Return how long a panel on each of the pieces of edges may be."""
+    """Return the largest length of a panel on each of the pieces of edges."""
     starts, ends = pieces.starts, pieces.ends
     to_cage = distance_to_segments(cage, starts, ends).min(axis=0)
     # Two segments that do not cross are nearest at an end of one of them.

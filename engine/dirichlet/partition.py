@@ -1,8 +1,8 @@
-"""A partition of panels into boxes, by halves, in which panels that face each other stay together.
+"""Recursive bisection of panels into boxes that keep panels on facing sides together.
 
-Two sides of a narrow gap or arm act on each other through as many functions as there are nodes on
-them; a box with both acts on the rest through its ends alone. So gaps and arms are cut across, by
-lines or by places along the boundary, wherever the fewest panels that face each other are parted.
+Two sides of a narrow gap or arm interact through as many functions as they have nodes. A box with
+both sides interacts with the rest through its ends alone. Gaps and arms are therefore cut across,
+by lines or at places along the boundary, where the fewest facing panels are separated.
 """
 
 import numpy as np
@@ -12,12 +12,12 @@ from engine.arrays import Floats, Indices
 from engine.dirichlet.panels import Panels
 from engine.geometry import as_xy
 
-DIRECTIONS = 8  # of the lines
-SMALLEST = 0.35  # part of the panels in either half
+DIRECTIONS = 8  # of the cutting lines
+SMALLEST = 0.35  # smallest share of the panels in either half
 
 
 def partition_panels(panels: Panels, depth: int) -> list[Indices]:
-    """Return 2^depth boxes of panels, at most as many as these; halves follow each other."""
+    """Return 2^depth boxes of panels, at most one per panel; halves are adjacent in the list."""
     middles, own = panels.middles - panels.middles.mean(), np.arange(len(panels))
     turns = np.exp(1j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
     keys = np.vstack([(middles * turns[:, None]).real, own])
@@ -25,24 +25,24 @@ def partition_panels(panels: Panels, depth: int) -> list[Indices]:
         a, b, c = Delaunay(as_xy(middles)).simplices.T.astype(np.intp)
     except QhullError:  # all on one line, or nearly
         a = b = c = np.empty(0, dtype=np.intp)
-    # Neighbours in a triangulation face each other, at whatever distance.
+    # Neighbours in a triangulation face each other, at any distance.
     sides = np.sort(np.concatenate([np.column_stack(pair) for pair in ((a, b), (b, c), (c, a))]))
     facing = np.unique(sides, axis=0)
     gaps = np.abs(np.diff(middles[facing])[:, 0])
-    # The farther apart, the fewer functions they act by; neighbours on a loop meet.
+    # Panels farther apart interact through fewer functions; neighbours on a loop touch.
     prices = np.minimum(1.0, np.abs(panels.span)[facing].min(axis=1) / gaps)
     pairs = np.concatenate([facing, np.column_stack([own, panels.next_panels])])
     return _parts(keys, pairs, np.append(prices, np.ones(len(panels))), depth)
 
 
 def _parts(keys: Floats, pairs: Indices, prices: Floats, depth: int) -> list[Indices]:
-    """Cut panels by one of their keys (k, p), where least is paid for the pairs that are parted."""
+    """Bisect panels by the key (k, p) with the least price of the separated pairs."""
     count = keys.shape[1]
     if depth == 0:
         return [np.arange(count)]
     order = np.argsort(keys, axis=1)
     ends = np.sort(np.argsort(order, axis=1)[:, pairs])
-    # What is between the first of a pair and the second parts them.
+    # A cut between the first and the second panel of a pair separates them.
     opened, closed = (
         np.array([np.bincount(each, prices, count) for each in ends[:, :, i]]) for i in (0, 1)
     )

@@ -1,10 +1,10 @@
 """Exact integrals of polynomials against the Cauchy kernel on one panel.
 
 On a panel ζ(τ) = o + e τ^q the kernel dζ/(ζ − z) is q τ^(q−1) dτ / (τ^q − w) with w = (z − o)/e,
-which is Σ dτ/(τ − r) over the q roots r of w. So each panel costs q integrals over [0, 1], whether
-z is far from it, near it or on it (Helsing and Ojala 2008, here for graded panels). With Legendre
-polynomials P_k and x = 2τ − 1 they are q_k(x) = ∫ P_k(s) / (s − x) ds, which obey the three-term
-recurrence of the Legendre functions.
+which is Σ dτ/(τ − r) over the q roots r of w. Each panel therefore costs q integrals over [0, 1],
+for z far from the panel, near it or on it (Helsing and Ojala 2008, here for graded panels). With
+Legendre polynomials P_k and x = 2τ − 1 they are q_k(x) = ∫ P_k(s) / (s − x) ds, which obey the
+three-term recurrence of the Legendre functions.
 """
 
 import numpy as np
@@ -18,7 +18,7 @@ SEPARATION = 3.0
 
 
 def is_near(w: Complexes, power: int) -> Booleans:
-    """Tell where plain quadrature on a panel of this power is not accurate enough."""
+    """Return where plain quadrature on a panel of this power is not accurate enough."""
     return _ellipse(w if power == 1 else w ** (1.0 / power)) < SEPARATION
 
 
@@ -28,10 +28,8 @@ def panel_weights(w: Complexes, power: int) -> tuple[Complexes, Complexes]:
     Parameters
     ----------
     w : complex128, shape (t,)
-        (z − origin) / span, not 0. Where it is on the panel itself, the sign of its imaginary part
-        tells the side.
-    power : int
-        Of the panel.
+        (z − origin) / span, not 0. On the panel itself, the sign of the imaginary part gives the
+        side.
 
     Returns
     -------
@@ -87,7 +85,7 @@ def _legendre_integrals(x: Complexes) -> Complexes:
 
 
 def near_distance(power: Indices) -> Floats:
-    """Return how far from a panel, over its length, plain quadrature is accurate; like `power`."""
+    """Return from which distance, over a panel's length, plain quadrature is accurate."""
     angle = np.linspace(0.0, np.pi, 200)
     x = (SEPARATION * np.exp(1j * angle) + np.exp(-1j * angle) / SEPARATION) / 2
     root = (1 + x) / 2

@@ -23,20 +23,20 @@ _SPREADING = (
 class Squares:
     """A quadtree of points; the squares of each level come after those of the level above.
 
-    Parameters
+    Attributes
     ----------
     order : intp, shape (t,)
         The points, so that those of a square follow each other.
     starts, ends : intp, shape (q,)
-        Of the points of each square, in `order`.
+        Range of the points of each square, in `order`.
     centre, radius : complex128 and float64, shape (q,)
-        Of the disc around each square; a quarter's radius is half.
+        Disc around each square; a quarter has half the radius.
     parent : intp, shape (q,)
-        The square that it is a quarter of; the first is its own.
+        The square that contains this quarter; the first square is its own parent.
     quadrant : intp, shape (q,)
-        Which quarter: bit 0 is right, bit 1 up.
+        Position within the parent: bit 0 is right, bit 1 up.
     leaves : intp, shape (l,)
-        Those that are not cut, in the order of their points.
+        Uncut squares, in the order of their points.
     levels : tuple of slice
         The squares of each level.
     """
@@ -56,14 +56,8 @@ class Squares:
 class Grid:
     """The points on a grid of 2^DEEPEST lines, in Morton order: x and y bit by bit in turn.
 
-    Parameters
-    ----------
-    corner, side : complex, float
-        Of the square around all points.
-    order : intp, shape (t,)
-        The points in Morton order.
-    codes : int64, shape (t,)
-        Their places along it.
+    `corner` and `side` define the square around all points. `order` (t,) are the points in Morton
+    order, `codes` (t,) their Morton codes.
     """
 
     corner: complex
@@ -76,7 +70,7 @@ class Grid:
         """Sort points (t,)."""
         corner = complex(points.real.min(), points.imag.min())
         extent = max(float(np.ptp(points.real)), float(np.ptp(points.imag)))
-        # A single point has no extent, but expansions want a radius.
+        # A single point has no extent, but expansions need a radius.
         side = max(extent, 1e-12 * float(np.abs(points).max()), 1e-100) * (1 + 2.0**-DEEPEST)
         scaled = (points - corner) * (2**DEEPEST / side)
         codes = _spread(scaled.real.astype(np.int64)) | _spread(scaled.imag.astype(np.int64)) << 1
@@ -86,7 +80,7 @@ class Grid:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Level:
-    """Squares of one size; `first` is the number of the first, `code` tells the places.
+    """Squares of one size: `first` is the number of the first one, `code` the Morton codes.
 
     The other fields are those of `Squares`.
     """
@@ -118,7 +112,7 @@ class Level:
         )
 
     def quarters(self, grid: Grid, cut: Booleans) -> Self:
-        """Return the quarters with points of the squares that are cut (q,)."""
+        """Return the non-empty quarters of the cut squares (q,)."""
         chosen = np.flatnonzero(cut)
         depth = self.depth + 1
         code = (4 * self.code[chosen, None] + np.arange(4)).ravel()

@@ -1,12 +1,12 @@
-"""The Dirichlet problem where some panels are cut, beside the solver on whole ones.
+"""The Dirichlet problem on partly halved panels, with the solver of the whole panels.
 
-What polynomials on a whole panel lack of given real parts, e, is small and at home on that panel
-alone. Half of a density is the real part that it has on its own straight panel, so that 2e there
-leaves to the solver of the whole panels what is smooth,
+Let e be the given real parts minus their polynomials p on a whole panel. It is small and nonzero on
+this panel only. On a straight panel, half of a density is the panel's own part of the real part.
+The density 2e there leaves a smooth problem to the solver of the whole panels,
 
     (1/2 + K) μ = p − 2 K e,      p + e the real parts,
 
-and nothing is factorised anew.
+and no new factorisation is necessary.
 """
 
 from dataclasses import dataclass
@@ -22,21 +22,14 @@ from engine.dirichlet.panels import NODES, Panels, end_values
 from engine.dirichlet.product_integration import near_distance
 
 BLOCK = 2048  # points at a time
-FIRM = 1e4  # how much more the ends of a panel weigh than a node, so that they are met
+FIRM = 1e4  # weight of a panel's ends relative to a node, so that the ends are interpolated
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Refinement:
-    """A transform of real parts that are given at the nodes of panels, some of them cut.
+    """A transform of real parts given at the nodes of panels, some of them halved.
 
-    Parameters
-    ----------
-    transform : HilbertTransform
-        Of the whole panels.
-    panels : Panels
-        Length p.
-    whole : intp, shape (p,)
-        The number of the whole panel that each is a part of.
+    `transform` has the whole panels; `whole` (p,) is the whole panel of each part in `panels`.
     """
 
     transform: HilbertTransform
@@ -45,31 +38,24 @@ class Refinement:
 
     @classmethod
     def of(cls, transform: HilbertTransform) -> Self:
-        """Return a transform's own panels, none of them cut."""
+        """Return a transform's own panels, none of them halved."""
         panels = transform.panels
         return cls(transform=transform, panels=panels, whole=np.arange(len(panels)))
 
     def halved(self, chosen: Booleans) -> Self:
-        """Return panels of which the chosen ones (p,) are cut in the middle."""
+        """Return the panels with the chosen ones (p,) cut in the middle."""
         whole = np.repeat(self.whole, 1 + chosen)
         return type(self)(transform=self.transform, panels=self.panels.halved(chosen), whole=whole)
 
     @property
     def nodes(self) -> Complexes:
-        """Points of the boundary (N,) at which real parts are given."""
+        """Points of the boundary (N,) for the given real parts."""
         return self.transform.centre + self.panels.nodes.ravel()
 
     def solve(self, real_parts: Floats) -> "Densities":
-        """Find the holomorphic functions with given real parts on the boundary.
+        """Find the holomorphic functions with given real parts (N, j) at the nodes.
 
-        Parameters
-        ----------
-        real_parts : float64, shape (N, j)
-            At `nodes`.
-
-        Notes
-        -----
-        As `Extension.extend`, which needs the points; this serves any.
+        Unlike `Extension.extend` this needs no points; the result holds for any.
         """
         is_cut = np.bincount(self.whole)[self.whole] > 1
         transform, columns = self.transform, real_parts.shape[1]
@@ -100,10 +86,10 @@ class Refinement:
 def _projected(
     panels: Panels, number: int, nodes: Complexes, given: Floats
 ) -> tuple[Floats, Floats]:
-    """Return polynomials near what is given on the parts (c, NODES, j) of a panel.
+    """Fit polynomials to the values on the parts (c, NODES, j) of a panel.
 
-    They are returned at the panel's own nodes (NODES, j), and taken off at those of the parts. At
-    the panel's ends nothing is left, so that densities go on there as without the parts.
+    Returned are the polynomials at the panel's own nodes (NODES, j), and the residuals at the nodes
+    of the parts. The residuals vanish at the panel's ends, so densities stay continuous there.
     """
     power, is_forward = panels.power[number], panels.forward[number]
     arcs = ((nodes - panels.origin[number]) / panels.span[number]).real.ravel()
@@ -125,16 +111,10 @@ def _legendre(tau: Floats) -> Floats:
 
 
 class Densities(NamedTuple):
-    """Holomorphic functions by what is on the boundary: they can be had at any points.
+    """Holomorphic functions given by densities on the boundary, for evaluation at any points.
 
-    Parameters
-    ----------
-    whole : float64, shape (N, j)
-        Densities at the nodes of the whole panels.
-    lacking : float64, shape (holes, j)
-        As in `Extended`.
-    local : LocalDensities or None
-        What is added on parts of panels.
+    `whole` (N, j) are densities at the nodes of the whole panels, `local` those added on parts of
+    panels. `lacking` is as in `Extended`.
     """
 
     whole: Floats
@@ -144,7 +124,7 @@ class Densities(NamedTuple):
     def at(self, extension: Extension) -> Extended:
         """Return the functions at the points of an extension.
 
-        Time grows with the product of points and cut panels.
+        Time grows with the product of points and halved panels.
         """
         values, derivatives = extension.integral(self.whole)
         if self.local is not None:
@@ -164,8 +144,8 @@ class LocalDensities:
     def at(self, points: Complexes, own: Indices | None = None) -> tuple[Complexes, Complexes]:
         """Return the Cauchy integral and its derivative at points (t,), each (t, j).
 
-        `own` are the whole panels (t,) that points of the boundary are on; what these contribute
-        there has no real part, and is left out.
+        `own` are the whole panels (t,) that contain points of the boundary. A panel's contribution
+        at its own points is imaginary, and is left out.
         """
         columns = self.densities.shape[2]
         found = np.empty((2, len(points), columns), dtype=np.complex128)
@@ -187,8 +167,8 @@ class LocalDensities:
         kernel = np.repeat(plain, NODES, axis=1) / (nodes - points[:, None])
         masses = densities * (parts.differentials().reshape(-1, 1) / (2j * np.pi))
         rows, columns_near = np.nonzero(near)
-        # Where another part meets it, as in the integral over whole panels; at their ends the jumps
-        # are those of the whole density, with which they cancel.
+        # Where parts meet, as in the integral over whole panels. At the outer ends the jumps are
+        # those of the whole density and cancel with it.
         meets = np.diff(self.whole) == 0
         beside = np.roll(near, 1, axis=1), np.roll(near, -1, axis=1)
         before = np.append(False, meets) & ~beside[0]
@@ -205,7 +185,7 @@ class LocalDensities:
         )
 
     def means(self, panels: Panels) -> Floats:
-        """Return the means over the loops of holes, (holes, j), of the whole panels' boundary."""
+        """Return the means over the loops of holes, (holes, j), given the whole panels."""
         lengths = np.abs(panels.differentials()).sum(axis=1)
         weights = np.abs(self.parts.differentials())
         means = []

@@ -1,12 +1,12 @@
 """A fast direct solver of the integral equation, by recursive skeletonisation.
 
-Nodes are taken in boxes (`engine.dirichlet.partition`). Whatever is outside a box acts on it, and
-is acted upon, through few functions, so that some of its nodes (the skeleton) stand for all:
-A(box, outside) = U A(rows of the skeleton, outside), and likewise for columns. With the other nodes
-eliminated, the skeletons of two halves form a box of the next level, and so on, until the rest is
-small (Martinsson and Rokhlin 2005). What is far outside is represented by a circle around the box.
-Time and memory grow with the number of nodes, and faster where an outline fills an area, so that a
-cut crosses the more of its arms the larger a box is.
+Nodes are grouped in boxes (`engine.dirichlet.partition`). A box and its exterior interact through
+few functions, so some of the box's nodes (the skeleton) represent all:
+A(box, outside) = U A(rows of the skeleton, outside), and likewise for columns. The other nodes are
+eliminated. The skeletons of two halves form a box of the next level, and so on, until few nodes are
+left (Martinsson and Rokhlin 2005). A circle around the box represents the far exterior. Time and
+memory grow with the number of nodes, and faster where an outline fills an area: the larger a box
+is, the more arms of the outline its cut crosses.
 """
 
 from collections.abc import Callable, Iterator
@@ -24,28 +24,28 @@ from engine.dirichlet.partition import partition_panels
 
 LEAF = 6 * NODES  # nodes of a box of the lowest level, about
 SMALL = 600  # nodes that are solved for directly
-# Of what a skeleton loses, relative to what acts; random sums lose a digit more, corners another.
+# Error of a skeleton relative to the interaction; random sums lose a digit more, corners another.
 TOLERANCE = 5e-12
 CIRCLE = 1.6  # radius of the circle around a box, over the box's own
-ON_CIRCLE = 60  # points; what they miss falls like CIRCLE^−ON_CIRCLE
-BLOCK = 2**18  # entries that are worked out at a time, so that they stay in cache
-SUMMED = 4  # random sums into which a row goes
+ON_CIRCLE = 60  # points; their error falls like CIRCLE^−ON_CIRCLE
+BLOCK = 2**18  # entries that are computed at a time, to stay in cache
+SUMMED = 4  # number of random sums that include a row
 
 
 class SkeletonBox(NamedTuple):
-    """Nodes of which m are eliminated and r, their skeleton, are left.
+    """Nodes of a box, of which m are eliminated and r, the skeleton, are kept.
 
-    Parameters
+    Attributes
     ----------
     kept, others : intp, shapes (r,) and (m,)
-        Among all nodes.
+        Indices among all nodes.
     weights : float64, shape (r, m)
-        Of the skeleton's in what acts on the others, and in what they act on.
+        Weights of the skeleton in the interactions of the other nodes, in both directions.
     spread : float64, shape (r + m, m)
-        From right-hand sides of the others to what they add to those of the skeleton, and to the
-        others' solutions as if the skeleton's were 0.
+        From right-hand sides of the others to their additions to those of the skeleton, and to the
+        others' solutions with a zero skeleton.
     follow : float64, shape (m, r)
-        From solutions of the skeleton to what they add to the others'.
+        From solutions of the skeleton to their additions to the others' solutions.
     """
 
     kept: Indices
@@ -59,16 +59,16 @@ class SkeletonBox(NamedTuple):
 class SkeletonSolver:
     """The factorised integral equation; build it with `SkeletonSolver.of`.
 
-    Parameters
+    Attributes
     ----------
     boxes : tuple of SkeletonBox
-        In the order in which they were eliminated.
+        In the order of elimination.
     rest : intp, shape (q,)
-        The nodes that are left.
+        The remaining nodes.
     top : float64, shape (q, q)
-        The inverse of the matrix that is left.
+        The inverse of their matrix.
     roots : float64, shape (N,)
-        Of the nodes' weights.
+        Square roots of the nodes' weights.
     """
 
     boxes: tuple[SkeletonBox, ...]
@@ -80,7 +80,7 @@ class SkeletonSolver:
     def of(
         cls, operator: BoundaryOperator, progress: Callable[[float], None] | None = None
     ) -> Self:
-        """Compress and eliminate level by level; tell the share that is done before each box."""
+        """Compress and eliminate level by level; report the completed share before each box."""
         count = len(operator.panels)
         depth = max(0, round(np.log2(count * NODES / LEAF)))
         panels = np.arange(count * NODES).reshape(count, NODES)
@@ -104,7 +104,6 @@ class SkeletonSolver:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
         return nbytes_of(self)
 
     def __call__(self, right: Floats) -> Floats:
@@ -124,7 +123,7 @@ class SkeletonSolver:
 
 
 class _Active(NamedTuple):
-    """A box under work: its nodes, and the matrix between them."""
+    """A box during the elimination: its nodes, and the matrix between them."""
 
     nodes: Indices
     block: Floats
@@ -138,22 +137,22 @@ class _Active(NamedTuple):
     def eliminated(self, sketch: Floats) -> tuple[SkeletonBox, "_Active"]:
         """Find the skeleton, and eliminate the other nodes.
 
-        Pivots of an elimination of random sums are as good a skeleton as those of a QR
-        decomposition, and found several times as fast (Dong and Martinsson 2023).
+        The pivots of an elimination of random sums give as good a skeleton as a QR decomposition,
+        several times as fast (Dong and Martinsson 2023).
         """
         places, lower, upper = scipy.linalg.lu(sketch.T, p_indices=True, check_finite=False)
         order = np.argsort(places)
-        # What is left before each step: the diagonal alone may be small by chance.
+        # The remainder before each step: the diagonal alone may be small by chance.
         sizes = np.linalg.norm(upper, axis=1) / np.sqrt(np.arange(len(upper), 0, -1))
         rank = 1 + int(np.flatnonzero(sizes >= TOLERANCE * sizes.max())[-1])
-        # What acts on the others, and what they act on, is that of the skeleton times these.
+        # The interactions of the other nodes are those of the skeleton times these weights.
         weights = scipy.linalg.solve_triangular(
             lower[:rank, :rank], lower[rank:, :rank].T, trans="T", lower=True, check_finite=False
         )
         block = self.block[order[:, None], order]
         inner, from_kept = block[:rank, :rank], block[rank:, :rank]
-        # With x_kept = y_kept − weights y_others, and the same combinations of equations, nothing
-        # outside acts on the others, nor they on it.
+        # With x_kept = y_kept − weights y_others, and the same combinations of equations, the other
+        # nodes do not interact with the exterior.
         to_kept = block[:rank, rank:] - inner @ weights
         rest = block[rank:, rank:] - from_kept @ weights - weights.T @ to_kept
         from_kept = from_kept - weights.T @ inner
@@ -171,7 +170,7 @@ class _Active(NamedTuple):
 
 
 class _Level:
-    """All boxes of one level, as each sees those around it."""
+    """All boxes of one level, each with its surroundings."""
 
     def __init__(self, operator: BoundaryOperator, active: list[_Active]) -> None:
         self._operator = operator
@@ -181,10 +180,10 @@ class _Level:
             self._box[each.nodes] = number
 
     def sketch(self, nodes: Indices) -> Floats:
-        """Return as many random sums as columns of what acts on a box and what it acts on."""
+        """Return as many random sums as columns of the box's interactions in both directions."""
         sums = np.zeros((len(nodes), len(nodes)))
         for rows in self._surroundings(nodes):
-            # Each row goes with a random sign into a few sums (a sparse sign embedding; Martinsson
+            # A sparse sign embedding: each row goes with a random sign into a few sums (Martinsson
             # and Tropp 2020, Section 9.2).
             count = SUMMED * len(rows)
             into = self._random.integers(len(sums), size=count)
@@ -195,7 +194,7 @@ class _Level:
         return sums
 
     def _surroundings(self, nodes: Indices) -> Iterator[Floats]:
-        """Yield what acts on a box from outside and what it acts on, in parts (a, n)."""
+        """Yield a box's interactions with the exterior, both directions, in parts (a, n)."""
         operator, panels = self._operator, self._operator.panels
         middles, halves = panels.middles, np.abs(panels.span) / 2
         own = nodes // NODES
@@ -208,12 +207,12 @@ class _Level:
         around = around[(box >= 0) & (box != self._box[nodes[0]])]
         for start in range(0, len(around), max(1, BLOCK // len(nodes))):
             yield from operator.entries(around[start : start + max(1, BLOCK // len(nodes))], nodes)
-        # A harmonic function inside the circle is one of charges on it, and outside it one of its
-        # values there.
+        # A harmonic function inside the circle is that of charges on it; outside, its values on the
+        # circle determine it.
         circle = centre + radius * np.exp(2j * np.pi * np.arange(ON_CIRCLE) / ON_CIRCLE)
         root = np.sqrt(radius / (2 * np.pi * ON_CIRCLE))
         kernel = root * operator.roots[nodes] / (operator.nodes[nodes] - circle[:, None])
         both = np.concatenate([kernel, kernel * operator.directions[nodes]])
         yield np.concatenate([both.real, both.imag])
-        # Means over loops act on all nodes of the loop alike, and with these roots symmetrically.
+        # A mean over a loop acts equally on all its nodes, and with these roots symmetrically.
         yield operator.means[:, nodes] / operator.roots[nodes]

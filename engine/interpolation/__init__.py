@@ -1,8 +1,8 @@
-"""Interpolation of harmonic keyframes: every variant of the paper behind `prepare`.
+"""Interpolation of harmonic keyframes: every variant of the paper, by `prepare`.
 
 In: harmonic maps of one domain, points, a variant, times.
 Out: positions, f_z and f_z̄ of the points at any time; series in time;
-proof that they keep their bounds.
+proof that the in-betweens keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 

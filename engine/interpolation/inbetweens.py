@@ -21,12 +21,8 @@ from engine.maps import Boundary, Bounds, distortion
 class Frame:
     """An in-between at the points.
 
-    Parameters
-    ----------
-    positions, fz, fzbar : complex128, shape (m,)
-        f, f_z and the true derivative f_z̄ = ∂f/∂z̄.
-    rho : float or None
-        The scaling of η where the variant has one.
+    `positions`, `fz` and `fzbar` are f, f_z and the true derivative f_z̄ = ∂f/∂z̄, complex128 (m,).
+    `rho` scales η; None for variants without scaling.
     """
 
     positions: Complexes
@@ -56,14 +52,10 @@ class Frame:
 
 
 class PointValues(NamedTuple):
-    """An in-between at the sites' value points (v,), or at times (t,) those at each, (t, v).
+    """An in-between at the value points (v,), or at times (t,) there, (t, v).
 
-    Parameters
-    ----------
-    fz, g : complex128
-        f_z and conj(f_z̄).
-    k : complex128
-        K, which multiplies the q of a further correction (`engine.deform.correction.BaseFrame`).
+    `fz` and `g` are f_z and conj(f_z̄). `k` is K, which multiplies the q of a further correction
+    (`engine.deform.correction.BaseFrame`).
     """
 
     fz: Complexes
@@ -75,24 +67,22 @@ class PointValues(NamedTuple):
 class Inbetweens:
     """In-betweens by blended derivatives, integrated along the paths.
 
-    Section 4.1: f^t = Φ^t + conj(Ψ^t) is harmonic, whatever holomorphic Φ'^t = f_z^t and
-    Ψ'^t = conj(f_z̄^t) are blended; Section 7 integrates both from the anchor.
+    Section 4.1: f^t = Φ^t + conj(Ψ^t) is harmonic for any holomorphic Φ'^t = f_z^t and
+    Ψ'^t = conj(f_z̄^t). Section 7 integrates both from the anchor.
 
-    All of it is frozen: calls are pure, and may run on several threads at once.
+    The value is frozen: calls are pure and may run on several threads at once.
 
-    Parameters
+    Attributes
     ----------
-    sites : SampledDomain
-    blend : Blend
     scale : SmoothedRho or None
-        ρ; None where Ψ is not scaled.
+        ρ; None if Ψ is not scaled.
     closing : Closing or None
-        Of h, which closes the periods around holes.
+        Series of h, which closes the periods around holes.
     conformal_closing : Closing or None
-        Around holes, where Ψ is scaled: of d, which leads on to closed periods without any Ψ
+        Series of d, around holes with a scaled Ψ. It closes the periods without any Ψ
         (`engine.interpolation.scaling.pointwise`).
     corrections : tuple of EvaluatedCorrection
-        Of handles that stay, then of tracks; each corrects what the one before leaves.
+        Of pinned handles, then of tracks. Each corrects the result of the previous one.
     """
 
     sampled_domain: SampledDomain
@@ -104,55 +94,53 @@ class Inbetweens:
 
     @property
     def keyframe_blend(self) -> KeyframeBlend:
-        """What is blended, with which weights."""
+        """The keyframes of the blend and their time weights."""
         return self.blend.keyframe_blend
 
     @property
     def boundary(self) -> Boundary:
-        """The boundary of the domain."""
         return self.sampled_domain.boundary
 
     @property
     def bounds(self) -> Bounds:
-        """Those that motion through keyframes obeys."""
+        """Bounds of motion through keyframes."""
         return self.blend.bounds
 
     @property
     def correction(self) -> float:
-        """The largest |h| that closes the periods around holes; 0 where there are none."""
+        """The largest |h| that closes the periods around holes; 0 without holes."""
         return 0.0 if self.closing is None else self.closing.largest
 
     @property
     def _conformal(self) -> Residual | None:
-        """What d is at the nodes."""
+        """Series of d at the nodes."""
         return None if self.conformal_closing is None else self.conformal_closing.residual
 
     @property
     def nbytes(self) -> int:
-        """Memory beyond the sites' and the keyframes' own, in bytes."""
+        """Memory in bytes, without the sampled domain and the keyframes."""
         return nbytes_of(self, but=(self.sampled_domain, self.keyframe_blend.keyframes))
 
     def rho(self, time: float) -> float:
-        """Return ρ; 1 where Ψ is not scaled."""
+        """Return ρ; 1 if Ψ is not scaled."""
         return 1.0 if self.scale is None else self.scale(time)
 
     def with_correction(self, known: CorrectionSeries, basis: SpanBasis | None = None) -> Self:
-        """Return the same with one more correction; a basis at the nodes saves time."""
+        """Return a copy with one more correction; a basis at the nodes saves time."""
         sites = self.sampled_domain
         more = EvaluatedCorrection.of(known, sites.boundary.span, sites.paths.nodes, basis)
         return replace(self, corrections=(*self.corrections, more))
 
     @property
     def sign(self) -> int:
-        """σ of the corrections: −1 where η is kept without a q, 1 where ν is."""
+        """σ of the corrections: −1 if a correction without q keeps η, 1 if it keeps ν."""
         return self.blend.sign or -1
 
     def anchor_position(self, time: float) -> complex:
-        """Return where the anchor is."""
         return complex(self.anchor_positions(np.array([time]))[0])
 
     def anchor_positions(self, times: Floats) -> Complexes:
-        """Return the same at times (t,)."""
+        """Return the positions of the anchor at times (t,)."""
         positions = self.keyframe_blend.anchor_positions(times)
         return sum((each.known.shift(times) for each in self.corrections), positions)
 
@@ -167,11 +155,11 @@ class Inbetweens:
         return derivatives
 
     def values_at(self, times: Floats) -> PointValues:
-        """Return the values at the sites' value points and times (t,), (t, v) each."""
+        """Return the values at the value points and times (t,), (t, v) each."""
         return self._values_at(self.sampled_domain.paths.beside)(times)
 
     def frame_with_values(self, time: float) -> tuple[Frame, PointValues]:
-        """Return a frame, and the values at the sites' value points for little more."""
+        """Return a frame and the values at the value points, for little more than the frame."""
         (blended, mixing), beside = self._mixed(time), self.sampled_domain.paths.beside
         values = PointValues(blended.fz[beside], blended.g[beside], mixing.k[beside])
         return self._frame(blended, time), values
@@ -213,9 +201,9 @@ class Inbetweens:
         )
 
     def _factor(self, plain_log_fz: Complexes, fz: Complexes) -> Complexes:
-        """Return K = L² / F before corrections, L the exponential of the blended logarithms.
+        """Return K = L² / F before corrections; L is the exponential of the blended logarithms.
 
-        The linear blend has zeros of f_z, where that is infinite: there K = L.
+        The linear blend has zeros of f_z, where K would be infinite; there K = L.
         """
         return np.exp(2.0 * plain_log_fz) / fz if self.blend.sign else np.exp(plain_log_fz)
 
@@ -231,14 +219,13 @@ class Inbetweens:
         return blended, mixing
 
     def _blended(self, time: float) -> Derivatives:
-        """Return the derivatives of a frame."""
         return self._mixed(time)[0] if self.corrections else self._uncorrected(time)
 
     def _uncorrected(self, time: float) -> Derivatives:
         """Return the derivatives of a frame before corrections.
 
-        Around holes ρ scales Φ a little, too: Φ' is the mean of that for ρ = 0, F e^d, and that for
-        ρ = 1, F (`engine.interpolation.scaling.pointwise`).
+        Around holes ρ scales Φ a little, too. Φ' is the mean, weighted by ρ, of F e^d (ρ = 0) and F
+        (ρ = 1) (`engine.interpolation.scaling.pointwise`).
         """
         blended = self.blend.derivatives(time)
         if self.scale is not None:
@@ -256,14 +243,14 @@ class Inbetweens:
         return blended
 
     def _offsets(self, blended: Derivatives, time: float) -> Complexes:
-        """Return Φ + conj(Ψ), both 0 at the anchor; one sum along the paths serves both."""
+        """Return Φ + conj(Ψ), both 0 at the anchor; one sum along the paths gives both."""
         keyframes, weights = self.keyframe_blend.keyframes, self.keyframe_blend.time_weights(time)
         paths = self.sampled_domain.paths
         steps = paths.step_integrals(blended.fz, blended.fzz)
         conj_psi = paths.step_integrals(blended.g, blended.gz)
         steps += np.conj(conj_psi, out=conj_psi)
-        # What the quadrature lacks of the keyframes is known, and blended like them: the keyframes
-        # come out exactly, without a jump in time.
+        # The quadrature errors of the keyframes are known and are blended with the same weights.
+        # The in-between therefore equals the keyframes at both ends, without a jump in time.
         errors = weighted_sum([key.psi_error for key in keyframes], weights)
         np.conj(errors, out=errors)
         errors *= self.rho(time)

@@ -1,4 +1,4 @@
-"""The in-betweens of two neighbouring keyframes, whatever their variant."""
+"""In-betweens of two neighbouring keyframes, for all variants."""
 
 from functools import partial
 
@@ -23,12 +23,12 @@ from engine.variant import Variant
 
 
 def prepare_inbetweens(variant: Variant, interval: KeyframeSegment) -> Inbetweens:
-    """Prepare the in-betweens of an interval.
+    """Prepare the in-betweens of a segment.
 
     Raises
     ------
     EngineError
-        If the transform is missing or of another outline.
+        If the transform is missing or belongs to another outline.
     """
     return _closed(BLENDS[variant].of(interval), interval.sampled_domain)
 
@@ -36,11 +36,10 @@ def prepare_inbetweens(variant: Variant, interval: KeyframeSegment) -> Inbetween
 def frame_at(
     time: float, variant: Variant, interval: KeyframeSegment, pins: CorrectionSeries | None = None
 ) -> Frame:
-    """Return one in-between, where no other is wanted yet: what `prepare_inbetweens` gives then.
+    """Return a single in-between, equal to the one by `prepare_inbetweens`.
 
-    Of the metric variant it costs less, since one Dirichlet problem is solved and not one for each
-    of the forms that the residual takes in the whole interval; around holes, and of other variants,
-    as much.
+    For the metric variant without holes this costs less: one Dirichlet problem instead of one for
+    each function of the residual. For other variants and around holes the cost is the same.
 
     Raises
     ------
@@ -57,20 +56,14 @@ def frame_at(
 
 
 def value_points_for_corrections(corrector: PointCorrector) -> Complexes:
-    """Return where corrections need values: nodes of the paths to handles, and the samples."""
+    """Return the value points of corrections: path nodes to the handles, then boundary samples."""
     return np.concatenate([corrector.paths.nodes, corrector.boundary.points])
 
 
 def evaluate_base(inbetweens: Inbetweens, corrector: PointCorrector, time: float) -> CorrectionBase:
-    """Return an in-between as a correction of it needs it.
+    """Return an in-between in the form that its correction needs.
 
-    Parameters
-    ----------
-    inbetweens : Inbetweens
-        At the handles, with values at `value_points_for_corrections`.
-    corrector : PointCorrector
-        For the handles.
-    time : float
+    The in-betweens are at the handles, with values at `value_points_for_corrections`.
     """
     frame, (fz, g, k) = inbetweens.frame_with_values(time)
     nodes = len(corrector.paths.nodes)
@@ -85,21 +78,13 @@ def solve_pins(
 ) -> CorrectionSeries:
     """Find the corrections of a segment.
 
-    Parameters
-    ----------
-    base : Inbetweens
-        As `base_at` wants it, without pins.
-    corrector : PointCorrector
-        For the handles.
-    pins : SegmentPins
-    bounds : Bounds
-        Limits that are kept at the samples, as far as the base keeps them.
+    `base` is as in `evaluate_base`, without pins. The samples keep `bounds` as far as `base` does.
     """
     return fit_pin_corrections(corrector, partial(evaluate_base, base, corrector), pins, bounds)
 
 
 def _closed(blend: Blend, sites: SampledDomain) -> Inbetweens:
-    """Close the periods around holes, and scale Ψ where that is called for."""
+    """Close the periods around holes, and scale Ψ if the variant does so."""
     closing = conformal = scale = None
     closed, closer = blend, sites.closer
     if closer is not None and blend.sign:

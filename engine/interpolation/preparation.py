@@ -37,19 +37,16 @@ TIME_RANGE = "Time {time} is out of range: the keyframes span the times from 0 t
 class Prepared:
     """In-betweens of all keyframes at any time; keyframe i is at time i.
 
-    Frames are pure functions of frozen arrays: they may be asked for in any order, and on several
-    threads at once.
+    Frames are pure functions of frozen arrays: any order and several threads are allowed.
 
-    Parameters
+    Attributes
     ----------
-    variant : Variant
-    sites : SampledDomain
-    keyframes : tuple of KeyframeSamples, length q
-    intervals : tuple of Inbetweens, length q − 1 or q
-        One for each pair of neighbouring keyframes; in a loop one more, from the last to the first.
+    segments : tuple of Inbetweens, length q − 1 or q
+        One for each pair of neighbouring keyframes. A loop has one more, from the last keyframe to
+        the first.
     tangents : tuple of float, length q
-        How much of its full velocity the motion has where it passes each keyframe, from 0, a stop,
-        to 1; 1 too where it does not pass.
+        Share of the full velocity at each keyframe: 0 is a stop, 1 the full velocity. Keyframes
+        with a corner have 1, too.
     """
 
     variant: Variant
@@ -60,11 +57,10 @@ class Prepared:
 
     @property
     def nbytes(self) -> int:
-        """Memory that all of it takes, in bytes."""
         return nbytes_of(self)
 
     def frame(self, time: float) -> Frame:
-        """Return the in-between at a time from 0 to the number of intervals.
+        """Return the in-between at a time from 0 to the number of segments.
 
         Raises
         ------
@@ -76,7 +72,7 @@ class Prepared:
 
 
 def segment_at(time: float, count: int) -> tuple[int, float]:
-    """Return in which of `count` intervals a time is, and when in it, from 0 to 1.
+    """Return the index of the segment at a time, and the time within the segment, from 0 to 1.
 
     Raises
     ------
@@ -112,31 +108,30 @@ def prepare(
     keyframes : sequence of HarmonicMap, length q ≥ 2
         Locally injective maps over one cage; the first need not be the identity.
     boundary : Boundary
-        Of the keyframes' domain, from `Boundary.sample`.
+        Boundary of the keyframes' domain, from `Boundary.sample`.
     points : complex, shape (m,)
         In the closed domain, to 1e-9 of its diameter.
-    variant : Variant or str
     triangles, anchor
-        As in `prepare_sites`.
+        As in `sample_domain`.
     turns : int, shape (q − 1,), or (q,) in a loop, optional
         Full turns between neighbouring keyframes beyond the shorter way.
     transform : HilbertTransform, optional
-        For the metric variant: of this outline, where the caller has it already.
+        Transform of this outline for the metric variant, if the caller already has one.
     through : bool
         Whether the velocity is continuous at keyframes between two others. The in-betweens of the
         paper have a corner there.
     loop : bool
         Whether the last keyframe leads on to the first one, which is at time q again.
     bounds : Bounds
-        What motion through keyframes obeys, as far as the variant can; keyframes beyond them widen
-        them for the intervals around.
+        Bounds of the motion through keyframes, kept as far as the variant can. Keyframes beyond the
+        bounds widen them for the neighbouring segments.
     progress : callable
-        As in `HilbertTransform.on`; of all that is prepared, its transform may take longest.
+        As in `HilbertTransform.on`. The transform may be the slowest part of the preparation.
 
     Raises
     ------
     EngineError
-        If anything of that does not hold, or a keyframe folds.
+        If an argument breaks one of these conditions, or a keyframe folds.
     """
     maps = as_tuple(keyframes, "keyframes")
     variant = _known(variant)
@@ -189,12 +184,12 @@ def _known(variant: Variant | str) -> Variant:
 
 
 def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
-    """Refuse less than two keyframes, and such as have not one cage.
+    """Raise if there are fewer than two keyframes, or if their cages differ.
 
     Raises
     ------
     EngineError
-        If they do not do.
+        For the first violation.
     """
     if len(maps) < 2:
         raise EngineError(TWO_KEYFRAMES.format(count=len(maps)))
@@ -207,7 +202,7 @@ def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
 def _neighbourhoods(
     maps: Sequence[HarmonicMap], *, loop: bool
 ) -> list[tuple[HarmonicMap, HarmonicMap, HarmonicMap] | None]:
-    """Return each map with its neighbours; None for an end, which has not both."""
+    """Return each map with both neighbours; None for an end without two neighbours."""
     last = len(maps) - 1
     return [
         (maps[i - 1], f, maps[(i + 1) % len(maps)]) if loop or 0 < i < last else None

@@ -1,4 +1,4 @@
-"""Where in-betweens are wanted: what belongs to the domain and the points, not to a keyframe."""
+"""The domain with the points of the in-betweens: everything that does not depend on a keyframe."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -46,27 +46,25 @@ def _none() -> Complexes:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SampledDomain:
-    """A domain with the points at which its in-betweens are wanted, shared by all keyframes.
+    """A domain with the points of its in-betweens, shared by all keyframes.
 
-    Build it with `prepare_sites`.
+    Build it with `sample_domain`.
 
-    Parameters
+    Attributes
     ----------
     diameter : float
         Largest distance between two vertices of the outline.
     points : complex128, shape (m,)
     paths : IntegrationPaths
         From the anchor to the points, and around holes.
-    boundary : Boundary
-        On which keyframes are proven free of folds.
     loops : Loops
         Around the holes, at the nodes `paths.around`.
     arguments : float64, shape (1 + m, holes)
-        Of z − c_j at the anchor and the points, continued along the paths.
+        Arguments of z − c_j at the anchor and the points, continued along the paths.
     closer : HoleCloser or None
-        Of periods around the holes; None where there are none.
+        Closes the periods around holes; None without holes.
     value_points : complex128, shape (v,)
-        At which in-betweens have derivatives only, and no positions.
+        Points at which in-betweens have derivatives but no positions.
     """
 
     diameter: float
@@ -80,12 +78,12 @@ class SampledDomain:
 
     @property
     def outline(self) -> Complexes:
-        """The domain's boundary, complex128 (p,)."""
+        """Outer loop of the boundary, complex128 (p,)."""
         return self.boundary.outline
 
     @property
     def cage(self) -> Complexes:
-        """The polygon of the Cauchy coordinates, complex128 (n,)."""
+        """Polygon of the Cauchy coordinates, complex128 (n,)."""
         return self.boundary.cage
 
     @property
@@ -94,12 +92,12 @@ class SampledDomain:
         return complex(self.paths.nodes[0])
 
     def require_boundary(self, loops: Sequence[Complexes]) -> None:
-        """Refuse a Hilbert transform of another boundary.
+        """Raise if the loops of a Hilbert transform are not those of this domain.
 
         Raises
         ------
         EngineError
-            If its loops are not the domain's own.
+            If the loops differ.
         """
         own = self.boundary.loops
         if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
@@ -113,7 +111,7 @@ class SampledDomain:
         Raises
         ------
         EngineError
-            If neither the points begin nor the value points end with them.
+            If the samples are neither the first points nor the last value points.
         """
         samples = self.boundary.points
         count = len(samples)
@@ -125,7 +123,6 @@ class SampledDomain:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
         return nbytes_of(self)
 
 
@@ -142,23 +139,23 @@ def sample_domain(
     Parameters
     ----------
     boundary : Boundary
-        Of the domain, from `Boundary.sample`; other sites may share it.
+        From `Boundary.sample`; several sampled domains may share it.
     points : complex, shape (m,)
         In the closed domain, to 1e-9 of its diameter.
     triangles : int, shape (t, 3), optional
-        Triangles of the points; the paths then follow their edges. Without them the engine finds
+        Triangles of the points; the paths follow their edges. Without triangles the engine finds
         its own paths.
     anchor : complex, optional
-        By default the centre of the largest disc in the domain: farthest from the cage, where the
+        Default: centre of the largest disc in the domain. It is farthest from the cage, where the
         maps are smoothest and their arguments least extreme.
     values_at : complex, shape (v,), optional
-        Further points, without triangles, at which only derivatives are wanted. Each costs one
-        node where its neighbour in order can be reached straight.
+        Further points for derivatives only, not allowed with triangles. A point costs one node if a
+        straight path from the previous point stays in the domain.
 
     Raises
     ------
     EngineError
-        If a point, a triangle or the anchor is not as said.
+        If a point, a triangle or the anchor breaks one of these conditions.
     """
     points = as_points(points, "points", at_least=1)
     outline, *inner = boundary.loops
@@ -171,7 +168,7 @@ def sample_domain(
     corners, cages = np.concatenate(boundary.loops), boundary.span.vertices
     loops = Loops.around(outline, inner, np.concatenate([corners, cages]))
     if triangles is None:
-        # Without a mesh nothing else may come near a hole.
+        # Without a mesh no path but the loops may come near a hole.
         starts = chain_starts(boundary.loops, beside)
         everything = np.concatenate([points, loops.nodes[loops.starts], beside[starts]])
         network = with_chains(

@@ -9,8 +9,8 @@ from engine.arrays import Complexes, Floats, Indices, Integers, freeze
 from engine.errors import EngineError
 from engine.paths.integration_paths import IntegrationPaths
 
-MOST_TURNS = 1_000_000  # at the anchor, in all: more leave less than nine digits of an angle
-LARGEST_TURN = 1.0  # radians by which f_z may turn along a step without a closer look
+MOST_TURNS = 1_000_000  # in all at the anchor; with more an angle has less than nine digits
+LARGEST_TURN = 1.0  # radians that f_z may turn along a step without a subdivision
 MOST_BISECTIONS = 12
 TURN_COUNT = (
     "The turns between {keyframes} keyframes are {count} integers, not {dtype} of shape {shape}."
@@ -23,26 +23,22 @@ def continue_logarithm(
     paths: IntegrationPaths,
     evaluate: Callable[[Complexes], Complexes],
 ) -> Complexes:
-    """Return log f_z at the nodes, continuous along the paths.
+    """Return log f_z at the nodes (s,), continuous along the paths, principal at the anchor.
+
+    Its exponential equals `fz` to rounding.
 
     Parameters
     ----------
     fz : complex128, shape (s,)
         A holomorphic function without zeros, at the nodes.
     log_fz_z : complex128, shape (s,)
-        Its derivative over itself there, Φ'' / Φ'.
-    paths : IntegrationPaths
+        Its logarithmic derivative there, Φ'' / Φ'.
     evaluate : callable
-        Returns the function at points (p,); asked only where a step turns it far.
-
-    Returns
-    -------
-    complex128, shape (s,)
-        The principal value at the anchor; its exponential is `fz` to rounding everywhere.
+        Returns the function at points (p,); called only where a step turns the function far.
     """
     parent = paths.tree.parent
     turns = np.angle(fz / fz[parent])  # Equation (15), imaginary part
-    # How fast f_z turns at both ends: whole turns within a step do not show in its ratio.
+    # The rate of the turn at both ends: the ratio of f_z does not show whole turns within a step.
     pace = np.abs((log_fz_z * paths.steps).imag)
     pace = np.maximum(pace, np.abs((log_fz_z[parent] * paths.steps).imag))
     far = np.flatnonzero(np.maximum(np.abs(turns), pace) > LARGEST_TURN)
@@ -52,7 +48,7 @@ def continue_logarithm(
     principal = np.angle(fz)
     turns[0] = principal[0]
     arguments = paths.tree.sums(turns)  # Equation (2), imaginary part
-    # Only the integer is taken from the sum, so that no rounding adds up along the path.
+    # Only the integer is taken from the sum, so rounding does not accumulate along the path.
     sheets = np.round((arguments - principal) / (2 * np.pi))
     logarithm: Complexes = np.log(np.abs(fz)) + 1j * (principal + 2 * np.pi * sheets)
     return logarithm
@@ -66,19 +62,19 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     anchor_fz : complex128, shape (q,)
         f_z of the keyframes at the anchor.
     turns : int, shape (q − 1,), optional
-        Full turns that the shape makes between neighbouring keyframes beyond the shorter way; 0 by
-        default. Kept relative, such a number keeps its meaning while the poses are edited.
+        Full turns of the shape between neighbouring keyframes beyond the shorter way; default 0.
+        The number is relative, so it stays valid while the poses are edited.
 
     Returns
     -------
     int32, shape (q,)
-        n such that the logarithm at the anchor is Log f_z + 2πi n; with no turns the arguments of
-        neighbouring keyframes differ by at most π. The first is 0.
+        n such that the logarithm at the anchor is Log f_z + 2πi n. Without turns the arguments of
+        neighbouring keyframes differ by at most π. The first n is 0.
 
     Raises
     ------
     EngineError
-        If `turns` has not one entry for each pair of neighbours, is not of integers, or too large.
+        If `turns` is too long or short, not of integers, or too large.
     """
     extra = np.zeros(len(anchor_fz) - 1, np.int32) if turns is None else np.asarray(turns)
     if extra.shape != (len(anchor_fz) - 1,) or extra.dtype.kind not in "iu":
@@ -101,9 +97,9 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
 def _turns_along(
     starts: Complexes, ends: Complexes, pace: float, evaluate: Callable[[Complexes], Complexes]
 ) -> Floats:
-    """Follow the argument along segments (p,), cut ever finer until it turns little at a time.
+    """Follow the argument along segments (p,), subdivided until each part turns little.
 
-    `pace` is the largest turn along a segment that is expected.
+    `pace` is the largest expected turn along a segment.
     """
     todo: Indices = np.arange(len(starts))
     turns = np.zeros(len(starts))

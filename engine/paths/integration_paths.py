@@ -10,14 +10,14 @@ from engine.geometry import Pieces, as_xy, bisect_segments, diameter
 from engine.paths.path_network import Network
 from engine.paths.spanning_tree import SpanningTree, depth_first_numbering
 
-STEP_PER_SIZE = 1 / 125  # longest step, over the diameter of the outline
-# The longest step over its distance to the nearest singularity of the integrand. The error of a
+STEP_PER_SIZE = 1 / 125  # longest step, relative to the diameter of the outline
+# Longest step, relative to its distance to the nearest singularity of the integrand. The error of a
 # step of length h at the distance d from a logarithmic singularity of strength c is
-# c h (h/d)^4 / 120; nearer to the singularity steps are so much shorter that each errs as much.
+# c h (h/d)^4 / 120; steps shorten towards the singularity such that each has the same error.
 STEP_PER_DISTANCE = 0.25
-SHORTEST_PER_SIZE = 2e-5  # steps are not cut below this, over the diameter
-# Longest step where nothing is integrated, over the diameter: it serves only to go on with
-# branches of logarithms.
+SHORTEST_PER_SIZE = 2e-5  # shorter steps are not cut, relative to the diameter
+# Longest step without integration, relative to the diameter. Such steps only continue the branches
+# of logarithms.
 PLAIN_STEP_PER_SIZE = 1 / 50
 
 
@@ -25,23 +25,22 @@ PLAIN_STEP_PER_SIZE = 1 / 50
 class IntegrationPaths:
     """A tree of short straight steps inside the domain, rooted at the anchor.
 
-    Parameters
+    Attributes
     ----------
     nodes : complex128, shape (s,)
         Ends of the steps; node 0 is the anchor.
     steps : complex128, shape (s,)
-        Vector from each node's parent to it.
-    tree : SpanningTree
+        Vector from each node's parent to the node.
     places : intp, shape (m,)
         The node of each point.
     around : intp, shape (c,)
-        Those of loops around holes.
+        Nodes of loops around holes.
     beside : intp, shape (v,)
-        Those of points at which only the integrand is wanted. On ways that lead to these or to
-        loops alone, steps are too long for integrals.
+        Nodes of points where only the integrand is evaluated. Branches that lead only to these
+        nodes or to loops have steps too long for integrals.
     cornered : bool, shape (s,)
         Nodes at a corner of the outline, where the derivative of a solution of the Dirichlet
-        problem is unbounded or cannot be had.
+        problem is unbounded or unavailable.
     """
 
     nodes: Complexes
@@ -53,20 +52,12 @@ class IntegrationPaths:
     cornered: Booleans
 
     def step_integrals(self, values: Complexes, derivatives: Complexes) -> Complexes:
-        """Integrate along each step by the Hermite rule.
+        """Integrate along each step from the parent by the Hermite rule; 0 at the root.
 
-        Departs from the paper: Section 7 uses the trapezoidal rule; with the derivatives, which are
-        known in closed form, the error falls from h² to h⁴ for one blend more.
+        Departs from the paper: Section 7 uses the trapezoidal rule. The derivatives are known in
+        closed form; with them the error falls from h² to h⁴, at the cost of one more blend.
 
-        Parameters
-        ----------
-        values, derivatives : complex128, shape (s,)
-            The integrand and its derivative at the nodes.
-
-        Returns
-        -------
-        complex128, shape (s,)
-            The integral from each node's parent to it, 0 at the root.
+        `values` and `derivatives` are complex128 (s,), at the nodes.
         """
         parent = self.tree.parent
         mean = values + values[parent]
@@ -85,15 +76,10 @@ class IntegrationPaths:
 def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> IntegrationPaths:
     """Cut the legs of a network that lead to its places into steps for the Hermite rule.
 
-    A step is no longer than a fixed part of the shape, nor than a part of its distance to the
-    nearest singularity: the vertices of the cage, where Φ' is log-singular, and those of the
-    outline, where the metric variant's f_z is.
-
-    Parameters
-    ----------
-    network : Network
-    outline, cage : complex128, shapes (p,) and (n,)
-        The vertices of all loops of the boundary, and of all cages.
+    A step is limited by the size of the shape and by its distance to the nearest singularity.
+    Singularities are the vertices of the cage, where Φ' is log-singular, and those of the outline,
+    where the metric variant's f_z is singular. `outline` (p,) and `cage` (n,) hold the vertices of
+    all loops of the boundary, and of all cages.
     """
     scale = diameter(outline)
     singular = cKDTree(as_xy(np.concatenate([cage, outline])))
@@ -103,7 +89,7 @@ def lay_paths(network: Network, outline: Complexes, cage: Complexes) -> Integrat
 
     def is_fine(steps: Pieces) -> Booleans:
         lengths = steps.lengths
-        # Farther away singularities do not matter, and are not looked for.
+        # Singularities farther away do not matter and are not searched for.
         farthest = lengths.max(initial=0.0) / 2 + scale * STEP_PER_SIZE / STEP_PER_DISTANCE
         middles = as_xy((steps.starts + steps.ends) / 2)
         distance, _ = singular.query(middles, distance_upper_bound=farthest)

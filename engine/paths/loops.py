@@ -1,4 +1,4 @@
-"""Closed paths around holes, on which periods are measured."""
+"""Closed paths around holes, for the integration of periods."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,21 +10,17 @@ from engine.arrays import Booleans, Complexes, Indices, freeze
 from engine.geometry import Pieces, as_xy, bisect_segments, distance_to_segments
 
 NODES = 10  # Gauss-Legendre nodes of a piece
-# Longest piece, over its distance to the nearest singularity: quadrature then errs by some 1e-12.
+# Longest piece, relative to its distance to the nearest singularity; the error is some 1e-12.
 PIECE_PER_DISTANCE = 0.8
 ROUNDNESS = 4  # edges of a quarter circle around a corner of the hole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Loops:
-    """Quadrature on closed paths, one around each hole, half way to what is next to it.
+    """Quadrature on closed paths, one around each hole, halfway to the nearest other boundary.
 
-    Parameters
-    ----------
-    nodes, differentials : complex128, shape (c,)
-        The nodes of one loop after the other, and dz there, clockwise.
-    starts : intp, shape (holes,)
-        The first node of each loop.
+    `nodes` and `differentials` (c,) are the nodes of one loop after the other, clockwise, and dz
+    there. `starts` (holes,) are the first nodes of the loops.
     """
 
     nodes: Complexes
@@ -65,7 +61,7 @@ class Loops:
 
     @property
     def counts(self) -> Indices:
-        """How many nodes each loop has, (holes,)."""
+        """Number of nodes of each loop, (holes,)."""
         return np.diff(self.starts, append=len(self.nodes))
 
     def integrals(self, values: Complexes) -> Complexes:

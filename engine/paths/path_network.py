@@ -1,8 +1,8 @@
-"""Graphs inside a region along which every point can be reached from the anchor (Section 7).
+"""Graphs inside a region with paths from the anchor to every point (Section 7).
 
-The vertices of a mesh are reached along its edges. Scattered points have no edges; for them the
-region is cut into triangles, and paths lead through the middles of the triangles' common edges. A
-triangle is convex, so that each leg of such a path stays inside, however narrow the domain is.
+The vertices of a mesh are reached along its edges. Scattered points have no edges. For them the
+region is cut into triangles, and paths lead through the midpoints of the triangles' common edges. A
+triangle is convex, so each leg of such a path stays inside even if the domain is narrow.
 """
 
 from collections.abc import Sequence
@@ -28,13 +28,13 @@ from engine.geometry import (
 from engine.paths.loops import Loops
 from engine.paths.spanning_tree import breadth_first_parents, shortest_parents
 
-CELL = 1 / 50  # longest edge of the triangles between scattered points, over the diameter
-MOST_CELLS = 2000  # over the diameter, by which segments near the boundary are looked for
-NEIGHBOURS = 64  # nodes that are tried for a straight way to the anchor, or to a loop
-TRIES = 32  # places of a loop around a hole from which nodes are looked for
+CELL = 1 / 50  # longest edge of the triangles between scattered points, relative to the diameter
+MOST_CELLS = 2000  # cells per diameter, in the search for segments near the boundary
+NEIGHBOURS = 64  # nodes that are tried for a straight path to the anchor, or to a loop
+TRIES = 32  # points of a loop around a hole from which the search for nodes starts
 
-# How a triangle with corners 0, 1, 2 is cut where the sides 01, 12, 20 (bits 1, 2, 4 of the index)
-# have the middles 3, 4, 5.
+# Subdivision of a triangle with corners 0, 1, 2 if the sides 01, 12, 20 (bits 1, 2, 4 of the index)
+# have the midpoints 3, 4, 5.
 PIECES: tuple[list[list[int]], ...] = (
     [[0, 1, 2]],
     [[0, 3, 2], [3, 1, 2]],
@@ -66,17 +66,17 @@ def _none() -> Indices:
 class Network:
     """A tree of straight legs inside the domain; node 0 is the anchor.
 
-    Parameters
+    Attributes
     ----------
     nodes : complex128, shape (s,)
     parents : intp, shape (s,)
-        Parent of each node; −1 where no path of interest passes.
+        Parent of each node; −1 for nodes outside the tree.
     places : intp, shape (m,)
         The node of each point.
     around : intp, shape (c,)
-        Those of loops around holes.
+        Nodes of loops around holes.
     beside : intp, shape (v,)
-        Those of points at which only the integrand is wanted.
+        Nodes of points where only the integrand is evaluated.
     """
 
     nodes: Complexes
@@ -86,7 +86,7 @@ class Network:
     beside: Indices = field(default_factory=_none)
 
     def lead_to(self, ends: Indices) -> Booleans:
-        """Tell which nodes (s,) some of them, and the ways to these, pass."""
+        """Return which nodes (s,) are ends or lie on the paths from the anchor to the ends."""
         return _ways(self.parents, ends)
 
 
@@ -100,13 +100,13 @@ def mesh_network(
 ) -> Network:
     """Join the anchor (1,) to the vertices (m,) of a mesh along the mesh's edges.
 
-    Around a hole the paths go one way or the other, as fewer edges do; none crosses it.
+    A path passes a hole on the side with fewer edges; no path crosses a hole.
 
     Raises
     ------
     EngineError
-        If a triangle names no vertex, an edge leaves the outline, a vertex is in no triangle that
-        is joined to the rest, or the anchor sees no vertex near it.
+        If a triangle index is invalid, an edge leaves the outline, or a vertex is not connected to
+        the rest by triangles. Also if the anchor has no straight path to a vertex near it.
     """
     if not len(triangles):
         raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
@@ -118,8 +118,8 @@ def mesh_network(
         )
     loops = (outline, *holes)
     along, against = _directed(triangles, len(vertices))
-    # Where all triangles are counter-clockwise, what they cover is bounded by the edges that no
-    # two of them pass in opposite directions: with these inside an outline, all of them are.
+    # If all triangles are counter-clockwise, the boundary of their union consists of edges without
+    # an opposite edge. If these edges are inside the outline, so are all triangles.
     areas = Mesh(vertices=vertices, triangles=triangles).areas()
     is_simple = not holes and areas.min(initial=1.0) > 0
     first, second = (along - against if is_simple else along + against).nonzero()
@@ -159,7 +159,7 @@ def scattered_network(
     portals, sides = _portals(corners, triangles)
     ends = np.concatenate([anchor, points])
     cells = shapely.STRtree(shapely.polygons(as_xy(corners)[triangles]))
-    # A point on the outline can fall outside by rounding: the nearest triangle is its own.
+    # A point on the outline may fall outside by rounding; it belongs to the nearest triangle.
     home = sides[cells.query_nearest(shapely.points(as_xy(ends)), all_matches=False)[1]]
     legs = [sides[:, [k, (k + 1) % 3]] for k in range(3)]
     legs = [leg[(leg >= 0).all(axis=1)] + len(ends) for leg in legs]
@@ -176,16 +176,16 @@ def scattered_network(
 
 
 def chain_starts(loops: Sequence[Complexes], points: Complexes) -> Booleans:
-    """Tell which of some points (v,) cannot be reached straight from the one before them."""
+    """Return which points (v,) have no straight path from the previous point."""
     starts = leave_region(loops, np.roll(points, 1), points)
     starts[:1] = True
     return starts
 
 
 def with_chains(network: Network, points: Complexes, starts: Booleans) -> Network:
-    """Return a network that leads on along chains of points (v,), too.
+    """Return a network extended along chains of points (v,).
 
-    The last nodes that it leads to are where the chains start.
+    The last places of the given network are the starts of the chains.
     """
     first, count = len(network.nodes), int(np.count_nonzero(starts))
     places, heads = np.split(network.places, [len(network.places) - count])
@@ -203,12 +203,12 @@ def with_chains(network: Network, points: Complexes, starts: Booleans) -> Networ
 def with_loops(
     network: Network, outline: Complexes, holes: Sequence[Complexes], loops: Loops
 ) -> Network:
-    """Return a network that leads around each hole, too.
+    """Return a network extended around each hole.
 
     Raises
     ------
     EngineError
-        If no node near a loop sees it.
+        If no node near a loop has a straight path to it.
     """
     reached = np.flatnonzero(network.parents >= 0)
     parents, ends = [network.parents], [*loops.starts[1:], len(loops.nodes)]
@@ -235,7 +235,7 @@ def with_loops(
 
 
 def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
-    """Return how often triangles pass from each point to each other (n, n), and its transpose."""
+    """Return how often triangles lead from each point to each other (n, n), and its transpose."""
     starts, ends = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
     ones = np.ones(len(starts), dtype=np.int32)
     along = csr_array((ones, (starts, ends)), shape=(count, count))
@@ -243,11 +243,11 @@ def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
 
 
 def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
-    """Tell for each segment whether it leaves the region by more than rounding."""
+    """Return which segments leave the region by more than rounding."""
     if not len(starts):
         return np.empty(0, dtype=np.bool_)
     tolerance = 2 * ON_OUTLINE * diameter(loops[0])
-    # Nearly all segments stay away from the boundary; only the others need the exact test.
+    # Nearly all segments are far from the boundary; only the others need the exact test.
     near = np.flatnonzero(_near_boundary(loops, starts, ends))
     segments = shapely.linestrings(np.stack([as_xy(starts[near]), as_xy(ends[near])], axis=1))
     corners = np.concatenate(loops)
@@ -263,10 +263,10 @@ def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes)
 
 
 def _near_boundary(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
-    """Tell which segments may come near the boundary, by cells that are as large as most are long.
+    """Return which segments may come near the boundary, by a grid of cells.
 
-    A segment that is no longer than a cell stays in the cells around its start; the boundary, by
-    points a cell apart, in those around them.
+    Most segments are shorter than a cell. Such a segment stays in the cells around its start. The
+    boundary, sampled at points a cell apart, stays in the cells around these points.
     """
     lengths = np.abs(ends - starts)
     cell = max(2 * float(np.median(lengths)), diameter(loops[0]) / MOST_CELLS)
@@ -311,9 +311,9 @@ def _refine(corners: Complexes, triangles: Indices, longest: float) -> tuple[Com
 
 
 def _portals(corners: Complexes, triangles: Indices) -> tuple[Complexes, Indices]:
-    """Return the middles of the sides with two triangles and, for each triangle, which are its own.
+    """Return the midpoints of sides with two triangles, and those of each triangle, (t, 3).
 
-    The second array is (t, 3), −1 for a side on the polygon.
+    The index is −1 for a side on the polygon.
     """
     sides, numbers, _ = sides_of(triangles)
     shared = np.bincount(numbers.ravel(), minlength=len(sides)) == 2
@@ -322,7 +322,7 @@ def _portals(corners: Complexes, triangles: Indices) -> tuple[Complexes, Indices
 
 
 def _ways(parents: Indices, ends: Indices) -> Booleans:
-    """Tell which nodes (s,) are ends, or on the way from the anchor to one."""
+    """Return which nodes (s,) are ends, or on the path from the anchor to one."""
     passed = np.zeros(len(parents), dtype=np.bool_)
     new = ends
     while len(new):

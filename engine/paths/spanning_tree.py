@@ -1,8 +1,8 @@
 """Spanning trees of graphs, and sums along their paths (Section 7).
 
-Nodes are numbered in depth-first order, so that a path's neighbours are neighbours in memory, and
-the sum from the root to every node is one cumulative sum along the Euler tour: each edge is passed
-once downwards with its value and once upwards with the opposite one.
+Nodes are numbered in depth-first order, so neighbours on a path are neighbours in memory. The sum
+from the root to every node is one cumulative sum along the Euler tour. The tour passes each edge
+once downwards with its value, and once upwards with the opposite value.
 """
 
 from dataclasses import dataclass
@@ -19,14 +19,10 @@ type_ = TypeVar("type_", Complexes, Floats)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SpanningTree:
-    """A tree whose nodes are numbered in depth-first order, the root being node 0.
+    """A tree whose nodes are numbered in depth-first order; the root is node 0.
 
-    Parameters
-    ----------
-    parent : intp, shape (s,)
-        Parent of each node; the root is its own.
-    down, up : intp, shape (s,)
-        Steps of the Euler tour at which the edge from the parent is passed.
+    `parent` (s,) is the parent of each node; the root is its own parent. `down` and `up` (s,) are
+    the steps of the Euler tour that pass the edge from the parent.
     """
 
     parent: Indices
@@ -35,7 +31,7 @@ class SpanningTree:
 
     @classmethod
     def of_parents(cls, parent: Indices) -> "SpanningTree":
-        """Build the tour from the parents of nodes that are already in depth-first order."""
+        """Build the tour from the parents of nodes in depth-first order."""
         depth = _depths(parent)
         down = 2 * np.arange(len(parent)) - depth
         up = down + 2 * _subtree_sizes(parent, depth) - 1
@@ -44,7 +40,7 @@ class SpanningTree:
     def sums(self, steps: type_) -> type_:
         """Return for each node the sum of `steps` (s,) over its path from the root.
 
-        `steps` holds the value of each node's edge from its parent; the root's own is its start.
+        `steps` holds the value of each node's edge from its parent; the root has its start value.
         """
         tour = np.zeros(2 * len(steps), dtype=steps.dtype)
         tour[self.down] = steps
@@ -54,7 +50,7 @@ class SpanningTree:
 
 
 def breadth_first_parents(count: int, edges: Indices, root: int) -> Indices:
-    """Return `shortest_parents` of a graph with so many nodes and undirected edges (e, 2)."""
+    """Return `shortest_parents` of a graph with `count` nodes and undirected edges (e, 2)."""
     graph = csr_array((np.ones(len(edges), dtype=np.int8), edges.T), shape=(count, count))
     return shortest_parents(graph + graph.T, root)
 
@@ -62,7 +58,7 @@ def breadth_first_parents(count: int, edges: Indices, root: int) -> Indices:
 def shortest_parents(graph: csr_array, root: int) -> Indices:
     """Return each node's parent (n,) on the path with the fewest edges from the root.
 
-    The root is its own; −1 where there is no path. The graph is a symmetric matrix (n, n).
+    The root is its own parent; −1 without a path. The graph is a symmetric matrix (n, n).
     """
     order, predecessors = breadth_first_order(graph, root)
     parents = np.full(graph.shape[0], -1, dtype=np.intp)
@@ -74,7 +70,7 @@ def shortest_parents(graph: csr_array, root: int) -> Indices:
 def depth_first_numbering(parents: Indices, root: int) -> Indices:
     """Return the nodes (s,) of a tree in depth-first order from the root.
 
-    Nodes whose parent is −1 belong to no tree and are left out.
+    Nodes with the parent −1 are left out.
     """
     children = np.flatnonzero(parents >= 0)
     children = children[children != root]
@@ -85,7 +81,7 @@ def depth_first_numbering(parents: Indices, root: int) -> Indices:
 
 
 def _depths(parent: Indices) -> Indices:
-    """Count the edges from the root: after round r each node has looked 2^r ancestors up."""
+    """Count the edges from the root by pointer doubling: round r reaches 2^r ancestors."""
     depth: Indices = (np.arange(len(parent)) != parent).astype(np.intp)
     ancestor = parent
     while ancestor.any():

@@ -1,8 +1,8 @@
-"""In-betweens at the cost of a linear blend: series in time, built once for an interval.
+"""In-betweens at the cost of a linear blend: series in time, built once for a segment.
 
 In: in-betweens of two keyframes; or a whole motion, as points at any time.
-Out: `Series`: a few arrays whose weighted sum is a frame; `MorphTargets`: the same for other
-programs, of a whole motion within a tolerance.
+Out: `Series`: a few arrays whose weighted sum is a frame; `MorphTargets`: a whole motion within a
+tolerance, for other programs.
 Imports: `engine.interpolation`.
 """
 

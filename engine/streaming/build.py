@@ -1,4 +1,4 @@
-"""From the direct path to series: few functions of time, found cheaply, and few samples."""
+"""From directly computed in-betweens to series, with few time functions and few samples."""
 
 from collections.abc import Generator
 from math import inf
@@ -11,32 +11,32 @@ from engine.streaming.functions import TimeFunctions
 from engine.streaming.series import Series
 from engine.streaming.splitting import OF_PIECES, PiecewiseReducedModel, split_motion
 
-# Shares of the tolerance; the rest is for rounding to float32. What is found at some points may be
-# exceeded at others: then it is tried again with less.
+# Shares of the tolerance; the rest is for rounding to float32. Points that were not probed may
+# exceed the error; then the search is repeated with a smaller tolerance.
 OF_FUNCTIONS = 0.2
-CHECKED = 0.7  # of the tolerance, at the times that are looked at; between them it may be more
-MARGIN = 1.4  # by which it may be more there
-BESIDE = (0.25, 0.75)  # of the first and the last gap, where it is looked at, too
-GAPS = 3  # between the samples, the widest, in the middle of which the series is looked at
+CHECKED = 0.7  # of the tolerance, at the checked times; between them the error may be larger
+MARGIN = 1.4  # factor on the error between the checked times
+BESIDE = (0.25, 0.75)  # further checked times, as shares of the first and the last gap
+GAPS = 3  # the series is checked in the middle of so many widest gaps between samples
 TIGHTER, ROUNDS = 1 / 4, 3
 
 
 def build_series(channels: MotionComponents) -> Generator[None, None, Series]:
-    """Build the series of an interval, a small part at each step.
+    """Build the series of a segment, a small part at each step.
 
-    A step is about one evaluation of the direct path or less. The generator may be left at any
+    A step costs at most about one direct evaluation. The caller may leave the generator at any
     step.
 
-    Departs from the paper: Section 7 works out every in-between anew.
+    Departs from the paper: Section 7 computes every in-between anew.
 
     Notes
     -----
-    All points of a motion are written in the same few functions of time, which are found at some
-    of them. As many samples of the direct path as there are functions, at the times that tell them
-    apart best, then give the motion of all points (discrete empirical interpolation: Chaturantabut
-    and Sorensen 2010, with the pivots of Drmač and Gugercin 2016). It is cut into pieces of time
-    so short that two functions beside a linear blend suffice, and compared with the direct path.
-    Stretches that no piece is accurate on are left out.
+    All points of a motion share the same few functions of time, found from some of the points. The
+    direct evaluation is sampled at as many times as there are functions, chosen to separate the
+    functions best. These samples determine the motion of all points (discrete empirical
+    interpolation: Chaturantabut and Sorensen 2010, with the pivots of Drmač and Gugercin 2016). The
+    motion is split into pieces of time for which a linear blend and two functions suffice. The
+    result is compared with the direct evaluation. Times without an accurate piece are left out.
     """
     values: dict[float, Floats] = {}
     for time in (0.0, 1.0):
@@ -61,14 +61,14 @@ def build_series(channels: MotionComponents) -> Generator[None, None, Series]:
                 error = max(error, float(np.abs(found.values(time) - values[time]).max()))
                 yield
         if pieces and error <= CHECKED * channels.tolerance:
-            # Where nothing was looked at the error is what functions and pieces were allowed.
+            # At unchecked times the error is the share of the functions and pieces.
             least = (OF_FUNCTIONS + OF_PIECES) * channels.tolerance
             return Series(pieces=pieces, error=max(MARGIN * error, least))
     return Series(pieces=(), error=inf)
 
 
 def _between(times: Floats) -> list[float]:
-    """Return where values at times are missed most: beside both ends, and in the widest gaps.
+    """Return the times to check: beside both ends, and in the middle of the widest gaps.
 
     Beside a keyframe a motion may bend within a part of the first gap.
     """

@@ -1,4 +1,4 @@
-"""What is streamed of the in-betweens of two keyframes: real numbers at every point."""
+"""The streamed components of the in-betweens of two keyframes: real numbers at every point."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from engine.arrays import Complexes, Floats, Indices
 from engine.interpolation import Inbetweens, SampledDomain
 from engine.maps import distortion
 
-ROUNDING = 2.0**-21  # what sums of some float32 numbers lose, relative to the largest
-OF_DIAMETER, OF_STRETCH = 1e-6, 1e-5  # errors that are allowed, of positions and of derivatives
-# Points that tell how all of them depend on time: some spread over all, and the most distorted.
+ROUNDING = 2.0**-21  # rounding error of a sum of some float32 numbers, relative to the largest
+OF_DIAMETER, OF_STRETCH = 1e-6, 1e-5  # allowed errors of positions and of derivatives
+# Probed points: some spread over all points, and the most distorted ones.
 SPREAD, EXTREME = 400, 100
 
 
@@ -24,21 +24,20 @@ class MotionComponents(Protocol):
         """The largest error that a series may have, in units of the numbers."""
 
     def sample(self, time: float) -> Floats:
-        """Work the numbers out on the direct path."""
+        """Compute the numbers directly."""
 
     def probe(self, times: Floats) -> Floats:
-        """Return at times (t,) some numbers (t, p) that depend on time as all do, and cost less.
+        """Return at times (t,) fewer numbers (t, p), which cost less than all.
 
-        Functions of time in which these are written to the tolerance do for all numbers.
+        Functions of time that represent these numbers to the tolerance represent all numbers.
         """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Positions:
-    """Where the points are: x and y of each of them in turn, c = 2m.
+    """x and y of each point in turn, c = 2m.
 
-    They are integrals of f_z and f_z̄ along the paths, and so are written in the functions of time
-    in which those are.
+    Positions are integrals of f_z and f_z̄ along the paths, and share their functions of time.
     """
 
     inbetweens: Inbetweens
@@ -48,7 +47,7 @@ class Positions:
 
     @classmethod
     def of(cls, inbetweens: Inbetweens, sites: SampledDomain) -> Self:
-        """Allow an error of a part of the diameter, or what float32 can hold if that is more."""
+        """Allow an error relative to the diameter, or the rounding of float32 if it is larger."""
         largest = max(float(np.abs(key.positions).max()) for key in inbetweens.keyframe_blend.ends)
         return cls(
             inbetweens=inbetweens,
@@ -58,7 +57,7 @@ class Positions:
         )
 
     def sample(self, time: float) -> Floats:
-        """Integrate along the paths; the keyframes are returned as they are."""
+        """Integrate along the paths; at times 0 and 1 return the keyframes exactly."""
         if time in (0.0, 1.0):
             return _reals(self.inbetweens.keyframe_blend.ends[int(time)].positions)
         return _reals(self.inbetweens.anchor_position(time) + self.inbetweens.offsets(time))
@@ -80,7 +79,7 @@ class Distortions:
 
     @classmethod
     def of(cls, inbetweens: Inbetweens, sites: SampledDomain) -> Self:
-        """Allow an error of a part of the largest stretch of the two keyframes."""
+        """Allow an error relative to the largest stretch of the two keyframes."""
         everywhere = inbetweens.derivatives_at(np.arange(len(sites.points)))
         stretches = distortion.sigma_a(*everywhere(np.array([0.0, 1.0])))
         return cls(
@@ -94,14 +93,14 @@ class Distortions:
         return _reals(np.hstack(self.all_points(np.array([time])))[0])
 
     def probe(self, times: Floats) -> Floats:
-        """Blend those of some points."""
+        """Blend the derivatives of some points."""
         return _reals(np.hstack(self.some_points(times)))
 
 
 def _interpolation_points(inbetweens: Inbetweens, sites: SampledDomain) -> Indices:
     """Return some of the points: spread over all, and those that the keyframes distort most.
 
-    There the motion bends most, which a few points among many would miss.
+    The motion bends most at the most distorted points, and evenly spread points may miss them.
     """
     nodes = sites.paths.places
     k = np.max([np.abs(key.nu[nodes]) for key in inbetweens.keyframe_blend.ends], axis=0)

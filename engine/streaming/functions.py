@@ -1,4 +1,4 @@
-"""The few functions of time in which a whole motion is written, found at a few of its points."""
+"""The few functions of time that represent a whole motion, found from a few of its points."""
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
@@ -10,27 +10,26 @@ from scipy.linalg import qr
 from engine.arrays import Booleans, Floats, freeze
 from engine.interpolation import chebyshev
 
-DEGREES = (8, 16, 32)  # a step at each of them is short
-# Pieces that are tried. What is not resolved by then stays on the direct path.
+DEGREES = (8, 16, 32)  # a step with any of these is short
+# Largest number of pieces to try. The times left unresolved are computed directly.
 MOST_ATTEMPTS = 256
-OF_POLYNOMIALS = 0.1  # of what the functions may leave out in all
+OF_POLYNOMIALS = 0.1  # of the error allowed to the functions
 
 Gap = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TimeFunctions:
-    """What is added to the linear blend of both keyframes, as functions of time.
+    """Functions of time that are added to the linear blend of both keyframes.
 
-    Parameters
+    Attributes
     ----------
     series : chebyshev.PiecewiseSeries
-        As large as 1; linear in the gaps.
+        Scaled to a size of 1; linear in the gaps.
     gaps : tuple of Gap
-        Stretches of time, in order, that no polynomial resolves.
+        Pieces of time, in order, that no polynomial resolves.
     times : float64, shape (r,)
-        At which the r functions are told apart best: what they are multiplied by follows from
-        values there.
+        Times that separate the r functions best; values there determine their coefficients.
     """
 
     series: chebyshev.PiecewiseSeries
@@ -39,12 +38,12 @@ class TimeFunctions:
 
     @classmethod
     def of(cls, probe: Callable[[Floats], Floats], tolerance: float) -> Generator[None, None, Self]:
-        """Find the functions in which a probe's numbers (t, p) are written to a tolerance.
+        """Find functions that represent a probe's numbers (t, p) to a tolerance.
 
         Notes
         -----
         The probe is analytic in time but for some moments, so that a polynomial through Chebyshev
-        nodes converges geometrically (`chebyshev.resolve`).
+        nodes converges geometrically (`chebyshev.resolve_series`).
         """
         ends = probe(np.array([0.0, 1.0]))
 
@@ -55,7 +54,7 @@ class TimeFunctions:
         pieces = yield from chebyshev.resolve_series(
             added, tolerance=polynomials, degrees=DEGREES, most=MOST_ATTEMPTS
         )
-        # What jumps by less than the tolerance within no time is none of the motion.
+        # A jump below the tolerance in the shortest piece is left out of the motion.
         pieces = [
             p if p.missing <= tolerance else p._replace(coefficients=0.0 * p.coefficients)
             for p in pieces
@@ -77,9 +76,9 @@ class TimeFunctions:
 
 
 def _bridged(series: chebyshev.PiecewiseSeries, resolved: Booleans) -> chebyshev.PiecewiseSeries:
-    """Return functions as large as 1, linear in gaps.
+    """Return functions scaled to a size of 1, linear in gaps.
 
-    So the pieces beside gaps are right up to their ends.
+    The pieces beside a gap are therefore correct up to their ends.
     """
     coefficients = series.coefficients / np.abs(series.coefficients).sum(axis=1).max(axis=0)
     signs = (-1.0) ** np.arange(coefficients.shape[1])

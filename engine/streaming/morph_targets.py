@@ -1,7 +1,7 @@
-"""A whole motion as one shape and a few others that are added to it with weights in [0, 1].
+"""A whole motion as one base shape and a few weighted shapes added to it, weights in [0, 1].
 
-What a game engine calls morph targets or blend shapes, with the weights as piecewise linear
-functions of time.
+Game engines call them morph targets or blend shapes; the weights are piecewise linear functions of
+time.
 """
 
 from collections.abc import Callable, Generator, Sequence
@@ -13,20 +13,20 @@ import numpy as np
 from engine.arrays import Complexes, Floats, as_number, as_reals, freeze
 from engine.errors import EngineError
 
-# Shares of the tolerance: of what the basis leaves out, of the weights' way between their times,
-# and of the targets that are left out. Times cost little, targets much.
+# Shares of the tolerance: for the basis, for the linear weights between times, and for the targets
+# left out. Times cost little, targets much.
 OF_BASIS, OF_TIME, OF_RANK = 0.02, 0.1, 0.85
 NO_TIMES = "times must be finite numbers, one at least, not {times}."
 TIMES_FALL = "times must increase from one to the next."
-BLOCK = 256  # moments that are written out at once
-SHORTEST = 2.0**-6  # time that a jump of the motion may take: there no tolerance is kept
+BLOCK = 256  # moments that are evaluated at once
+SHORTEST = 2.0**-6  # duration of a jump of the motion, in which no tolerance is kept
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MorphTargets:
-    """Where m points are: base + Σ_j w_j(t) targets_j.
+    """Positions of m points: base + Σ_j w_j(t) targets_j.
 
-    Parameters
+    Attributes
     ----------
     base : complex128, shape (m,)
     targets : complex128, shape (r, m)
@@ -35,8 +35,7 @@ class MorphTargets:
     weights : float64, shape (n, r)
         At the times, in [0, 1]; linear in between.
     error : float
-        The largest distance from the motion that was found, of all points, at the times and in
-        the middle between each two.
+        Largest distance from the motion of any point, at the times and halfway between two.
     """
 
     base: Complexes
@@ -46,7 +45,7 @@ class MorphTargets:
     error: float
 
     def positions(self, time: float) -> Complexes:
-        """Return the points (m,) at a time; before the first and after the last they rest."""
+        """Return the points (m,) at a time; constant before the first and after the last time."""
         weights = np.array([np.interp(time, self.times, column) for column in self.weights.T])
         return np.asarray(self.base + weights @ self.targets)
 
@@ -66,23 +65,22 @@ def build_morph_targets(
     sample : callable
         Returns the points (m,) at a time from the first to the last of `times`.
     base : complex128, shape (m,)
-        What all targets are added to.
+        The shape to which all targets are added.
     times : sequence of float
-        Increasing; at least one. Where the motion is looked at first: so closely that it does
-        nothing in between that does not show in the middle.
+        Increasing; at least one. The first samples. They must be close enough that every change
+        between two times shows halfway between them.
     tolerance : float
-        The largest distance that is allowed between a point and where it should be, at any time
-        but that of a jump.
+        Largest allowed distance of a point from the motion, at any time except during a jump.
     most : int, optional
-        How many targets there may be. Where they do not suffice, `error` tells how far they come.
+        Largest number of targets. If they do not suffice, `error` is above the tolerance.
 
     Notes
     -----
-    Moments are halved until the weights' straight way from one to the next is close enough. The
-    motion at all of them, a matrix of points by moments, has a low rank up to the tolerance; its
-    principal components about the mean are the targets. With one more target, whose weight is
-    always 1, the others' weights are never negative: engines cut those off. At first it is left
-    out where the motion allows it, as where it starts at the base.
+    Times are halved until linear weights between them are accurate enough. The motion at all times
+    is a matrix of points by times, with a low rank up to the tolerance. Its principal components
+    about the mean are the targets. One more target, whose weight is always 1, keeps the others'
+    weights nonnegative, since engines clip negative weights. It is left out if the motion allows
+    that, for example if the motion starts at the base.
     """
     moments = as_reals(times, "times")
     if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
@@ -107,27 +105,26 @@ def build_morph_targets(
 
 
 class _Snapshots:
-    """A motion at some moments, each of them as its coordinates in a basis that grows with them."""
+    """A motion at some times, as coordinates in a basis that grows with the samples."""
 
     def __init__(self, base: Complexes, slack: float) -> None:
         self._base = base
-        self._slack = slack  # the largest distance that the basis may leave out
+        self._slack = slack  # largest distance that the basis may leave out
         self._rows = np.empty((0, 2 * len(base)))  # orthonormal
         self._times: list[float] = []
         self._moments: list[Floats] = []
-        self._middles: list[Floats | None] = []  # half way to the next moment; None of a jump
+        self._middles: list[Floats | None] = []  # halfway to the next time; None in a jump
 
     @property
     def rank(self) -> int:
-        """How many shapes the basis has."""
         return len(self._rows)
 
     def take(self, points: Complexes) -> Floats:
-        """Return the coordinates (q,) of the points, in a basis that now has room for them."""
+        """Return the coordinates (q,) of the points, and extend the basis if necessary."""
         rest = (points - self._base).view(np.float64)
         coordinates = self._rows @ rest
         rest = rest - coordinates @ self._rows
-        # Once more, against rounding.
+        # A second projection, against rounding.
         again = self._rows @ rest
         rest -= again @ self._rows
         coordinates += again
@@ -138,14 +135,13 @@ class _Snapshots:
         return coordinates
 
     def append(self, time: float, coordinates: Floats) -> None:
-        """Add a moment by its coordinates."""
         self._times.append(time)
         self._moments.append(coordinates)
 
     def add_between(
         self, sample: Callable[[float], Complexes], start: float, end: float, tolerance: float
     ) -> Generator[float, None, None]:
-        """Add the moments after one up to the next, as close together as is needed."""
+        """Add the times after `start` up to `end`, as close together as necessary."""
         pending = [(start, end, self.take(sample(end)))]
         yield end
         while pending:
@@ -156,14 +152,14 @@ class _Snapshots:
             bend = _table([between, -0.5 * self._moments[-1], -0.5 * last], self.rank).sum(axis=0)
             is_straight = self.largest(bend[None]) <= tolerance
             if is_straight or end - start <= SHORTEST:
-                # The middle of a jump is where it is for no time at all.
+                # The position in the middle of a jump has no duration.
                 self._middles.append(between if is_straight else None)
                 self.append(end, last)
             else:
                 pending += [(middle, end, last), (start, middle, between)]
 
     def largest(self, coordinates: Floats) -> float:
-        """Return the largest distance from the origin of any point in moments (n, q)."""
+        """Return the largest distance from the origin of any point at n times, (n, q)."""
         worst = 0.0
         rows = self._rows[: coordinates.shape[1]]
         for start in range(0, len(coordinates), BLOCK):
@@ -172,7 +168,7 @@ class _Snapshots:
         return worst
 
     def targets(self, rank: int) -> MorphTargets:
-        """Return the motion in so many shapes about its mean."""
+        """Return the motion in `rank` shapes about its mean."""
         moments = _table(self._moments, self.rank)
         inner = [index for index, middle in enumerate(self._middles) if middle is not None]
         middles = _table([m for m in self._middles if m is not None], self.rank)
@@ -182,7 +178,7 @@ class _Snapshots:
         axes = right[:rank]
         heights = (moments - mean) @ axes.T
         low, high = heights.min(axis=0), heights.max(axis=0)
-        # Each axis points away from the base, so that little is left for the target of weight 1.
+        # Each axis points away from the base, so the target of weight 1 is small.
         centre = axes @ mean
         flip = np.where(np.abs(centre + high) < np.abs(centre + low), -1.0, 1.0)
         axes, heights = axes * flip[:, None], heights * flip
@@ -206,7 +202,7 @@ class _Snapshots:
 
 
 def _table(rows: Sequence[Floats], width: int) -> Floats:
-    """Return rows of coordinates, of which those that were found earlier are fewer."""
+    """Return rows of coordinates, padded with 0: earlier rows have fewer coordinates."""
     table = np.zeros((len(rows), width))
     for row, values in zip(table, rows, strict=True):
         row[: len(values)] = values

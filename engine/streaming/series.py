@@ -1,4 +1,4 @@
-"""A piece of motion as a few arrays, blended with weights that depend on time alone."""
+"""A piece of motion as a few arrays, blended with weights that depend on time only."""
 
 from bisect import bisect_right
 from dataclasses import dataclass
@@ -15,15 +15,8 @@ class SeriesPiece:
     """The motion from one time to another: Σ_j w_j(t) rows_j.
 
     The first and the last row are the values at both ends, with the weights of a linear blend. The
-    other rows' weights vanish at both.
-
-    Parameters
-    ----------
-    start, end : float
-    functions : float64, shape (n, r)
-        Chebyshev coefficients of the weights.
-    rows : float32, shape (r, c)
-        Pieces that follow each other share the row between them.
+    weights of the other rows vanish at both ends. Consecutive pieces share the row between them.
+    `functions` (n, r) are the Chebyshev coefficients of the weights; `rows` are float32 (r, c).
     """
 
     start: float
@@ -45,15 +38,11 @@ class SeriesPiece:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Series:
-    """What an interval between two keyframes does at many points; build it with `build_series`.
+    """The motion of many points in a segment between two keyframes; built by `build_series`.
 
-    Parameters
-    ----------
-    pieces : tuple of SeriesPiece
-        In the order of time. Between them there may be stretches that are left to the direct path.
-    error : float
-        An upper estimate of the difference from the direct path, in units of the values: what was
-        seen at some times, with a margin. Infinite without pieces.
+    `pieces` are in the order of time; times between them need direct evaluation. `error` is an
+    upper estimate of the difference from the direct evaluation, in units of the values. It is the
+    error at some times, with a margin; infinite without pieces.
     """
 
     pieces: tuple[SeriesPiece, ...]
@@ -66,12 +55,11 @@ class Series:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
         return nbytes_of(self)
 
     @property
     def is_whole(self) -> bool:
-        """Whether no stretch is left to the direct path."""
+        """Whether the pieces cover all times."""
         if not self.pieces:
             return False
         ends = (0.0, *(piece.end for piece in self.pieces))
@@ -79,7 +67,7 @@ class Series:
         return all(start <= end for start, end in zip(starts, ends, strict=True))
 
     def covers(self, time: float) -> bool:
-        """Tell whether the series knows the values at a time."""
+        """Return whether the series covers a time."""
         return self._piece_at(time) is not None
 
     def blend(self, time: float) -> tuple[SeriesPiece, Singles]:
@@ -88,7 +76,7 @@ class Series:
         Raises
         ------
         EngineError
-            If the time is out of range, or in a stretch that is left to the direct path.
+            If the time is out of range, or if no piece covers it.
         """
         time = as_number(time, "time")
         if not 0.0 <= time <= 1.0:
@@ -101,11 +89,7 @@ class Series:
     def values(self, time: float, out: Singles | None = None) -> Singles:
         """Return the values (c,) at a time in [0, 1]: one small matrix-vector product.
 
-        Parameters
-        ----------
-        time : float
-        out : float32, shape (c,), optional
-            Where to write them.
+        The values are written to `out`, float32 (c,), if given.
         """
         piece, weights = self.blend(time)
         return np.dot(weights, piece.rows, out=out)
@@ -114,7 +98,7 @@ class Series:
         index = bisect_right(self.pieces, time, key=_start) - 1
         if index < 0:
             return None
-        # Where a piece ends and none follows, it knows the value yet.
+        # A piece without a successor covers its own end.
         piece = self.pieces[index]
         return piece if time <= piece.end else None
 

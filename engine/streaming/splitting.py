@@ -13,21 +13,21 @@ from engine.streaming.components import ROUNDING
 from engine.streaming.functions import Gap, TimeFunctions
 from engine.streaming.series import SeriesPiece
 
-# Rows of a piece: both ends and two functions. A frame costs as many multiply-adds, a linear blend
-# two; four are what a matrix-vector product of BLAS takes in one go.
+# Rows of a piece: both ends and two functions. A frame costs as many multiply-adds; a linear blend
+# costs two. BLAS takes four in one go in a matrix-vector product.
 MOST_ROWS = 4
-MOST_ATTEMPTS = 512  # pieces that are tried
-OF_PIECES = 0.4  # of the tolerance, for what two functions leave out
-LOOKED_AT = 2048  # columns in which the error of a piece is seen
-MOMENTS = 129  # at which the size of the numbers is looked at
-DEGREE = 16  # of the functions of a piece, which are looked at between the nodes too
-NEGLIGIBLE = 1e-9  # coefficients of weights, which float32 does not feel
-BLOCK = 2**14  # columns of which rows are worked out at a time
-# Two functions do what a cubic does: the error falls with the fourth power of the length.
+MOST_ATTEMPTS = 512  # largest number of pieces to try
+OF_PIECES = 0.4  # of the tolerance, for the error of two functions
+LOOKED_AT = 2048  # columns that estimate the error of a piece
+MOMENTS = 129  # times that estimate the size of the numbers
+DEGREE = 16  # of the functions of a piece; the error is checked between the nodes, too
+NEGLIGIBLE = 1e-9  # coefficients of weights that do not change float32 results
+BLOCK = 2**14  # columns of rows that are computed at a time
+# Two functions are as accurate as a cubic: the error falls with the fourth power of the length.
 ORDER = 4
-SAFETY, LEAST, MOST = 0.95, 0.2, 2.5  # of the length that is tried next
-# Where functions bend suddenly the error follows no power of the length. A longer piece is looked
-# for until one has this much of the error that is allowed, or of the length of one that fails.
+SAFETY, LEAST, MOST = 0.95, 0.2, 2.5  # factors for the next length
+# Where functions bend suddenly, the error follows no power of the length. The search for a longer
+# piece ends at this share of the allowed error, or of the length of a failed piece.
 ENOUGH, CLOSE = 0.5, 0.87
 
 
@@ -35,13 +35,8 @@ ENOUGH, CLOSE = 0.5, 0.87
 class PiecewiseReducedModel:
     """A motion in few functions of time: (1 − t, t, c_1(t), …, c_r(t)) · matrix · values.
 
-    Parameters
-    ----------
-    functions : TimeFunctions
-        c_j.
-    matrix : float64, shape (2 + r, 2 + s)
-    values : float64, shape (2 + s, c)
-        At times 0 and 1 and at s times in between.
+    `functions` are the c_j. `matrix` is float64 (2 + r, 2 + s). `values` (2 + s, c) are those at
+    times 0 and 1 and at s times in between.
     """
 
     functions: TimeFunctions
@@ -50,7 +45,7 @@ class PiecewiseReducedModel:
 
     @classmethod
     def through(cls, functions: TimeFunctions, times: Floats, values: Floats) -> Self:
-        """Interpolate values (2 + s, c) at 0, 1 and times (s,), or come closest to them."""
+        """Interpolate values (2 + s, c) at 0, 1 and times (s,), or fit them by least squares."""
         inverse = np.linalg.pinv(functions.series.at(times).T)
         blends = np.column_stack([1.0 - times, times])
         matrix = np.vstack([np.eye(2, 2 + len(times)), np.hstack([-inverse @ blends, inverse])])
@@ -62,7 +57,7 @@ class PiecewiseReducedModel:
         return np.vstack([1.0 - times, times, added]).T
 
     def rows(self, coordinates: Floats) -> Generator[None, None, Singles]:
-        """Return what some coordinates (q, 2 + r) give at all columns, float32 (q, c)."""
+        """Return the motion at coordinates (q, 2 + r) in all columns, float32 (q, c)."""
         weights = coordinates @ self.matrix
         rows = np.empty((len(weights), self.values.shape[1]), dtype=np.float32)
         for start in range(0, rows.shape[1], BLOCK):
@@ -82,9 +77,10 @@ class _Cut(NamedTuple):
 
 
 class _Longest(NamedTuple):
-    """What is known of the longest piece from a place on.
+    """State of the search for the longest accurate piece from a time on.
 
-    The longest that is accurate, its length and what to try after it; and the shortest that fails.
+    It holds the longest accurate piece, its length and the next length to try, and the length of
+    the shortest failed piece.
     """
 
     best: _Cut | None = None
@@ -96,13 +92,13 @@ class _Longest(NamedTuple):
 def split_motion(
     motion: PiecewiseReducedModel, tolerance: float
 ) -> Generator[None, None, tuple[SeriesPiece, ...]]:
-    """Cut a motion into pieces of at most `MOST_ROWS` rows, each as long as a tolerance allows.
+    """Split a motion into pieces of at most `MOST_ROWS` rows, as long as a tolerance allows.
 
-    Left out is what its functions leave out, and where the numbers are so large that float32
-    cannot hold them to the tolerance.
+    Times are left out if the motion's functions leave them out, or if the numbers are too large for
+    float32 to hold them to the tolerance.
     """
     allowed = OF_PIECES * tolerance
-    stride = (motion.values.shape[1] // LOOKED_AT) | 1  # an odd one takes x and y in turn
+    stride = (motion.values.shape[1] // LOOKED_AT) | 1  # an odd stride alternates x and y
     columns = motion.matrix @ motion.values[:, ::stride]
     forms = columns[2:]
     lower = np.linalg.qr(forms.T).R.T
@@ -116,7 +112,7 @@ def split_motion(
             left = end - place
             length = min(max(length, chebyshev.SHORTEST), left)
             if left / 2 < length < left:
-                length = left / 2  # no sliver is left at the end
+                length = left / 2  # avoids a sliver at the end
             goal = end if length == left else place + length
             found, error = _attempt(motion, (place, goal), forms, lower)
             yield
@@ -141,10 +137,10 @@ def split_motion(
 
 
 def _time_pieces(motion: PiecewiseReducedModel, columns: Floats, tolerance: float) -> list[Gap]:
-    """Return the stretches of time that a series can hold."""
+    """Return the pieces of time that a series can represent."""
     times = np.linspace(0.0, 1.0, MOMENTS)
     largest = np.abs(motion.coordinates(times) @ columns).max(axis=1, initial=0.0)
-    # A series rounds less often than the tolerance provides for.
+    # A series rounds fewer times than the tolerance allows for.
     large = np.flatnonzero(ROUNDING * largest > 2 * tolerance)
     from_, to = times[np.maximum(large - 1, 0)], times[np.minimum(large + 1, MOMENTS - 1)]
     gaps = [*motion.functions.gaps, *zip(from_.tolist(), to.tolist(), strict=True)]
@@ -161,14 +157,14 @@ def _attempt(
 ) -> tuple[_Cut, float]:
     """Write a piece in two functions of time; return it with its largest error in some columns.
 
-    `forms` (r, n) are what the functions are multiplied by in these columns, and `lower` (r, r)
-    times orthonormal rows are they.
+    `forms` (r, n) are the coefficients of the functions in these columns. They are `lower` (r, r)
+    times orthonormal rows.
     """
     start, end = piece
     nodes = chebyshev.chebyshev_nodes(2 * DEGREE)
     coordinates = motion.coordinates(start + (end - start) * (1.0 + nodes) / 2)
     ends = coordinates[[0, -1]]
-    # The linear blend has no part in what is added to it.
+    # Subtract the linear blend; the rest vanishes at both ends.
     added = (coordinates - np.column_stack([1.0 - nodes, 1.0 + nodes]) / 2 @ ends)[:, 2:]
     at_nodes = added[::2]
     left, sizes, _ = np.linalg.svd(at_nodes @ lower, full_matrices=False)
@@ -182,7 +178,7 @@ def _attempt(
 
 @cache
 def _between() -> Floats:
-    """Return the matrix (2 n − 1, n) from values at the nodes to those between them, too."""
+    """Return the matrix (2 n − 1, n) from values at the nodes to values at the doubled nodes."""
     nodes = chebyshev.chebyshev_nodes(2 * DEGREE)
     basis = np.polynomial.chebyshev.chebvander(nodes, DEGREE)
     return freeze(np.asarray(basis @ chebyshev.to_coefficients(DEGREE)))
@@ -191,7 +187,7 @@ def _between() -> Floats:
 def _pieces(
     motion: PiecewiseReducedModel, cuts: list[_Cut]
 ) -> Generator[None, None, tuple[SeriesPiece, ...]]:
-    """Work out the rows of all pieces; those that follow each other share the one in between."""
+    """Compute the rows of all pieces; consecutive pieces share the row between them."""
     coordinates: list[Floats] = []
     places = []
     for index, each in enumerate(cuts):
@@ -216,7 +212,7 @@ def _pieces(
 
 
 def _weights(functions: Floats) -> Floats:
-    """Return the Chebyshev coefficients of a piece's weights, of functions given at the nodes."""
+    """Return the Chebyshev coefficients of a piece's weights, given functions at the nodes."""
     coefficients = chebyshev.to_coefficients(DEGREE) @ functions
     felt = np.flatnonzero(np.abs(coefficients).max(axis=1, initial=0.0) > NEGLIGIBLE)
     count = max(2, 1 + int(felt.max(initial=0)))

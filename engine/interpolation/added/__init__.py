@@ -1,7 +1,7 @@
-"""What is added to a blend: by which periods around holes close, and by which handles stay.
+"""Corrections added to a blend: they close the periods around holes and keep pinned handles.
 
-In: in-betweens, and what they lack.
-Out: functions that are added as series in time; of handles that stay, in a room of their own.
+In: in-betweens, and their periods or target errors.
+Out: functions times series in time; corrections for pinned handles are in the room `pins`.
 Imports: `engine.deform.correction`, `engine.interpolation.series`, `engine.maps`, `engine.paths`.
 """
 

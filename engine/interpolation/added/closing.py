@@ -2,20 +2,20 @@
 
 In a domain with holes the blends F of f_z and G of conj(f_z̄) are single-valued, but their integral
 f is not: around hole j it gains ∮ F dz + conj(∮ G dz). As in `engine.deform.correction`, a
-holomorphic, single-valued h makes them F e^h and G e^{σh}, and of all h that close the periods and
-are 0 at the anchor the one with the least mean of |h|² on the boundary is taken. It keeps ν (σ = 1:
-Property 5 holds on) or η (σ = −1), depends analytically on t, and comes as few functions times
-series in time.
+holomorphic, single-valued h changes them to F e^h and G e^{σh}. Of all h that close the periods and
+are 0 at the anchor, h has the least mean of |h|² on the boundary. It keeps ν (σ = 1, so Property 5
+still holds) or η (σ = −1), and depends analytically on t. It is given as few functions times series
+in time.
 
-The smallest change of h is a combination of the functions that stand for the constraints: δh ↦
-∮ F e^h δh dz is the product with one of them. F e^h and G e^{±h} being smooth around a hole, all of
-these are nearly sums of the few that stand for ∮ (z − c_j)^k δh dz with |k| small, whatever the
-keyframes are. h is sought among those: it closes the periods to rounding all the same.
+The smallest change of h is a combination of the functions that represent the constraints: δh ↦
+∮ F e^h δh dz is the product with such a function. F e^h and G e^{±h} are smooth around a hole.
+These functions are therefore nearly sums of the few that represent ∮ (z − c_j)^k δh dz with small
+|k|, for any keyframes. h is a sum of these few functions, and still closes the periods to rounding.
 
-The metric variant wants ln |f_z| on the boundary, Equation (13), and gets it but for a constant
-around each hole (`engine.dirichlet`). There the h is taken whose real part is nearest to what is
-lost and that turns nothing at the anchor; and where it would exceed the limits of the keyframes,
-the smallest correction of it within them.
+The metric variant prescribes ln |f_z| on the boundary, Equation (13), and attains it up to a
+constant around each hole (`engine.dirichlet`). There h is chosen so that its real part is nearest
+to the missing constants, without a turn at the anchor. Where this h exceeds the limits of the
+keyframes, the smallest correction within the limits is added.
 
 Not in the paper, whose domains are simply connected.
 """
@@ -48,32 +48,33 @@ from engine.maps import Boundary
 from engine.paths import Loops
 
 MOMENTS = 3  # powers of z − c_j on either side, −3 to 2
-CLOSED = 1e-14  # a step in the unknowns: where the iteration ends
+CLOSED = 1e-14  # the iteration ends after a step in the unknowns of at most this
 MOST_STEPS = 15
-RIDGE = 1e-12  # of the mean: what makes the size of real parts definite
-INDEPENDENT = 1e-13  # of the largest: constraints below depend on the others
+RIDGE = 1e-12  # of the mean: it makes the size of real parts definite
+INDEPENDENT = 1e-13  # of the largest: smaller constraints depend on the others
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time
-LEFT_OUT = 2e-11  # of the modes: the periods are closed as far
-BEYOND = 1e-6  # of ln σ_a, −ln σ_b and k: by which the nearest h may exceed limits
-FAR = 0.3  # the same: by which a start may, from which h is brought within them
-# Series of what does that: it ends some thousandths inside the limits, which makes good the rest.
+LEFT_OUT = 2e-11  # of the modes: accuracy of the closed periods
+BEYOND = 1e-6  # of ln σ_a, −ln σ_b and k: the nearest h may exceed limits by this
+FAR = 0.3  # the same: a start of the solver may exceed limits by this
+# Series of the correction into the limits. It ends some thousandths inside the limits, which makes
+# up for the rest.
 ROUGH, ROUGHLY_LEFT_OUT, DEGREES = 2e-5, 1e-5, (16, 32)
 
 Unclosed = Callable[[Floats], tuple[Complexes, Complexes]]
 
 
 class Moduli(NamedTuple):
-    """What is known of a variant at the samples of the boundary before its periods are closed.
+    """Moduli of a variant at the boundary samples before its periods are closed.
 
-    Parameters
+    Attributes
     ----------
     at : callable
         Returns |f_z| and |f_z̄| at times (t,), (t, p) each.
     limits : float64, shape (3,)
-        Of ln σ_a, −ln σ_b and k, which in-betweens are to keep.
+        Limits of ln σ_a, −ln σ_b and k.
     constants : HoleConstants
-        By how much ln |f_z| stays below what was asked for, which h is to make good.
+        Constants missing in ln |f_z|, which h approximates.
     """
 
     at: Callable[[Floats], tuple[Floats, Floats]]
@@ -82,7 +83,7 @@ class Moduli(NamedTuple):
 
 
 class Functions(NamedTuple):
-    """Functions in the span (n, N); they, and their derivatives, at the nodes of paths (N, s)."""
+    """Functions in the span (n, N), with values and derivatives at the nodes of paths (N, s)."""
 
     coefficients: Complexes
     values: Complexes
@@ -90,12 +91,12 @@ class Functions(NamedTuple):
 
     @classmethod
     def of(cls, boundary: Boundary, coefficients: Complexes, nodes: Complexes) -> Self:
-        """Evaluate them."""
+        """Evaluate the functions at nodes (s,)."""
         values, slopes = boundary.span.evaluate(coefficients, nodes, orders=(0, 1))
         return cls(coefficients, np.ascontiguousarray(values.T), slopes.T.astype(np.complex64))
 
     def combined(self, forms: Floats) -> "Functions":
-        """Return combinations (N, j)."""
+        """Return combinations by forms (N, j)."""
         single = forms.T.astype(np.float32)
         return Functions(
             freeze(self.coefficients @ forms),
@@ -104,7 +105,6 @@ class Functions(NamedTuple):
         )
 
     def joined(self, more: "Functions") -> "Functions":
-        """Return these and more."""
         return Functions(
             np.hstack([self.coefficients, more.coefficients]),
             np.vstack([self.values, more.values]),
@@ -116,12 +116,7 @@ class Functions(NamedTuple):
 class Closing:
     """The correction of the in-betweens of two keyframes: functions times series in time.
 
-    Parameters
-    ----------
-    series : PiecewiseSeries
-    functions : Functions
-    largest : float
-        The largest |h| on the boundary at the times that were looked at.
+    `largest` is the largest |h| on the boundary at 33 times.
     """
 
     series: PiecewiseSeries
@@ -136,21 +131,21 @@ class Closing:
 
 
 class PeriodSearch(NamedTuple):
-    """Where h is sought: among few functions (c,), in unknowns (i,) whose squares are its size."""
+    """Search for h among few functions (c,), in unknowns (i,); the sum of squares is its size."""
 
     corrector: PointCorrector
     to_few: Floats
 
     @classmethod
     def among(cls, few: PointCorrector, size: Floats, fixed: Floats) -> Self:
-        """Take a form (c, c) as the size, and forms (f, c) that stay 0."""
+        """Use a form (c, c) as the size, and keep the values of forms (f, c) at 0."""
         free = scipy.linalg.null_space(fixed)
         root = np.linalg.cholesky(free.T @ size @ free)
         to_few = np.asarray(scipy.linalg.solve_triangular(root, free.T, lower=True).T)
         return cls(replace(few, variables=few.variables.of_h(to_few)), freeze(to_few))
 
     def nearest(self, bases: Sequence[BaseFrame], goals: Floats | None = None) -> Floats:
-        """Return what closes the periods of bases (t,), nearest to goals (t, i) or 0, (c, t)."""
+        """Close the periods of bases (t,) as near to goals (t, i), or to 0, as possible; (c, t)."""
         goals = np.zeros((len(bases), self.corrector.variables.count)) if goals is None else goals
         both = zip(bases, goals, strict=True)
         found = np.transpose([_closed(self.corrector, *each) for each in both])
@@ -159,24 +154,25 @@ class PeriodSearch(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HoleCloser:
-    """What the corrections of all in-betweens of a domain with holes share.
+    """The part of the corrections that all in-betweens of a domain with holes share.
 
     Build it with `HoleCloser.of`.
 
-    Parameters
+    Attributes
     ----------
     corrector : PointCorrector
         Without points: the periods around holes are its only rows. No h turns the anchor.
     few : PointCorrector
-        The same with those functions alone among which h is sought as a rule.
+        The same, restricted to the few functions that usually suffice for h.
     least, nearest : PeriodSearch
-        Among these, where the size is that of h, and that of its real part.
+        Searches among these functions; the size is that of h, and that of its real part.
     toward : float64, shape (holes, i)
-        The unknowns of `nearest` that come nearest to 1 on the boundary of a hole, and 0 elsewhere.
+        The unknowns of `nearest` that come nearest to 1 on the boundary of one hole and to 0 on the
+        others.
     functions : Functions
-        The few.
+        The few functions.
     nodes : complex128, shape (s,)
-        Of the paths.
+        Nodes of the paths.
     """
 
     corrector: PointCorrector
@@ -232,12 +228,12 @@ class HoleCloser:
         Parameters
         ----------
         unclosed : callable
-            Returns f_z and conj(f_z̄) at times (t,) and the nodes of the loops, (t, c) each, before
-            their correction.
+            Returns f_z and conj(f_z̄) before the correction, at times (t,) and the nodes of the
+            loops, (t, c) each.
         sign : {1, -1}
             1 keeps ν, −1 keeps η.
         moduli : Moduli, optional
-            Where limits are to be kept, and constants to be made good.
+            Limits to keep, and constants to make up for.
         """
         if moduli is None:
             return self._in_series(lambda times: self.least.nearest(_bases(unclosed(times), sign)))
@@ -252,7 +248,7 @@ class HoleCloser:
                 over = max(over, float((reached - moduli.limits).max()))
             return x
 
-        # Where the constants may have kinks in time.
+        # The constants may have kinks in time at these breaks.
         breaks = moduli.constants.series.breaks.tolist()
         closing = self._in_series(nearest, breaks)
         if over <= BEYOND:
@@ -278,7 +274,7 @@ class HoleCloser:
         return self._in_series(within, breaks, functions=self.functions.joined(more))
 
     def to_conformal(self, unclosed: Unclosed, sign: int) -> Closing:
-        """Return what leads on from `close` to the correction of f_z alone, without f_z̄."""
+        """Return d: the correction that changes f_z alone, less the one by `close`."""
 
         def further(times: Floats) -> Floats:
             fz, g = unclosed(times)
@@ -290,7 +286,7 @@ class HoleCloser:
     def _into_limits(
         self, unclosed: Unclosed, sign: int, moduli: Moduli, closing: Closing
     ) -> Callable[[Floats], Floats]:
-        """Return the unknowns (N, t) of the smallest h that leads on from there into the limits."""
+        """Return the unknowns (N, t) of the smallest addition to h that keeps the limits."""
         corrector, span = self.corrector, self.corrector.boundary.span
         nothing, free = corrector.variables.nothing, np.zeros(0)
         targets = PointTargets(np.zeros(0, np.complex128), free, is_anchored=True)
@@ -298,7 +294,7 @@ class HoleCloser:
             span.evaluate(closing.functions.coefficients, z, orders=(0,))[0]
             for z in (corrector.paths.nodes, corrector.boundary.points)
         )
-        # Over 4 t (1 − t): beside a key, where it is on its limits, h grows as time does.
+        # Divided by 4 t (1 − t): beside a key on its limits, h grows linearly in time.
         solved = {0.0: nothing, 1.0: nothing}
 
         def at(time: float) -> Floats:
@@ -355,14 +351,14 @@ class HoleCloser:
 def _bases(
     parts: tuple[Complexes | Floats, Complexes | Floats], sign: int, h: Complexes | complex = 0j
 ) -> list[BaseFrame]:
-    """Return frames of f_z and conj(f_z̄), each (t, p), with an h, which another h is to correct."""
+    """Return frames of f_z and conj(f_z̄), each (t, p), changed by h."""
     grown = np.exp(h)
     fz, g = parts[0] * grown, parts[1] * (grown if sign > 0 else 1.0 / grown)
     return [BaseFrame(*each, 0.0 * each[0], sign) for each in zip(fz, g, strict=True)]
 
 
 def _closed(corrector: PointCorrector, base: BaseFrame, goal: Floats) -> Floats:
-    """Return the unknowns of h nearest to a goal (N,) with which periods are closed."""
+    """Return the unknowns of h that close the periods, nearest to a goal (N,)."""
     x = goal
     for _ in range(MOST_STEPS):
         frame = CorrectedFrame.of(corrector, base, x)

@@ -1,4 +1,4 @@
-"""What a variant is: two quantities that are blended, and all that follows from them."""
+"""Base class of the variants: two blended quantities, and everything that follows from them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
@@ -38,23 +38,18 @@ PairCurves = tuple[BoundaryBezier[Any], BoundaryBezier[Any]]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Blend(ABC):
-    """How the derivatives of an in-between follow from the keyframes and the time.
+    """Derivatives of an in-between as a function of the keyframes and the time.
 
-    A variant is a subclass, and a row of `engine.interpolation.blends.BLENDS`.
-
-    Parameters
-    ----------
-    passage : KeyframeBlend
-    bounds : Bounds
-        That in-betweens through keyframes obey, as far as the variant can.
+    A variant is a subclass, and a row of `engine.interpolation.blends.BLENDS`. `bounds` apply to
+    in-betweens through keyframes, as far as the variant can keep them.
     """
 
-    # What the correction around holes keeps: 1 for ν, −1 for η; 0 where none is needed.
+    # The quantity that the correction around holes keeps: 1 for ν, −1 for η; 0 without correction.
     sign: ClassVar[int] = -1
-    # Whether Ψ is scaled by a ρ.
+    # Whether Ψ is scaled by ρ.
     is_scaled: ClassVar[bool] = False
 
-    # Whether what is blended at a place follows from the keyframes there, and not from elsewhere.
+    # Whether the blend at a point depends on the keyframes at this point only.
     is_closed_form: ClassVar[bool] = True
 
     keyframe_blend: KeyframeBlend
@@ -63,16 +58,16 @@ class Blend(ABC):
     @classmethod
     @abstractmethod
     def of(cls, interval: KeyframeSegment) -> Self:
-        """Prepare the blend of an interval."""
+        """Prepare the blend of a segment."""
 
     @classmethod
     def on_boundary(cls, _interval: KeyframeSegment, /) -> BoundaryResidual | None:
-        """Return what is solved for on the boundary, whatever the points are."""
+        """Return the part that is solved on the boundary and does not depend on the points."""
         return None
 
     @classmethod
     def at_single_time(cls, _time: float, interval: KeyframeSegment, /) -> Self:
-        """Prepare it for one time in [0, 1], without holes; at others it may be wrong."""
+        """Prepare the blend for one time in [0, 1], without holes; invalid at other times."""
         return cls.of(interval)
 
     @abstractmethod
@@ -84,65 +79,51 @@ class Blend(ABC):
         """Return the in-between's derivatives at the nodes of the paths."""
 
     def at(self, which: Indices) -> Self:
-        """Return the same at some of the nodes only."""
+        """Return a copy restricted to some of the nodes."""
         return replace(self, keyframe_blend=self.keyframe_blend.at(which))
 
     def with_residual(self, residual: Residual) -> Self:
-        """Return the same with something more added to log f_z."""
+        """Return a copy with one more term added to log f_z."""
         return replace(self, keyframe_blend=self.keyframe_blend.with_residual(residual))
 
     @property
     def constants(self) -> HoleConstants | None:
-        """What the correction around holes has to make good beside the periods."""
+        """Constants that the correction around holes makes up for."""
         return None
 
     def moduli(self, _boundary: Boundary, /) -> Moduli | None:
-        """Return what that correction is to keep at the boundary beside them."""
+        """Return the moduli and limits for the correction around holes, at the boundary."""
         return None
 
     def exact_rho(
         self, sites: SampledDomain, closing: Closing | None, conformal: Closing | None
     ) -> Callable[[Floats], Floats]:
-        """Return the largest ρ at times (t,) in ascending order, where Ψ is scaled.
+        """Return the largest ρ at times (t,) in ascending order, for variants with a scaled Ψ.
 
-        Parameters
-        ----------
-        sites : SampledDomain
-        closing, conformal : Closing or None
-            Around holes the corrections for ρ = 1, and what leads on from there to that for ρ = 0.
+        Around holes `closing` is the correction for ρ = 1, and `conformal` the difference from it
+        to the correction for ρ = 0.
         """
         raise NotImplementedError
 
     @staticmethod
     @abstractmethod
     def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
-        """Return the two quantities that are blended, of f_z and conj(f_z̄) of any shape."""
+        """Return the two blended quantities, given f_z and conj(f_z̄) of any shape."""
 
     @staticmethod
     @abstractmethod
     def singular_values(first: Complexes, second: Complexes) -> tuple[Floats, Floats]:
-        """Return σ_a and σ_b of the two quantities."""
+        """Return σ_a and σ_b, given the two quantities."""
 
     @classmethod
     def tangent(
         cls, maps: Sequence[HarmonicMap], joint: InteriorKnot, bounds: Bounds, boundary: Boundary
     ) -> Tangent:
-        """Return a joint's tangent, short enough for the control values to obey the bounds.
+        """Return the tangent at an interior knot, short enough to keep the bounds.
 
-        Parameters
-        ----------
-        maps : sequence of HarmonicMap, length 3
-            The keyframe and its neighbours, in order of time.
-        joint : InteriorKnot
-        bounds : Bounds
-            Widened where the keyframe itself exceeds them.
-        boundary : Boundary
-
-        Returns
-        -------
-        Tangent
-            Of length 0, a stop, where the keyframe is equal to a neighbour: past it the motion
-            would swing beyond the pose that is to be kept.
+        The control values obey `bounds`, widened by the keyframe's own extremes. `maps` are the
+        previous neighbour, the keyframe and the next neighbour. If the keyframe equals a neighbour
+        the tangent has length 0, a stop; else the motion would overshoot the held pose.
         """
         if any(are_same_maps(maps[1], f, boundary) for f in (maps[0], maps[2])):
             return Tangent(joint, 0.0, 0.0)
@@ -157,16 +138,16 @@ class Blend(ABC):
 
     @property
     def curve_weights(self) -> tuple[TimeWeights, TimeWeights]:
-        """The weights in time of the `curves` of both quantities."""
+        """The time weights of the `curves` of both quantities."""
         return self.keyframe_blend.time_weights, self.keyframe_blend.eta_time_weights
 
     @abstractmethod
     def curves(self, values: EndpointValues) -> PairCurves:
-        """Return what is known of the two quantities along pieces of the boundary."""
+        """Return the two quantities with error bounds along pieces of the boundary."""
 
     @staticmethod
     @abstractmethod
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells, of the two quantities and what becomes of them."""
+        """Enclose the distortion on cells, given the two quantities and their later changes."""

@@ -26,13 +26,8 @@ from engine.maps import Enclosures
 class EtaBlend(Blend):
     """log f_z and η linear in the weights: Properties 1, 2 and 8.
 
-    Parameters
-    ----------
-    passage : Passage
-        Another branch of its logarithms only turns the in-betweens.
-    bounds : Bounds
-    conj_eta, conj_eta_z : tuple of complex128, shape (s,)
-        conj(η) = Φ' Ψ' of each keyframe, holomorphic, and its derivative.
+    Another branch of the logarithms only rotates the in-betweens. `conj_eta` and `conj_eta_z` are
+    conj(η) = Φ' Ψ' of each keyframe, which is holomorphic, and its derivative, (s,) each.
     """
 
     conj_eta: tuple[Complexes, ...]
@@ -40,7 +35,6 @@ class EtaBlend(Blend):
 
     @classmethod
     def of(cls, interval: KeyframeSegment) -> Self:
-        """Work out η of the keyframes."""
         values, derivatives = [], []
         for key in interval.keyframe_blend.keyframes:
             squared = np.exp(2 * key.log_fz)
@@ -80,7 +74,7 @@ class EtaBlend(Blend):
         return Derivatives(fz=fz, fzz=logarithm_z * fz, g=g, gz=gz)
 
     def at(self, which: Indices) -> Self:
-        """Return the same at some of the nodes only."""
+        """Return a copy restricted to some of the nodes."""
         return replace(
             self,
             keyframe_blend=self.keyframe_blend.at(which),
@@ -108,7 +102,7 @@ class EtaBlend(Blend):
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells: h keeps η, and ρ and d scale what there is."""
+        """Enclose the distortion on cells; h keeps η, ρ scales conj(f_z̄) and d scales f_z."""
         if changes is None:
             return enclose_exponential(first, first.times(-1.0), first.times(-2.0), second)
         log_a = first.plus(changes.correction)
@@ -119,7 +113,7 @@ class EtaBlend(Blend):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ScaledEtaBlend(EtaBlend):
-    """The same, scaled by ρ: it has Properties 3 to 7 as well."""
+    """The η variant scaled by ρ: it has Properties 3 to 7, too."""
 
     is_scaled = True
 

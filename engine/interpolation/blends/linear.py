@@ -1,4 +1,4 @@
-"""The maps themselves, blended linearly: for comparison, without any guarantee."""
+"""Linear blend of the maps themselves: for comparison, without any guarantee."""
 
 from dataclasses import dataclass, replace
 from typing import Any, Self
@@ -20,15 +20,7 @@ from engine.maps import Enclosures
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LinearBlend(Blend):
-    """f_z and conj(f_z̄) linear in the weights.
-
-    Parameters
-    ----------
-    passage, bounds
-        As in `Blend`.
-    known : tuple of Derivatives
-        Of the keyframes.
-    """
+    """f_z and conj(f_z̄) linear in the weights; `known` are the keyframes' derivatives."""
 
     sign = 0  # sums of closed maps are closed
 
@@ -36,7 +28,6 @@ class LinearBlend(Blend):
 
     @classmethod
     def of(cls, interval: KeyframeSegment) -> Self:
-        """Work out the derivatives of the keyframes."""
         known = []
         for key in interval.keyframe_blend.keyframes:
             fz = np.exp(key.log_fz)
@@ -54,20 +45,18 @@ class LinearBlend(Blend):
         return combine_arrays(weights, fz), combine_arrays(weights, g)
 
     def derivatives(self, time: float) -> Derivatives:
-        """Blend all derivatives linearly."""
         weights = self.keyframe_blend.time_weights(time)
         return Derivatives(
             *(weighted_sum(parts, weights) for parts in zip(*self.known, strict=True))
         )
 
     def at(self, which: Indices) -> Self:
-        """Return the same at some of the nodes only."""
+        """Return a copy restricted to some of the nodes."""
         known = tuple(Derivatives(*(freeze(part[which]) for part in each)) for each in self.known)
         return replace(self, keyframe_blend=self.keyframe_blend.at(which), known=known)
 
     @staticmethod
     def blended_pair(fz: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
-        """Return f_z and conj(f_z̄) themselves."""
         return fz, g
 
     @staticmethod
@@ -84,5 +73,4 @@ class LinearBlend(Blend):
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], _changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells."""
         return enclose_linear(first, second)

@@ -1,15 +1,15 @@
 """The metric variant (Sections 6 and 7.4).
 
 The pullback metric of a map h has the matrix M_h = 𝒜 I + 2 [[Re η, Im η], [Im η, −Re η]], of
-Equation (9), with 𝒜 = |h_z|² + |h_z̄|², so that blending it linearly means to blend 𝒜 and η. On the
-outline that gives |f_z^t|. It differs from the logarithmic blend by a residual that vanishes at
-both keyframes, is analytic in time, and takes few forms across the outline: as Σ_j c_j(t) U_j(ζ), a
-handful of Dirichlet problems serve every time.
+Equation (9), with 𝒜 = |h_z|² + |h_z̄|². Blending M_h linearly therefore means blending 𝒜 and η. On
+the outline this gives |f_z^t|. It differs from the logarithmic blend by a residual. The residual
+vanishes at both keyframes and is analytic in time. It is a sum Σ_j c_j(t) U_j(ζ) of few terms, so
+a handful of Dirichlet problems serve every time.
 
-Around holes ln |f_z| differs from what Equation (13) asks for: by a constant on the boundary of
-each hole, which no single-valued f_z does without (`engine.dirichlet`), and by the h that closes
-the periods, makes the constants good as far as it can, and keeps the limits of the keyframes
-(`engine.interpolation.added.closing`).
+Around holes ln |f_z| differs from Equation (13) in two ways. The first is a constant on the
+boundary of each hole, which every single-valued f_z has (`engine.dirichlet`). The second is the h
+that closes the periods, makes up for the constants as far as it can, and keeps the limits of the
+keyframes (`engine.interpolation.added.closing`).
 """
 
 from dataclasses import dataclass, replace
@@ -47,11 +47,11 @@ from engine.interpolation.time_weights import (
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|
-# Of the modes, at most, in ln |f_z|: of places it is felt in the eighth digit. Where keyframes are
-# passed it is felt in the velocity, which must be the same on both sides.
+# Largest sum of the omitted modes, in ln |f_z|; it changes the eighth digit of positions. At
+# tangents the second value holds, since the velocity must be the same on both sides.
 LEFT_OUT, LEFT_OUT_PASSING = 2e-6, 1e-7
-# Last Legendre coefficients of the residual on a panel, in ln |f_z|, up to which it may stay; the
-# times at which they are looked at; and how often a panel may be halved.
+# Limit of the last Legendre coefficients of the residual on a panel, in ln |f_z|; the sampled
+# times; and how often a panel may be halved.
 RESOLVED, LOOKED_AT, MOST_HALVINGS = 5e-4, (0.03, 0.25, 0.5, 0.75, 0.97), 8
 
 
@@ -63,20 +63,15 @@ class MetricBlend(EtaBlend):
 
         log f_z^t = Σ w_i(t) log f_z^i + Σ c_j(t) H_j,
 
-    with the weights of the interval's course, 1 − t and t between two keyframes; the real part of
-    H_j on the outline is the mode U_j of the residual. It vanishes at both keyframes, which come
-    out exactly however coarsely the integral equation was solved. The residual is the first of the
-    passage's.
+    with the segment's time weights: 1 − t and t between two keyframes. The real part of H_j on the
+    outline is the mode U_j of the residual. The residual vanishes at both keyframes, so these are
+    exact for any resolution of the integral equation. It is the first residual of the keyframe
+    blend.
 
     Departs from the paper: Section 7.4 transforms ln |f_z^t| as a whole, with an integration
     constant for the whole shape. Here the constant is tied to the anchor: arg f_z is linear there.
 
-    Parameters
-    ----------
-    passage, bounds, conj_eta, conj_eta_z
-        As in `EtaBlend`.
-    lost : HoleConstants
-        By how much each H_j stays below U_j on the boundary of a hole.
+    `lost` is the constant by which each H_j stays below U_j on the boundary of a hole.
     """
 
     is_closed_form = False
@@ -90,13 +85,13 @@ class MetricBlend(EtaBlend):
         Raises
         ------
         EngineError
-            If the transform is missing, or of another domain.
+            If the transform is missing, or belongs to another domain.
         """
         return cls._extended(interval, interval.residual or cls.on_boundary(interval))
 
     @classmethod
     def on_boundary(cls, interval: KeyframeSegment, /) -> BoundaryResidual:
-        """Solve them, and leave them on the boundary."""
+        """Solve the Dirichlet problems, and return the solution on the boundary."""
         metric, panels = _resolved(interval, np.array(LOOKED_AT))
         forms, series = separate_variables(
             metric.residuals,
@@ -109,7 +104,7 @@ class MetricBlend(EtaBlend):
 
     @classmethod
     def at_single_time(cls, time: float, interval: KeyframeSegment, /) -> Self:
-        """Solve the one Dirichlet problem of a time in [0, 1]."""
+        """Solve the single Dirichlet problem of a time in [0, 1]."""
         times = np.array([time])
         metric, panels = _resolved(interval, times)
         residual = BoundaryResidual(panels.solve(metric.residuals(times)), constant_one())
@@ -120,10 +115,10 @@ class MetricBlend(EtaBlend):
         densities, series = residual
         modes, modes_z, lost = densities.at(_matching(interval))
         modes.imag -= modes[0].imag
-        # Unbounded there; the steps beside these nodes are so short that it is not missed.
+        # H_j' is unbounded there. The steps beside these nodes are so short that 0 changes nothing.
         modes_z[interval.sampled_domain.paths.cornered] = 0.0
         known, passage = EtaBlend.of(interval), interval.keyframe_blend
-        # All but η keeps its velocities at keyframes.
+        # Everything but η keeps its velocities at keyframes.
         passage = replace(passage, time_weights=passage.time_weights.unlimited)
         return cls(
             keyframe_blend=passage.with_residual(Residual.of(series, modes, modes_z)),
@@ -135,11 +130,11 @@ class MetricBlend(EtaBlend):
 
     @property
     def constants(self) -> HoleConstants:
-        """What the correction around holes has to make good beside the periods."""
+        """Constants that the correction around holes makes up for."""
         return self.lost
 
     def moduli(self, boundary: Boundary) -> Moduli:
-        """Return what is known at samples of the boundary before periods are closed."""
+        """Return moduli and limits at the boundary samples, before the periods are closed."""
         course = self.keyframe_blend.eta_time_weights
         fz, fzbar = derivatives_of(
             [key.map for key in self.keyframe_blend.keyframes], boundary.points
@@ -180,7 +175,7 @@ class MetricBlend(EtaBlend):
 
     @property
     def curve_weights(self) -> tuple[TimeWeights, TimeWeights]:
-        """The weights in time of the `curves` of both quantities."""
+        """The time weights of the `curves` of both quantities."""
         return trace_time_weights(
             self.keyframe_blend.eta_time_weights
         ), self.keyframe_blend.eta_time_weights
@@ -196,7 +191,6 @@ class MetricBlend(EtaBlend):
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells."""
         if changes is None:
             return enclose_metric(first, second)
         return enclose_changed_metric(first, second, changes)
@@ -205,8 +199,8 @@ class MetricBlend(EtaBlend):
 def _resolved(interval: KeyframeSegment, times: Floats) -> tuple[OutlineMetric, Refinement]:
     """Return the metrics at nodes that resolve the residual at some times, and the nodes' panels.
 
-    The nodes follow the shape. Keyframes at extreme bounds vary faster still beside a vertex of the
-    cage, and for them panels are halved there.
+    The nodes follow the shape. Keyframes at extreme bounds vary faster near a vertex of the cage;
+    there panels are halved.
     """
     passage, bounds = interval.keyframe_blend, interval.bounds
     maps = [key.map for key in passage.keyframes]
@@ -222,7 +216,7 @@ def _resolved(interval: KeyframeSegment, times: Floats) -> tuple[OutlineMetric, 
 
 
 def _matching(interval: KeyframeSegment) -> Extension:
-    """Refuse a transform of another domain, whose in-betweens would be wrong without a word."""
+    """Raise for a transform of another domain, which would give wrong in-betweens silently."""
     transform, sites = interval.transform, interval.sampled_domain
     if transform is None:
         raise EngineError("The metric variant needs a Hilbert transform of the outline.")

@@ -22,19 +22,15 @@ from engine.maps import Enclosures
 class NuBlend(Blend):
     """log f_z and ν linear in the weights: Properties 1 to 5 and 7.
 
-    Parameters
-    ----------
-    passage : Passage
-        A change of one of its sheets by a full turn changes the shape of the in-betweens, not only
-        how it turns.
-    bounds : Bounds
+    A full turn added to one of the sheets changes the shape of the in-betweens, not only their
+    rotation.
     """
 
     sign = 1
 
     @classmethod
     def of(cls, interval: KeyframeSegment) -> Self:
-        """Take the passage as it is."""
+        """Use the keyframe blend of the segment unchanged."""
         return cls(keyframe_blend=interval.keyframe_blend, bounds=interval.bounds)
 
     def values(self, times: Floats) -> tuple[Complexes, Complexes]:
@@ -81,7 +77,7 @@ class NuBlend(Blend):
     def enclose(
         first: BernsteinPatch[Any], second: BernsteinPatch[Any], changes: BlendChanges | None, /
     ) -> Enclosures:
-        """Enclose the distortion on cells: h changes f_z and conj(f_z̄) alike."""
+        """Enclose the distortion on cells; h changes f_z and conj(f_z̄) alike."""
         log_fz = first if changes is None else first.plus(changes.correction)
         return enclose_exponential(
             log_fz, log_fz, BernsteinPatch(0.0 * first.controls, 0.0 * first.error), second

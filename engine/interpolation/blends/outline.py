@@ -1,4 +1,4 @@
-"""The metric tensors along an interval's course, on the outline (Section 6)."""
+"""The metric tensors during a segment, on the outline (Section 6)."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -20,19 +20,19 @@ from engine.maps import Bounds
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OutlineMetric:
-    """The metrics along an interval's course at points of the outline.
+    """The metrics during a segment at points of the outline.
 
-    Parameters
+    Attributes
     ----------
-    course : TimeWeights
-        Of η.
+    time_weights : TimeWeights
+        Weights of η.
     log_modulus : float64, shape (q, N)
         ln |f_z| of the keyframes.
     trace : float64, shape (2, N) or (4, N)
-        𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor: of two keyframes where the course
-        is straight, else control values.
+        𝒜 = |f_z|² + |f_z̄|², half the trace of the metric tensor. With straight time weights it is
+        that of two keyframes, otherwise it holds control values.
     eta : complex128, shape (q, N)
-        η up to conjugation, which |f_z| does not see.
+        η up to conjugation, which does not change |f_z|.
     """
 
     time_weights: TimeWeights
@@ -42,7 +42,7 @@ class OutlineMetric:
 
     @classmethod
     def of(cls, fz: Complexes, fzbar: Complexes, course: TimeWeights, bounds: Bounds) -> Self:
-        """Work the metrics out from the derivatives (q, N) of the course's keyframes."""
+        """Compute the metrics from the derivatives (q, N) of the weighted keyframes."""
         # The entries of the metric tensor, Equation (9).
         trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
         return cls(
@@ -53,7 +53,7 @@ class OutlineMetric:
         )
 
     def residuals(self, times: Floats) -> Floats:
-        """Return ln |f_z| of the blended metric less the blend of the ln |f_z|, (N, times).
+        """Return ln |f_z| of the blended metric minus the blend of the ln |f_z|, (N, times).
 
         Departs from the paper: the bars of Equation (13) and the lines before it were lost; the
         product of its roots is |η|².
@@ -71,12 +71,12 @@ class OutlineMetric:
 
 
 def trace_time_weights(course: TimeWeights) -> TimeWeights:
-    """Return the weights of what is known of 𝒜 along a course of η."""
+    """Return the time weights of the values or control values of 𝒜, given those of η."""
     return course if course.is_straight else TimeWeights.cubic()
 
 
 def _controls(trace: Floats, eta: Complexes, course: TimeWeights, bounds: Bounds) -> Floats:
-    """Return the control values of 𝒜 (4, N) along a course, from the keyframes' 𝒜 and η (q, N)."""
+    """Return the control values of 𝒜 (4, N), from 𝒜 and η (q, N) of the keyframes."""
     full = course.unlimited.controls
     if full is None:
         return trace
@@ -94,22 +94,15 @@ def control_curves(
     course: TimeWeights,
     bounds: Bounds,
 ) -> BoundaryBezier[np.float64]:
-    """Return what is known of the control values of 𝒜 along pieces of the boundary.
+    """Return the control values of 𝒜 with error bounds along pieces of the boundary.
 
-    Parameters
-    ----------
-    trace, eta : BoundaryBezier
-        Of the keyframes.
-    course : TimeWeights
-        Of η.
-    bounds : Bounds
+    `trace` and `eta` are those of the keyframes; `course` has the time weights of η.
 
     Notes
     -----
-    Where 𝒜 has all of its velocity along a piece, control values are as exact as 𝒜 is. Where it is
-    curbed they are the linear interpolant of what the velocity is at both ends, and are off by as
-    much as the curb may be elsewhere in between: it rises with the velocity and with the limits of
-    it, so that their ranges give its own.
+    Where 𝒜 has its full velocity along a piece, the control values are as exact as 𝒜. Where the
+    velocity is limited, they interpolate linearly between both ends of the piece. The error is then
+    the range of the limited velocity, which rises with the velocity and with its limits.
     """
     full = course.unlimited.controls
     if full is None:
@@ -134,7 +127,7 @@ def _velocity(
     tangent: Tangent,
     bounds: Bounds,
 ) -> tuple[Floats, Floats]:
-    """Return the velocity of 𝒜 at a joint as quadratics (p, 3) along pieces, and its errors."""
+    """Return the velocity of 𝒜 at a tangent as quadratics (p, 3) along pieces, and its errors."""
     joint = tangent.knot
     free = np.einsum("q,pqb->pb", joint.velocity, trace.controls)
     free_error = trace.errors @ np.abs(joint.velocity)

@@ -1,8 +1,8 @@
-"""What variants blend, enclosed: along pieces of the boundary, during pieces of time.
+"""Enclosures of the blended quantities along pieces of the boundary and pieces of time.
 
 In: keyframes and a boundary.
-Out: `EndpointValues` and `BoundaryBezier`, what is known of keyframes along pieces;
-`BernsteinPatch` and `BilinearPatch`, quantities on cells; enclosures of their k, σ_a and σ_b.
+Out: `EndpointValues` and `BoundaryBezier`, the keyframes along pieces; `BernsteinPatch` and
+`BilinearPatch`, quantities on cells; enclosures of k, σ_a and σ_b on cells.
 Imports: `engine.maps`.
 """
 

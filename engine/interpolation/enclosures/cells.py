@@ -1,13 +1,14 @@
 """Enclosures of the distortion on a piece of the boundary during a piece of time.
 
-What a variant blends is a polynomial in time, and along a piece a polynomial in the place, but for
-what is bounded (`engine.interpolation.proof.pieces`): on such a cell it is Σ B_ab c_ab with
-Bernstein's B_ab ≥ 0 of sum 1. Convex functions of it are at most the largest of their values at the
-control values c_ab. With x ≤ Σ B x_ab and g ≤ Σ B g_ab, and x ≤ x⁺, g ≥ g⁻ ≥ 0 on the cell,
+A blended quantity is a polynomial in time, and along a piece a polynomial in the place, up to a
+bounded error (`engine.interpolation.enclosures.pieces`). On such a cell it is Σ B_ab c_ab with
+Bernstein polynomials B_ab ≥ 0 of sum 1. A convex function of it is at most the largest of its
+values at the control values c_ab. With x ≤ Σ B x_ab and g ≤ Σ B g_ab, and x ≤ x⁺, g ≥ g⁻ ≥ 0 on the
+cell,
 
     x g ≤ x⁺ g + g⁻ x − x⁺ g⁻ ≤ max_ab (x⁺ g_ab + g⁻ x_ab) − x⁺ g⁻,
 
-since (x⁺ − x) (g − g⁻) ≥ 0. What an enclosure is too large by falls with the square of the cell.
+since (x⁺ − x) (g − g⁻) ≥ 0. The excess of an enclosure falls with the square of the cell's size.
 """
 
 from collections.abc import Callable
@@ -21,18 +22,14 @@ from engine.arrays import Complexes, Floats, ratio
 from engine.interpolation.enclosures.pieces import number
 from engine.maps import Enclosures
 
-LARGEST_LOGARITHM = 300.0  # what is beyond overflows: nothing is proven there
+LARGEST_LOGARITHM = 300.0  # larger logarithms overflow; nothing is proven there
 
 
 class BernsteinPatch(NamedTuple, Generic[number]):
     """A quantity on cells.
 
-    Parameters
-    ----------
-    controls : float64 or complex128, shape (c, d, b)
-        Along time, and along the place.
-    error : float64, shape (c,)
-        By how much the truth may be elsewhere.
+    `controls` are float64 or complex128 (c, d, b), along time and along the place. `error` (c,)
+    bounds the distance of the quantity from its polynomial.
     """
 
     controls: npt.NDArray[number]
@@ -45,25 +42,24 @@ class BernsteinPatch(NamedTuple, Generic[number]):
         return sizes
 
     def elevated(self) -> "BernsteinPatch[number]":
-        """Return the same, linear or quadratic along the place, as a quadratic."""
+        """Return the patch, linear or quadratic along the place, as a quadratic."""
         if self.controls.shape[2] > 2:
             return self
         first, last = self.controls[..., :1], self.controls[..., -1:]
         return BernsteinPatch(np.concatenate([first, (first + last) / 2, last], axis=2), self.error)
 
     def plus(self, other: "BernsteinPatch[number]") -> "BernsteinPatch[number]":
-        """Return the sum with something linear in time."""
+        """Return the sum with a patch that is linear in time."""
         raised = other.in_time(self.controls.shape[1])
         return BernsteinPatch(self.controls + raised.controls, self.error + raised.error)
 
     def in_time(self, count: int) -> "BernsteinPatch[number]":
-        """Return the same, linear in time, with so many control values along it."""
+        """Return a patch that is linear in time, with `count` control values along time."""
         share = np.linspace(0.0, 1.0, count)[:, None]
         first, last = self.controls[:, :1], self.controls[:, -1:]
         return BernsteinPatch((1.0 - share) * first + share * last, self.error)
 
     def times(self, factor: float) -> "BernsteinPatch[number]":
-        """Return a multiple."""
         return BernsteinPatch(factor * self.controls, abs(factor) * self.error)
 
     def corners(self) -> "BernsteinPatch[number]":
@@ -73,16 +69,10 @@ class BernsteinPatch(NamedTuple, Generic[number]):
 
 
 class BlendChanges(NamedTuple):
-    """What becomes of f_z and conj(f_z̄) after they were blended, as logarithms on cells.
+    """Later changes of the blended f_z and conj(f_z̄), as logarithms on cells.
 
-    Parameters
-    ----------
-    correction : BernsteinPatch
-        Re h (`engine.interpolation.added`).
-    rho : BernsteinPatch
-        ln ρ, by which conj(f_z̄) is scaled.
-    factor : BernsteinPatch
-        ln |ρ + (1 − ρ) e^d|, by which f_z is multiplied where there is a d.
+    `correction` is Re h (`engine.interpolation.added`). `rho` is ln ρ, which scales conj(f_z̄).
+    `factor` is ln |ρ + (1 − ρ) e^d|, which scales f_z around holes.
     """
 
     correction: BernsteinPatch[np.float64]
@@ -97,7 +87,7 @@ class BlendChanges(NamedTuple):
 def enclose_linear(
     conformal: BernsteinPatch[np.complex128], anticonformal: BernsteinPatch[np.complex128]
 ) -> Enclosures:
-    """Enclose of f_z and conj(f_z̄)."""
+    """Enclose the distortion, given f_z and conj(f_z̄)."""
     a = (
         project_on_mean(conformal.controls, (1, 2)) - conformal.error[:, None, None]
     )  # at least |f_z|
@@ -115,16 +105,9 @@ def enclose_exponential(
     log_ratio: BernsteinPatch[np.float64],
     second: BernsteinPatch[np.complex128],
 ) -> Enclosures:
-    """Enclose of ln |f_z|, with |f_z̄| as the absolute value of something times an exponential.
+    """Enclose the distortion, given ln |f_z|; |f_z̄| is exp(log_factor) |second|.
 
-    Parameters
-    ----------
-    log_fz : BernsteinPatch
-    log_factor : BernsteinPatch
-        |f_z̄| is the exponential of it times |second|.
-    log_ratio : BernsteinPatch
-        The same, less ln |f_z|: given by itself, since errors cancel.
-    second : BernsteinPatch
+    `log_ratio` is log_factor − ln |f_z|. It is a separate argument, since errors cancel in it.
     """
     size = second.elevated().highest
     most = _largest(size)[:, None, None]
@@ -149,7 +132,7 @@ def enclose_exponential(
 def enclose_metric(
     trace: BernsteinPatch[np.float64], eta: BernsteinPatch[np.complex128]
 ) -> Enclosures:
-    """Enclose of 𝒜 and η, Equations (10) to (12): 𝒜 ± 2 |η| = σ² and |η| / 𝒜 = k / (1 + k²)."""
+    """Enclose by 𝒜 and η, Equations (10) to (12): 𝒜 ± 2 |η| = σ² and |η| / 𝒜 = k / (1 + k²)."""
     y, error = eta.highest, trace.error[:, None, None]
     share = _largest(ratio(y, trace.controls - error))
     return Enclosures(
@@ -162,17 +145,17 @@ def enclose_metric(
 def enclose_changed_metric(
     trace: BernsteinPatch[np.float64], eta: BernsteinPatch[np.complex128], changes: BlendChanges
 ) -> Enclosures:
-    """Enclose of 𝒜 and η, where f_z and conj(f_z̄) are changed further.
+    """Enclose the distortion, given 𝒜 and η and later changes of f_z and conj(f_z̄).
 
     Notes
     -----
-    With u = ln (|η| / 𝒜) before the changes, and k of it from k / (1 + k²) = e^u,
+    With u = ln (|η| / 𝒜) before the changes, and its k from k / (1 + k²) = e^u,
 
         ln |f_z| = ½ ln 𝒜 − ½ ln (1 + k²),    ln |f_z̄| = ln k + ln |f_z|,
 
-    where ln k, ½ ln (1 + k²) and their difference are convex in u and rise with it. All of these
-    are thus held between chords and tangents, which are linear in 𝒜 and |η|, and so are at most,
-    or at least, Σ B of what they are at the control values.
+    where ln k, ½ ln (1 + k²) and their difference are convex in u and rise with it. Chords and
+    tangents, linear in 𝒜 and |η|, bound all of these from above and below. Their bounds are
+    therefore Σ B of their values at the control values.
     """
     h, log_rho, factor = (each.elevated() for each in changes)
     error = trace.error[:, None, None]
@@ -184,7 +167,7 @@ def enclose_changed_metric(
         ends = _extremes(highest)
         k = k_of_ratio(np.exp(ends))
         log_k, half = np.log(k), 0.5 * np.log1p(k * k)
-        # Below: of ln k, of ½ ln (1 + k²), and of their difference.
+        # Bounds of ln k, of ½ ln (1 + k²), and of their difference.
         bounds = [_between(ends, at, highest) for at in (log_k, half, log_k - half)]
         lowest = _chord(np.log, size_least, size) - log_most
         place = lowest.mean(axis=(1, 2), keepdims=True)
@@ -224,20 +207,20 @@ def _between(ends: Floats, at_ends: Floats, places: Floats) -> Floats:
 
 
 def _chord(function: Callable[[Floats], Floats], least: Floats, most: Floats) -> Floats:
-    """Return the chord of a function over all of a range, at what is least there."""
+    """Return the chord of a function over the whole range, at the lower bounds `least`."""
     ends = np.stack([_extremes(least)[0], _extremes(most)[1]])
     return _between(ends, function(ends), least)
 
 
 def _tangent_of_log(values: Floats) -> Floats:
-    """Return something that is at least the logarithm, linear in what it is of."""
+    """Return a tangent of the logarithm: an upper bound, linear in the values."""
     place = np.maximum(values.mean(axis=(1, 2), keepdims=True), np.finfo(np.float64).tiny)
     tangent: Floats = np.log(place) + (values - place) / place
     return tangent
 
 
 def k_of_ratio(share: Floats) -> Floats:
-    """Return k of |η| / 𝒜 = k / (1 + k²), infinite from 1/2 on."""
+    """Return k with |η| / 𝒜 = k / (1 + k²); infinite for ratios from 1/2 on."""
     inside = share < 0.5
     root = np.sqrt(1.0 - 4.0 * np.where(inside, share, 0.0) ** 2)
     k: Floats = np.where(inside, 2.0 * share / (1.0 + root), inf)
@@ -255,14 +238,14 @@ def project_on_mean(controls: Complexes, axes: int | tuple[int, ...]) -> Floats:
 
 
 def _bounded(log_modulus: BernsteinPatch[np.float64]) -> tuple[Floats, Floats]:
-    """Return control values and errors of a logarithm that do not overflow."""
+    """Return control values and errors of a logarithm, clipped to avoid overflow."""
     error = np.minimum(log_modulus.error, LARGEST_LOGARITHM)[:, None, None]
     log_a: Floats = np.clip(log_modulus.controls, -LARGEST_LOGARITHM, LARGEST_LOGARITHM)
     return log_a, error
 
 
 def _tangent(log_a: Floats, error: Floats) -> Floats:
-    """Return control values of something that is at most |f_z|: its tangent in the logarithm."""
+    """Return control values of a lower bound of |f_z|: the tangent of exp at the logarithm."""
     middle = log_a.mean(axis=(1, 2), keepdims=True)
     below: Floats = np.exp(middle) * (1.0 + log_a - error - middle)
     return below

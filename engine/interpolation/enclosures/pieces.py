@@ -1,8 +1,8 @@
-"""What is known of some keyframes between two points of the boundary.
+"""Bounds of keyframes between two points of the boundary.
 
 On a piece of a segment F = f_z and G = conj(f_z̄) differ from their linear interpolants by at most
-ε (`engine.maps.certificate`). What the variants blend is made of F and G, and follows as Bézier
-curves in the place s along the piece, each with a bound on what it lacks:
+ε (`engine.maps.certificate`). The blended quantities are functions of F and G. They follow as
+Bézier curves in the place s along the piece, each with an error bound:
 
     ln |F|              linear, |ΔF|² / (8 r²) and −ln(1 − ε_f / r),
     F G = conj(η)       quadratic, |F| ε_g + |G| ε_f + ε_f ε_g,
@@ -29,45 +29,41 @@ number = TypeVar("number", np.float64, np.complex128)
 class BoundaryBezier(NamedTuple, Generic[number]):
     """Bézier curves along pieces, one for each keyframe.
 
-    Parameters
-    ----------
-    controls : float64 or complex128, shape (p, q, b)
-    errors : float64, shape (p, q)
-        By how much the truth may be elsewhere; infinite where nothing is known.
+    `controls` are float64 or complex128 (p, q, b). `errors` (p, q) bound the distance of the
+    quantity from the curve; infinite if no bound is known.
     """
 
     controls: npt.NDArray[number]
     errors: Floats
 
     def at(self, which: Indices) -> "BoundaryBezier[number]":
-        """Return those of some of the pieces."""
+        """Return the curves of some of the pieces."""
         return BoundaryBezier(self.controls[which], self.errors[which])
 
     def of(self, keyframes: list[int]) -> "BoundaryBezier[number]":
-        """Return those of some of the keyframes."""
+        """Return the curves of some of the keyframes."""
         return BoundaryBezier(self.controls[:, keyframes], self.errors[:, keyframes])
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Subdivision:
-    """Pieces (p,) of a boundary: its segments, and halves of those for which they were asked for.
+    """Pieces (p,) of a boundary: its segments, and the halves requested so far.
 
-    Parameters
+    Attributes
     ----------
-    span : Span
     coefficients : complex128, shape (n, 2q)
-        Of Φ and Ψ of each keyframe in turn.
+        Coefficients of Φ and Ψ of each keyframe in turn.
     starts, ends : complex128, shape (p,)
     first, last : complex128, shape (p, 2q)
         F and G of each keyframe at both ends.
     epsilon : float64, shape (p, 2q)
-        How far they may be from their linear interpolants.
+        Bound of their distance from the linear interpolants.
     halves : intp, shape (p,)
-        The first of the two pieces that are its halves, −1 where it has none.
+        Index of the first half; the second one follows. −1 without halves.
     parents : intp, shape (p,)
-        What it is half of, −1 where it is a segment.
+        Index of the piece that was halved; −1 for a segment.
     loops : intp, shape (p,)
-        The loop of the boundary that it is on, 0 for the outline.
+        Loop of the boundary that contains the piece; 0 is the outline.
     """
 
     span: Span
@@ -83,7 +79,7 @@ class Subdivision:
 
     @classmethod
     def of(cls, maps: Sequence[Complexes], boundary: Boundary) -> Self:
-        """Begin with the segments of the boundary, and maps by their coefficients (n, 2)."""
+        """Start with the segments of the boundary, and maps given as coefficients (n, 2)."""
         span, following = boundary.span, boundary.next_samples
         coefficients = np.hstack(maps)
         values = boundary.derivatives @ span.without_constant(coefficients)
@@ -102,7 +98,7 @@ class Subdivision:
         )
 
     def halve(self, which: Indices) -> None:
-        """Add the halves of some pieces; the bound on |Φ'''| holds on in each."""
+        """Add the halves of some pieces; the bound on |Φ'''| stays valid in both."""
         new = np.unique(which[self.halves[which] < 0])
         if not len(new):
             return
@@ -121,7 +117,7 @@ class Subdivision:
         self.loops = append_alternately(self.loops, self.loops[new], self.loops[new])
 
     def derivatives(self, since: int) -> "EndpointValues":
-        """Return F and G of the pieces from one on."""
+        """Return F and G of all pieces from index `since` on."""
         first, last, epsilon = self.first[since:], self.last[since:], self.epsilon[since:]
         f0, f1, ef = first[:, ::2], last[:, ::2], epsilon[:, ::2]
         g0, g1, eg = first[:, 1::2], last[:, 1::2], epsilon[:, 1::2]
@@ -141,7 +137,7 @@ class EndpointValues(NamedTuple):
 
     @property
     def least(self) -> Floats:
-        """The least |F| of the linear interpolants, at least."""
+        """Lower bound of |F| of the linear interpolants."""
         turn = np.angle(self.f1 * self.f0.conj())
         r: Floats = np.minimum(np.abs(self.f0), np.abs(self.f1)) * np.cos(turn / 2)
         return r
@@ -155,12 +151,11 @@ class EndpointValues(NamedTuple):
         )
 
     def log_modulus(self) -> BoundaryBezier[np.float64]:
-        """Return ln |F|."""
         ends = np.log(np.abs(np.stack([self.f0, self.f1], axis=2)))
         return BoundaryBezier(ends, self._errors_of_log())
 
     def log_change(self) -> BoundaryBezier[np.complex128]:
-        """Return by how much log F is more than where pieces begin."""
+        """Return the increase of log F from the start of each piece."""
         change = np.log(self.f1 / self.f0)
         return BoundaryBezier(np.stack([0 * change, change], axis=2), self._errors_of_log())
 
@@ -183,7 +178,6 @@ class EndpointValues(NamedTuple):
         return BoundaryBezier(ends, _where_clear(clear, errors))
 
     def conj_eta(self) -> BoundaryBezier[np.complex128]:
-        """Return conj(η)."""
         middle = (self.f0 * self.g1 + self.f1 * self.g0) / 2
         a, b = self.largest
         return BoundaryBezier(
@@ -203,11 +197,11 @@ class EndpointValues(NamedTuple):
         return BoundaryBezier(np.stack(controls, axis=2), errors)
 
     def conformal(self) -> BoundaryBezier[np.complex128]:
-        """Return F itself."""
+        """Return F."""
         return BoundaryBezier(np.stack([self.f0, self.f1], axis=2), self.ef)
 
     def anticonformal(self) -> BoundaryBezier[np.complex128]:
-        """Return G itself."""
+        """Return G."""
         return BoundaryBezier(np.stack([self.g0, self.g1], axis=2), self.eg)
 
 

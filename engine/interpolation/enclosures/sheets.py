@@ -1,8 +1,8 @@
-"""Quantities on cells of boundary and time as bilinear functions, and how far they are off.
+"""Quantities on cells of boundary and time as bilinear functions with error bounds.
 
-What is bilinear is, on its cell, a mean of its values at the corners. A function of bilinear ones
-is off the interpolant of its own corners by at most an eighth of its second derivatives along both
-sides of the cell, added up.
+On its cell, a bilinear function is a mean of its corner values. A function of bilinear functions
+differs from the interpolant of its own corner values. The difference is at most an eighth of the
+sum of its second derivatives along both sides of the cell.
 """
 
 from typing import Any, NamedTuple, Self
@@ -16,12 +16,8 @@ from engine.interpolation.enclosures.cells import BernsteinPatch
 class BilinearPatch(NamedTuple):
     """A quantity on cells (c,).
 
-    Parameters
-    ----------
-    corners : float64 or complex128, shape (c, 2, 2)
-        Along time, and along the place.
-    error : float64, shape (c,)
-        By how much the truth may be off the bilinear interpolant; infinite where nothing is known.
+    `corners` are float64 or complex128 (c, 2, 2), along time and along the place. `error` (c,)
+    bounds the distance from the bilinear interpolant; infinite if no bound is known.
     """
 
     corners: Any
@@ -29,7 +25,7 @@ class BilinearPatch(NamedTuple):
 
     @classmethod
     def of(cls, patch: BernsteinPatch[Any]) -> Self:
-        """Return a patch as a sheet: control values are off the interpolant of its corners."""
+        """Return a patch as a bilinear one; its distance from the interpolant adds to the error."""
         controls = patch.controls
         corners = controls[:, [0, -1]][:, :, [0, -1]]
         along, over = (np.linspace(0.0, 1.0, controls.shape[axis]) for axis in (2, 1))
@@ -50,31 +46,28 @@ class BilinearPatch(NamedTuple):
 
     @property
     def changes(self) -> tuple[Floats, Floats]:
-        """By how much it changes along the place, and over time, at most."""
+        """Largest changes along the place, and over time."""
         along, over = (np.abs(np.diff(self.corners, axis=axis)).max(axis=(1, 2)) for axis in (2, 1))
         return along, over
 
     @property
     def real(self) -> "BilinearPatch":
-        """The real part."""
         return BilinearPatch(self.corners.real, self.error)
 
     def plus(self, other: "BilinearPatch") -> "BilinearPatch":
-        """Return the sum."""
         return BilinearPatch(self.corners + other.corners, self.error + other.error)
 
     def times(self, factor: float) -> "BilinearPatch":
-        """Return a multiple."""
         return BilinearPatch(factor * self.corners, abs(factor) * self.error)
 
     def product(self, other: "BilinearPatch") -> "BilinearPatch":
-        """Return the product: its second derivatives are twice the products of the first ones."""
+        """Return the product; its second derivatives are twice the products of first ones."""
         bend = sum(a * b for a, b in zip(self.changes, other.changes, strict=True)) / 4
         error = self.size * other.error + other.size * self.error + self.error * other.error
         return BilinearPatch(self.corners * other.corners, bend + error)
 
     def exponential(self) -> "BilinearPatch":
-        """Return the exponential, whose size is largest at a corner."""
+        """Return the exponential; its absolute value is largest at a corner."""
         grown = np.exp(self.corners)
         bend = sum(change**2 for change in self.changes) / 8
         return BilinearPatch(grown, np.abs(grown).max(axis=(1, 2)) * (bend + np.expm1(self.error)))
@@ -85,8 +78,8 @@ def log_modulus_of_metric(trace: BilinearPatch, eta: BilinearPatch) -> BilinearP
 
     Notes
     -----
-    With v = |η|², the first derivatives are 1 / (2 D) by 𝒜 and −1 / (2 a² D) by v; the second ones
-    −𝒜 / (2 D³), 1 / D³ and −(1 + 2 a² / D) / (2 a⁴ D²).
+    With v = |η|², the first derivatives are 1 / (2 D) by 𝒜 and −1 / (2 a² D) by v. The second
+    derivatives are −𝒜 / (2 D³), 1 / D³ and −(1 + 2 a² / D) / (2 a⁴ D²).
     """
     squares = np.abs(eta.corners) ** 2
     of_v = 2 * eta.size * eta.error + eta.error**2 + sum(c**2 for c in eta.changes) / 4

@@ -1,7 +1,7 @@
-"""Keyframes at the sites, and what all variants have in common on the way from one to the next.
+"""Keyframes at a sampled domain, and the part of the blend that all variants share.
 
-In: harmonic maps, sites, a course.
-Out: log f_z of in-betweens, and what each keyframe contributes to them.
+In: harmonic maps, a sampled domain, time weights.
+Out: log f_z of in-betweens, and the samples and weight of each keyframe.
 Imports: `engine.interpolation.time_weights`, `engine.interpolation.series`,
 `engine.interpolation.sampled_domain`.
 """

@@ -1,4 +1,4 @@
-"""What every variant blends: the derivatives of Φ and Ψ at the nodes of the paths."""
+"""The derivatives of Φ and Ψ at the path nodes, which every variant blends."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -31,22 +31,22 @@ class Derivatives(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyframeBlend:
-    """The keyframes that the in-betweens of two of them are blended of, and with which weights.
+    """Keyframes and time weights of one segment.
 
-    Build it with `Passage.of`.
+    Build it with `KeyframeBlend.of`.
 
-    Parameters
+    Attributes
     ----------
     keyframes : tuple of KeyframeSamples, length q
-        The two, with those around them for which the course asks.
+        The two keyframes of the segment, and their neighbours as far as the time weights use them.
     sheets : int32, shape (q,)
         Branch of each logarithm, from `root_sheets`.
-    course : TimeWeights
-        Of log f_z and of the anchor.
-    eta_course : TimeWeights
-        Of η, which the metric variant has on another one.
+    time_weights : TimeWeights
+        Weights of log f_z and of the anchor.
+    eta_time_weights : TimeWeights
+        Weights of η; they differ in the metric variant.
     residuals : tuple of Residual
-        What is added to the blend of log f_z.
+        Terms added to the blend of log f_z.
     """
 
     keyframes: tuple[KeyframeSamples, ...]
@@ -62,12 +62,12 @@ class KeyframeBlend:
         sheets: Integers,
         course: TimeWeights | None = None,
     ) -> Self:
-        """Put keyframes and course together; by default two keyframes are blended linearly.
+        """Combine keyframes and time weights; by default two keyframes are blended linearly.
 
         Raises
         ------
         EngineError
-            If there are not as many keyframes and sheets as the course weighs.
+            If the numbers of keyframes, sheets and weights differ.
         """
         course = TimeWeights.straight() if course is None else course
         if not len(keyframes) == len(sheets) == course.count:
@@ -81,7 +81,7 @@ class KeyframeBlend:
 
     @property
     def ends(self) -> tuple[KeyframeSamples, KeyframeSamples]:
-        """The keyframes at time 0 and at time 1."""
+        """The keyframes at times 0 and 1."""
         first = self.time_weights.first
         return self.keyframes[first], self.keyframes[first + 1]
 
@@ -92,7 +92,7 @@ class KeyframeBlend:
         return positions
 
     def at(self, which: Indices) -> Self:
-        """Return the same at some of the nodes (c,) only."""
+        """Return a copy restricted to some of the nodes (c,)."""
         return replace(
             self,
             keyframes=tuple(key.at(which) for key in self.keyframes),
@@ -100,21 +100,18 @@ class KeyframeBlend:
         )
 
     def with_residual(self, residual: Residual) -> Self:
-        """Return the same with something more added to log f_z."""
+        """Return a copy with one more term added to log f_z."""
         return replace(self, residuals=(*self.residuals, residual))
 
     def log_fz(self, time: float) -> tuple[Complexes, Complexes]:
-        """Return Σ w_i log f_z of the keyframes and its derivative, each (s,).
-
-        Residuals are included.
-        """
+        """Return Σ w_i log f_z with residuals, and its derivative, each (s,)."""
         logarithm, logarithm_z = self.log_fz_without_residuals(time)
         for residual in self.residuals:
             residual.add_to(logarithm, logarithm_z, time)
         return logarithm, logarithm_z
 
     def log_fz_without_residuals(self, time: float) -> tuple[Complexes, Complexes]:
-        """Return the same without residuals."""
+        """Return Σ w_i log f_z without residuals, and its derivative, each (s,)."""
         weights = self.time_weights(time)
         # Equation (3), as a logarithm.
         logarithm = weighted_sum([key.log_fz for key in self.keyframes], weights)
@@ -122,14 +119,14 @@ class KeyframeBlend:
         return logarithm, weighted_sum([key.log_fz_z for key in self.keyframes], weights)
 
     def log_fz_at(self, times: Floats) -> Complexes:
-        """Return the former at times (t,), (t, s)."""
+        """Return log f_z with residuals at times (t,), (t, s)."""
         logarithms = self.log_fz_without_residuals_at(times)
         for residual in self.residuals:
             logarithms += residual.at_times(times)
         return logarithms
 
     def log_fz_without_residuals_at(self, times: Floats) -> Complexes:
-        """Return the same without residuals."""
+        """Return log f_z without residuals at times (t,), (t, s)."""
         weights = self.time_weights.at(times).T
         logarithms = combine_arrays(weights, np.array([key.log_fz for key in self.keyframes]))
         logarithms.imag += 2 * np.pi * (weights @ self.sheets)[:, None]
@@ -137,7 +134,7 @@ class KeyframeBlend:
 
 
 def weighted_sum(arrays: Sequence[Complexes], weights: Floats) -> Complexes:
-    """Return Σ w_i a_i; an array whose weight is 0 is not touched."""
+    """Return Σ w_i a_i; arrays of weight 0 are not read."""
     terms = [(a, w) for a, w in zip(arrays, weights, strict=True) if w != 0.0]
     total: Complexes = terms[0][0] * terms[0][1]
     for array, weight in terms[1:]:

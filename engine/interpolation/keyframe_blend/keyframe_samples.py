@@ -1,4 +1,4 @@
-"""Keyframes where in-betweens need them: proven free of folds, and sampled along the paths."""
+"""Keyframes sampled along the paths, and proven free of folds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,14 +22,13 @@ FOLDS = (
 class KeyframeSamples:
     """One keyframe at the nodes of the integration paths (s,) and at the points (m,).
 
-    It depends on the map and the sites only, so that each keyframe is sampled once, whatever its
-    neighbours are. ν = conj(f_z̄) / f_z is holomorphic, and conj(η) = ν f_z² with it.
+    The samples depend on the map and the sampled domain only, so each keyframe is sampled once for
+    all its segments. ν = conj(f_z̄) / f_z is holomorphic, and therefore conj(η) = ν f_z², too.
 
-    Parameters
+    Attributes
     ----------
-    map : HarmonicMap
     log_fz, log_fz_z : complex128, shape (s,)
-        log f_z, the principal value at the anchor, and its derivative f_zz / f_z.
+        log f_z, with the principal value at the anchor, and its derivative f_zz / f_z.
     nu, nu_z : complex128, shape (s,)
         The second dilatation and its derivative.
     anchor_position : complex
@@ -37,7 +36,7 @@ class KeyframeSamples:
     positions : complex128, shape (m,)
         f at the points.
     phi_error, psi_error : complex128, shape (m,)
-        What the quadrature along the paths lacks of Φ and Ψ, which a keyframe has in closed form.
+        Φ and Ψ in closed form, minus their quadrature along the paths.
     """
 
     map: HarmonicMap
@@ -52,11 +51,10 @@ class KeyframeSamples:
 
     @property
     def anchor_fz(self) -> complex:
-        """f_z at the anchor."""
         return complex(np.exp(self.log_fz[0]))
 
     def at(self, which: Indices) -> "KeyframeSamples":
-        """Return what is known at some of the nodes (c,)."""
+        """Return a copy restricted to some of the nodes (c,)."""
         return replace(
             self,
             log_fz=freeze(self.log_fz[which]),
@@ -67,25 +65,19 @@ class KeyframeSamples:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
+        """Memory of the arrays without the map, in bytes."""
         return nbytes_of(self, but=(self.map,))
 
 
 def sample_keyframes(
     maps: Sequence[HarmonicMap], sites: SampledDomain
 ) -> tuple[KeyframeSamples, ...]:
-    """Sample maps over one cage; one pass over the nodes' logarithms serves all of them.
-
-    Parameters
-    ----------
-    maps : sequence of HarmonicMap
-        Maps over the sites' cage.
-    sites : SampledDomain
+    """Sample maps over the cage of the sampled domain; all maps share one pass over the nodes.
 
     Raises
     ------
     EngineError
-        If a map folds anywhere in the domain, or cannot be proven not to.
+        If a map folds anywhere in the domain, or if a fold cannot be excluded.
     """
     if not maps:
         raise EngineError("There is no keyframe to sample; give one at least.")
@@ -95,8 +87,8 @@ def sample_keyframes(
     span = sites.boundary.span
     coefficients = np.hstack([f.coefficients for f in maps])
     values, first_order, second_order = span.evaluate(coefficients, paths.nodes, orders=(0, 1, 2))
-    # Φ and Ψ themselves go on from turn to turn around a hole: a log(z − c) has an argument, which
-    # the span leaves out since it cancels in f.
+    # Φ and Ψ themselves change with each turn around a hole: log(z − c) has an argument. The
+    # span leaves it out, since it cancels in f.
     ends = np.concatenate([[0], paths.places])
     values = values[ends]
     values.imag += sites.arguments @ coefficients[len(span.vertices) :].real
@@ -115,7 +107,7 @@ def _samples(
     first_order: Complexes,
     second_order: Complexes,
 ) -> KeyframeSamples:
-    """Pack what was evaluated of one keyframe; the two columns of each array are of Φ and Ψ."""
+    """Pack the values of one keyframe; the two columns of each array belong to Φ and Ψ."""
     (fz, g), (fzz, gz) = first_order.T, second_order.T
     log_fz_z = fzz / fz
     nu = g / fz
@@ -140,7 +132,7 @@ def _samples(
 
 
 def _require_unfolded(f: HarmonicMap, sites: SampledDomain, number: int) -> None:
-    """Refuse a keyframe that is not proven to be locally injective in the whole domain."""
+    """Raise if a keyframe is not proven to be locally injective in the whole domain."""
     certificate = certify(f, sites.boundary, LocalBounds(k=1.0, sigma_a=np.inf, sigma_b=0.0))
     if certificate.is_certified:
         return
@@ -168,7 +160,7 @@ def _require_unfolded(f: HarmonicMap, sites: SampledDomain, number: int) -> None
 
 
 def _turns(fz: Complexes, sites: SampledDomain) -> Indices:
-    """Return how often f_z, at the samples of the boundary, winds around 0 along each hole."""
+    """Return the winding number of f_z around 0 along each hole, from the boundary samples."""
     starts = sites.boundary.starts
     following = next_on_loop(starts, len(fz))
     angles = np.angle(fz[following] / fz)

@@ -1,4 +1,4 @@
-"""All that the in-betweens of two neighbouring keyframes are made of, but for their variant."""
+"""The input of the in-betweens of two neighbouring keyframes, without the variant."""
 
 from typing import NamedTuple
 
@@ -11,14 +11,10 @@ from engine.maps import Bounds
 
 
 class BoundaryResidual(NamedTuple):
-    """What the metric variant adds to log f_z, known on the boundary: it serves any points.
+    """The metric variant's addition to log f_z, given on the boundary and valid for any points.
 
-    Parameters
-    ----------
-    densities : Densities
-        Of few holomorphic functions (j,).
-    series : PiecewiseSeries
-        What they are multiplied by.
+    `densities` are those of a few holomorphic functions (j,); `series` are their coefficients in
+    time.
     """
 
     densities: Densities
@@ -26,29 +22,26 @@ class BoundaryResidual(NamedTuple):
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
         return nbytes_of(self)
 
 
 class KeyframeSegment(NamedTuple):
-    """Two keyframes at the sites, and how the motion leads from one to the other.
+    """Two keyframes at a sampled domain, and how the motion leads from one to the other.
 
-    What it has is shared, not copied: sites by all keyframes, keyframes by the intervals on both
-    sides.
+    The parts are shared, not copied: all keyframes share the sampled domain, and both neighbouring
+    segments share a keyframe.
 
-    Parameters
+    Attributes
     ----------
-    sites : SampledDomain
-    passage : KeyframeBlend
-        The keyframes, with those around them that the course weighs.
+    keyframe_blend : KeyframeBlend
+        The keyframes, with all neighbours that have a time weight.
     bounds : Bounds
-        That metric and a scaled variant obey along courses that are not straight; else they obey
-        their keyframes' own.
+        Bounds for the metric and the scaled variants with curved time weights. Otherwise the bounds
+        are those of the keyframes.
     transform : Extension or None
-        Of the sites' outline, at the nodes of their paths; variants that `needs_transform` says so
-        of need it.
+        Transform of the outline at the path nodes; required by variants with `needs_transform`.
     residual : BoundaryResidual or None
-        What `Blend.on_boundary` returned for these keyframes at any sites of the domain.
+        Result of `Blend.on_boundary` for these keyframes and any points of the domain.
     """
 
     sampled_domain: SampledDomain

@@ -1,12 +1,12 @@
-"""In-betweens proven: the boundary times an interval of time, cut until every cell is tight.
+"""Proof of in-betweens: boundary × time is subdivided until the bound on every cell is tight.
 
-f_z of an in-between has no zeros, being an exponential, and no winding; so the extremes of k, σ_a
-and σ_b are on the boundary at every time (Theorem 4 of Chen and Weber 2015). The linear blend has
-f_z without zeros on the boundary at all times, where k < 1 is proven, and so none inside: at the
-keyframes it has none. Around holes all of that holds for the whole boundary.
+f_z of an in-between is an exponential: it has no zeros and no winding. The extremes of k, σ_a and
+σ_b are therefore on the boundary at every time (Theorem 4 of Chen and Weber 2015). For the linear
+blend, a proof of k < 1 excludes zeros of f_z on the boundary at all times. As the keyframes have no
+zeros inside, there are none inside at any time. Around holes the same holds for the whole boundary.
 
-The proof is of the in-betweens as they are defined; what is drawn differs from them by rounding,
-and with the metric variant by the accuracy of the integral equation.
+The proof is of the in-betweens as they are defined. A drawn in-between differs by rounding, and in
+the metric variant by the accuracy of the integral equation.
 """
 
 from dataclasses import dataclass
@@ -21,29 +21,29 @@ from engine.interpolation.proof.corrected_cells import CorrectedCellEnclosures
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells
 from engine.maps import Enclosures
 
-# Cells are cut until the enclosure is this close to what is attained: of k, and as a share of σ_a
-# and of σ_b.
+# Cells are cut until the enclosure is this close to an attained value: absolute for k, relative for
+# σ_a and σ_b.
 TIGHTNESS = 0.0005
-LEAST = 0.05  # of σ_a: what σ_b counts as at least there
-SHORTEST = 2.0**-24  # pieces of time are not cut below this
+LEAST = 0.05  # of σ_a: a smaller σ_b counts as this in the relative tightness
+SHORTEST = 2.0**-24  # shorter pieces of time are not cut
 DEEPEST = 40
-NAMED = 2.0**-8  # how short a stretch of time is that is named as one where something folds
-MOST_CELLS = 400_000  # that are looked at
+NAMED = 2.0**-8  # longest time reported as unproven without a further cut
+MOST_CELLS = 400_000  # enclosed in all
 BLOCK = 8192  # cells at a time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof:
-    """What is proven of the in-betweens of two keyframes, for the closed domain and all times.
+    """Proven bounds of the in-betweens of two keyframes, for the closed domain and all times.
 
-    Parameters
+    Attributes
     ----------
     k, sigma_a, sigma_b : float
-        k and σ_a are never larger, σ_b is never smaller; infinite, and 0, where nothing is proven.
-    unsettled, loose : tuple of (float, float)
-        Stretches of time, from 0 to 1: those in which an in-between folds or is not proven not to,
-        none if none ever does, and others in which some enclosure is not within `TIGHTNESS` of what
-        is attained.
+        Upper bounds of k and σ_a, lower bound of σ_b. Without a proof infinite, and 0 for σ_b.
+    unproven_times : tuple of (float, float)
+        Times in [0, 1] at which a fold is not excluded; empty if no in-between folds.
+    not_tight : tuple of (float, float)
+        Times at which a bound exceeds the attained value by more than `TIGHTNESS`.
     """
 
     k: float
@@ -59,14 +59,10 @@ class Proof:
 
 
 def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
-    """Enclose the distortion of in-betweens, or of one frame: cut cells until they are tight.
+    """Enclose the distortion of all in-betweens, or of the frame at `time` in [0, 1] alone.
 
-    Parameters
-    ----------
-    inbetweens : Inbetweens
-        With corrections their sites have the samples of the boundary (`Sites.sample_nodes`).
-    time : float, optional
-        In [0, 1]; the proof is of this frame alone.
+    Corrected in-betweens need a sampled domain with the boundary samples
+    (`SampledDomain.sample_nodes`).
     """
     require_kind(inbetweens, Inbetweens, "what is proven")
     keyframes = inbetweens.keyframe_blend.keyframes
@@ -79,7 +75,6 @@ def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
 
 
 def _bisect(pieces: Subdivision, enclosures: CellEnclosures, cuts: Floats) -> Proof:
-    """Cut cells until they are tight."""
     none = np.array([0.0])
     attained = proven = Enclosures(none, none, none + inf)
     count = len(pieces.halves)
@@ -99,7 +94,7 @@ def _bisect(pieces: Subdivision, enclosures: CellEnclosures, cuts: Floats) -> Pr
         tight, unfolded = _are_tight(enclosed, attained), (enclosed.k < 1) & (enclosed.sigma_b > 0)
         by_time = np.concatenate([block.by_time for block in found])
         long = pending.end - pending.start > NAMED
-        # What is as bad as anywhere may still be so for a short time only.
+        # The worst value may be attained for a short time only; further cuts in time show it.
         by_time |= tight & long
         loose = ~(tight & (unfolded | ~long))
         unsettled.append(pending.at(~loose & ~unfolded))
@@ -134,7 +129,7 @@ def _cut(pieces: Subdivision, chosen: Cells, by_time: Booleans) -> Cells:
 
 
 def _are_tight(enclosed: Enclosures, attained: Enclosures) -> Booleans:
-    """Tell which cells are no worse than what is attained anywhere; not a number is not."""
+    """Return which cells exceed the attained extremes by `TIGHTNESS` at most; NaN does not."""
     sigma_a, sigma_b = attained.sigma_a, attained.sigma_b
     tight: Booleans = enclosed.k <= attained.k + TIGHTNESS
     tight &= enclosed.sigma_a <= sigma_a + TIGHTNESS * sigma_a
@@ -147,7 +142,7 @@ def _together(parts: list[Enclosures]) -> Enclosures:
 
 
 def _worst(one: Enclosures, other: Enclosures) -> Enclosures:
-    """Return the extremes of both; not a number stays so."""
+    """Return the extremes of both; NaN stays NaN."""
     return Enclosures(
         np.append(one.k, other.k).max(keepdims=True),
         np.append(one.sigma_a, other.sigma_a).max(keepdims=True),
@@ -156,7 +151,7 @@ def _worst(one: Enclosures, other: Enclosures) -> Enclosures:
 
 
 def _merged(parts: list[Cells]) -> tuple[tuple[float, float], ...]:
-    """Return the stretches of time that cells cover together."""
+    """Return the union of the cells' times as disjoint pieces."""
     starts, ends = (np.concatenate([getattr(p, end) for p in parts]) for end in ("start", "end"))
     order = np.argsort(starts)
     stretches: list[tuple[float, float]] = []

@@ -1,4 +1,4 @@
-"""How cells of corrected in-betweens are enclosed: by sheets of F e^h and G e^{σh} + q K e^h."""
+"""Enclosures of corrected in-betweens: bilinear patches of F e^h and G e^{σh} + q K e^h."""
 
 import numpy as np
 
@@ -25,11 +25,7 @@ from engine.maps import Enclosures
 class CorrectedCellEnclosures(CellEnclosures):
     """Enclosures on cells of in-betweens with corrections.
 
-    Parameters
-    ----------
-    inbetweens : Inbetweens
-        Whose sites have the samples of the boundary (`Sites.sample_nodes`).
-    pieces : Subdivision
+    The sampled domain of the in-betweens has the boundary samples (`SampledDomain.sample_nodes`).
     """
 
     def __init__(self, inbetweens: Inbetweens, pieces: Subdivision) -> None:
@@ -46,21 +42,20 @@ class CorrectedCellEnclosures(CellEnclosures):
         ]
         passage, nodes = inbetweens.keyframe_blend, inbetweens.sampled_domain.sample_nodes()
         logs = [key.log_fz[nodes] for key in passage.keyframes]
-        # log F of the keyframes where pieces begin, and how it goes on.
+        # log F of the keyframes at the start of each piece; its increase along the piece follows.
         self._logs = np.array(logs).T + 2j * np.pi * np.asarray(passage.sheets)
         self._time_weights = passage.time_weights
         self._log_changes = pieces.derivatives(0).log_change()
 
     @property
     def cuts(self) -> Floats:
-        """The times, from 0 to 1, over which no cell may reach, float64 (b,)."""
+        """Times from 0 to 1 that no cell may cross, float64 (b,)."""
         cuts = super().cuts
         for h, _ in self._corrections:
             cuts = np.union1d(cuts, h.breaks)
         return cuts
 
     def of(self, chosen: Cells) -> CellResults:
-        """Enclose cells."""
         self._catch_up()
         first, second = self._blended(chosen)
         known = [tuple(each.on(*chosen) for each in both) for both in self._corrections]
@@ -91,7 +86,7 @@ class CorrectedCellEnclosures(CellEnclosures):
         second: BernsteinPatch[np.complex128],
         corrections: list[tuple[BilinearPatch, BilinearPatch]],
     ) -> tuple[Floats, BilinearPatch, BilinearPatch, BilinearPatch]:
-        """Return |f_z| at least, |f_z| and conj(f_z̄), up to a phase, and their ratio."""
+        """Return a lower bound of |f_z|, then |f_z|, conj(f_z̄) up to a phase, and their ratio."""
         log_k = BilinearPatch.of(self._log_l(chosen))
         if self._is_linear:
             a, b = BilinearPatch.of(first), BilinearPatch.of(second)
@@ -107,7 +102,7 @@ class CorrectedCellEnclosures(CellEnclosures):
             log_a, share = BilinearPatch.of(first), BilinearPatch.of(second)
             if closing is not None:
                 log_a = log_a.plus(closing.real)
-                # K = L² / F, and F has what closes periods.
+                # K = L² / F, and F contains the h that closes periods.
                 lost = closing.times(-2.0).exponential()
                 corrections = [(h, q.product(lost)) for h, q in corrections]
             for h, q in corrections:
@@ -123,7 +118,7 @@ class CorrectedCellEnclosures(CellEnclosures):
         if closing is not None:
             log_a = log_a.plus(closing.real)
         eta, log_a = self._scaled(chosen, eta, log_a)
-        # F G after each: q F K e^{2h} more, and F K is L² at first.
+        # Each correction adds q F K e^{2h} to F G; F K is L² before the corrections.
         for h, q in corrections:
             log_a, log_k = log_a.plus(h.real), log_k.plus(h)
             eta = eta.plus(q.product(log_k.times(2.0).exponential()))
@@ -139,7 +134,7 @@ class CorrectedCellEnclosures(CellEnclosures):
         return blend_curves(BoundaryBezier(controls, known.errors), weights)
 
     def _catch_up(self) -> None:
-        """Learn the pieces that were added since."""
+        """Add the pieces created since the last call."""
         super()._catch_up()
         since = len(self._logs)
         if since == len(self._pieces.halves):

@@ -1,7 +1,7 @@
-"""Holomorphic functions that are added to a blend, on cells: what closes periods, and pins.
+"""Holomorphic corrections on cells: closed periods and pins.
 
 Along a piece of the boundary a function of the span differs from its linear interpolant by at most
-h² max|H''| / 2, with |H''| ≤ Σ |dS_j| / (2π d_j) as in `engine.maps.certificate`; in time a series
+h² max|H''| / 2, with |H''| ≤ Σ |dS_j| / (2π d_j) as in `engine.maps.certificate`. In time a series
 differs from its chord by an eighth of its second derivative, which the coefficients bound.
 """
 
@@ -16,17 +16,11 @@ from engine.interpolation.enclosures import BernsteinPatch, Subdivision, append_
 from engine.interpolation.series import HoleConstants, PiecewiseSeries
 from engine.maps import Boundary
 
-LEFT_OUT = 1e-9  # of what closes periods: what its series leave out, and rounding
+LEFT_OUT = 1e-9  # bound of rounding and of the terms omitted from the series of h
 
 
 class LinearEnclosures(NamedTuple):
-    """Series on pieces of time (c,): values at both ends, and how far off the chord is.
-
-    Parameters
-    ----------
-    ends : float64, shape (c, 2, j)
-    errors : float64, shape (c, j)
-    """
+    """Series on pieces of time: values at both ends, (c, 2, j), errors of the chords, (c, j)."""
 
     ends: Floats
     errors: Floats
@@ -42,7 +36,7 @@ class TimeSeries:
         self._bends = np.abs(second).sum(axis=1) * (2.0 / lengths[:, None]) ** 2
 
     def linear_enclosures(self, starts: Floats, ends: Floats) -> LinearEnclosures:
-        """Return the chords of pieces of time, none of which reaches over a break."""
+        """Return the chords of pieces of time; no piece may cross a break."""
         middles = (starts + ends) / 2
         piece = np.searchsorted(self.series.breaks, middles, side="right") - 1
         piece = np.clip(piece, 0, len(self._bends) - 1)
@@ -56,14 +50,11 @@ class CorrectionEnclosure:
     Parameters
     ----------
     functions : complex128, shape (n, j)
-        Of the span.
-    series : PiecewiseSeries
-        Of their coefficients.
-    boundary : Boundary
+        Coefficients in the span.
     pieces : Subdivision
-        At the beginning, when its pieces are the boundary's segments.
+        Still without halves: its pieces are the boundary's segments.
     constants : HoleConstants, optional
-        Of the boundaries of holes; they are taken off.
+        Constants on the boundaries of holes; they are subtracted.
     """
 
     def __init__(
@@ -84,23 +75,24 @@ class CorrectionEnclosure:
         values = self._values(boundary.points)
         self._ends = np.stack([values, values[boundary.next_samples]], axis=1)
         self._lost = None if constants is None else TimeSeries(constants.series)
-        # By the loops of the boundary, of which the outline loses nothing.
+        # Constants by loop of the boundary; the outline has none.
         self._by_loop = np.zeros((0, 0))
         if constants is not None:
             self._by_loop = np.pad(constants.at_holes, ((1, 0), (0, 0)))
 
     @property
     def breaks(self) -> Floats:
-        """Where time is to be cut."""
+        """Times at which cells must be cut."""
         own = self._series.series.breaks
         return own if self._lost is None else np.union1d(own, self._lost.series.breaks)
 
     def on(
         self, piece: Indices, starts: Floats, ends: Floats
     ) -> tuple[BernsteinPatch[np.complex128], Floats]:
-        """Return it on cells, linear in time and along the piece, and what of its error is time's.
+        """Return the sum on cells, linear in time and along the piece, and its error due to time.
 
-        The latter, float64 (c,), is due to the pieces of time, the rest to those of the boundary.
+        The second value is the part (c,) of the error due to the pieces of time; the rest is due to
+        the pieces of the boundary.
         """
         self._catch_up()
         modes, errors = self._ends[piece], self._errors[piece]
@@ -116,7 +108,7 @@ class CorrectionEnclosure:
         return BernsteinPatch(controls, in_place + in_time), in_time
 
     def _catch_up(self) -> None:
-        """Learn the pieces that were added since."""
+        """Add the pieces created since the last call."""
         pieces = self._pieces
         parents = pieces.parents[len(self._errors) :: 2]
         if not len(parents):
@@ -139,6 +131,6 @@ def closing_on(
     pieces: Subdivision,
     constants: HoleConstants | None = None,
 ) -> CorrectionEnclosure:
-    """Return what closes periods around holes."""
+    """Return the enclosure of h, which closes periods around holes."""
     functions, series = closing.functions.coefficients, closing.series
     return CorrectionEnclosure(functions, series, boundary, pieces, constants)

@@ -1,4 +1,4 @@
-"""How cells are enclosed: the quantities that a variant blends, and what becomes of them."""
+"""Enclosures on cells of the blended quantities and of their later changes."""
 
 from typing import Any, NamedTuple
 
@@ -16,24 +16,23 @@ from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.correction import closing_on
 from engine.maps import Enclosures
 
-PARTS = 4  # into which time is cut at first
-LEAST = 1.0  # what the changes of a quantity are compared with, at least
+PARTS = 4  # number of initial pieces of time
+LEAST = 1.0  # lower bound of the scale to which changes of a quantity are compared
 
 
 class Cells(NamedTuple):
-    """Pieces of the boundary (c,), from one time to another."""
+    """Pieces of the boundary (c,), each from one time to another."""
 
     piece: Indices
     start: Floats
     end: Floats
 
     def at(self, which: Booleans | slice) -> "Cells":
-        """Return some of them."""
         return Cells(self.piece[which], self.start[which], self.end[which])
 
 
 class CellResults(NamedTuple):
-    """What is proven of cells, what is attained at their corners, and which to cut across time."""
+    """Proven bounds of cells, attained corner values, and the cells to cut in time."""
 
     enclosed: Enclosures
     attained: Enclosures
@@ -41,14 +40,7 @@ class CellResults(NamedTuple):
 
 
 class CellEnclosures:
-    """Enclosures of an interval's in-betweens on cells.
-
-    Parameters
-    ----------
-    inbetweens : Inbetweens
-    pieces : Subdivision
-        Of the boundary; it may grow later on.
-    """
+    """Enclosures of a segment's in-betweens on cells; `pieces` may gain halves later."""
 
     def __init__(self, inbetweens: Inbetweens, pieces: Subdivision) -> None:
         self._pieces = pieces
@@ -66,14 +58,13 @@ class CellEnclosures:
 
     @property
     def cuts(self) -> Floats:
-        """The times, from 0 to 1, over which no cell may reach, float64 (b,)."""
+        """Times from 0 to 1 that no cell may cross, float64 (b,)."""
         cuts = np.linspace(0.0, 1.0, PARTS + 1)
         for each in (self._h, self._d):
             cuts = cuts if each is None else np.union1d(cuts, each.breaks)
         return cuts
 
     def of(self, chosen: Cells) -> CellResults:
-        """Enclose cells."""
         self._catch_up()
         first, second = self._blended(chosen)
         changes, off_in_time = self._changes(chosen)
@@ -87,7 +78,6 @@ class CellEnclosures:
         )
 
     def _blended(self, chosen: Cells) -> tuple[BernsteinPatch[Any], BernsteinPatch[Any]]:
-        """Return the two quantities that are blended."""
         first, second = (
             blend_curves(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
             for curves, course in zip(self._curves, self._blend.curve_weights, strict=True)
@@ -95,13 +85,13 @@ class CellEnclosures:
         return first, second
 
     def _closing(self, chosen: Cells) -> BilinearPatch | None:
-        """Return h, which closes periods, less the constants that it makes good."""
+        """Return h, which closes periods, minus the constants that it makes up for."""
         return None if self._h is None else BilinearPatch.of(self._h.on(*chosen)[0])
 
     def _scaled(
         self, chosen: Cells, eta: BilinearPatch, log_fz: BilinearPatch
     ) -> tuple[BilinearPatch, BilinearPatch]:
-        """Return conj(η) and ln |f_z| after Ψ was scaled by ρ."""
+        """Return conj(η) and ln |f_z| after Ψ is scaled by ρ."""
         if self._rho is None:
             return eta, log_fz
         values, errors = self._rho.linear_enclosures(chosen.start, chosen.end)
@@ -116,9 +106,9 @@ class CellEnclosures:
         return eta, log_fz
 
     def _changes(self, chosen: Cells) -> tuple[BlendChanges | None, Floats]:
-        """Return what the corrections around holes and the scaling of Ψ do to cells.
+        """Return the changes of cells by the corrections around holes and by the scaling of Ψ.
 
-        Beside it, (c,), how far they are off because the cells are long in time.
+        The second value (c,) is the part of the error due to the cells' length in time.
         """
         nothing = np.zeros(len(chosen.piece))
         if self._h is None and self._rho is None:
@@ -141,7 +131,7 @@ class CellEnclosures:
 
     @staticmethod
     def _by_time(off_in_time: Floats, *patches: BernsteinPatch[Any]) -> Booleans:
-        """Tell along which side cells are to be cut."""
+        """Return which cells to cut in time; the others are cut along the boundary."""
         in_time, in_place = off_in_time.copy(), -off_in_time
         for patch in patches:
             size = np.maximum(np.abs(patch.controls).max(axis=(1, 2)), LEAST)
@@ -152,7 +142,7 @@ class CellEnclosures:
         return more
 
     def _catch_up(self) -> None:
-        """Learn the pieces that were added since."""
+        """Add the pieces created since the last call."""
         since = len(self._curves[0].errors)
         if since < len(self._pieces.halves):
             first, second = self._blend.curves(self._pieces.derivatives(since))
@@ -162,10 +152,10 @@ class CellEnclosures:
 def _factor(
     d: BernsteinPatch[np.complex128], log_rho: BernsteinPatch[np.float64]
 ) -> BernsteinPatch[np.float64]:
-    """Return ln |w|, w = ρ + (1 − ρ) e^d, of which f_z is that for ρ = 1 times w.
+    """Return ln |w|, w = ρ + (1 − ρ) e^d, by which f_z for ρ = 1 is multiplied.
 
-    Between its values at the corners it is off by an eighth of its second derivatives along both
-    sides of the cell, and by its first ones times what d and ln ρ are off themselves.
+    Between its corner values the error is an eighth of its second derivatives along both sides of
+    the cell. The errors of d and ln ρ, times its first derivatives, are added.
     """
     rho = np.exp(log_rho.controls)
     least = np.exp(log_rho.controls.min(axis=(1, 2)) - log_rho.error)

@@ -1,4 +1,4 @@
-"""The correction of one frame: targets for handles, within the limits of the distortion."""
+"""The correction of one frame: targets for handles, within the distortion limits."""
 
 from dataclasses import dataclass
 
@@ -22,8 +22,8 @@ from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds
 
-# How far inside the limits the samples end, one after the other until the frame is proven; then it
-# is shortened by so much, as often.
+# Distances from the limits at the samples, tried in turn until the frame is proven. If all fail the
+# correction is multiplied by SHORTER, at most MOST_SHORTER times.
 INSIDES = (INSIDE, 4 * INSIDE, 16 * INSIDE)
 SHORTER, MOST_SHORTER = 0.95, 12
 
@@ -32,15 +32,13 @@ SHORTER, MOST_SHORTER = 0.95, 12
 class FrameCorrection:
     """A correction of one frame.
 
-    Parameters
+    Attributes
     ----------
     known : CorrectionSeries
-        The same at all times.
-    misses : float64, shape (m,)
-        Target errors of the points.
-    steps : int
-    is_held_back : bool
-        Whether it came near a limit, so that it is proven here.
+        Constant in time.
+    target_errors : float64, shape (m,)
+    is_limited : bool
+        Whether the correction came near a limit, so that the limits are proven here.
     reached : (float, float, float)
         The largest k and σ_a, and the smallest σ_b, at the samples of the boundary.
     """
@@ -62,21 +60,9 @@ def correct_frame(
 ) -> FrameCorrection:
     """Correct an in-between within bounds, or within its own distortion beyond them.
 
-    A correction that comes near a limit is proven to keep it between the samples, too; it ends
-    farther inside where that is not so, and where no such frame is found, it is shortened.
-
-    Parameters
-    ----------
-    inbetweens : Inbetweens
-        As `base_at` wants them.
-    corrector : PointCorrector
-        For the handles.
-    base : CorrectionBase
-        Of these in-betweens at the time.
-    time : float
-    targets : PointTargets
-        For the handles.
-    bounds : Bounds
+    Near a limit, a proof shows that the correction keeps the limit between the samples, too.
+    Without a proof the correction is solved again farther inside the limits, and at last shortened.
+    `inbetweens` are as in `evaluate_base`, and `base` is theirs at the time.
     """
     nodes, samples = base.nodes, base.samples
     found = solve_within(corrector, nodes, samples, targets, bounds)
@@ -112,6 +98,6 @@ def correct_frame(
 
 
 def _proven(inbetweens: Inbetweens, time: float) -> Floats:
-    """Return the largest ln σ_a, −ln σ_b and k that a frame is proven to have, (3,)."""
+    """Return proven bounds of ln σ_a, −ln σ_b and k of a frame, (3,)."""
     proof = prove(inbetweens, time)
     return log_limits(proof.sigma_a, proof.sigma_b, proof.k)

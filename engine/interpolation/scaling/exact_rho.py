@@ -21,16 +21,16 @@ from engine.interpolation.series import PiecewiseSeries
 from engine.interpolation.time_weights import TimeWeights
 from engine.maps import Bounds, HarmonicMap
 
-# Segments between the samples of the outline, over the distance to the nearest cage vertex and over
-# the diameter. Interpolation between them is then right to 1e-7.
+# Length of the segments between samples of the outline, relative to the distance to the nearest
+# vertex of the cage and to the diameter. Interpolation between samples is then accurate to 1e-7.
 SEGMENT_PER_DISTANCE = 0.2
 SEGMENT_PER_SIZE = 1 / 400
-GAIN = 1e-7  # by which a stretch must promise to lower ρ to be looked at
-MANY = 4096  # stretches that are refined at a time
-RUN = 16  # times at whose ends all samples are looked at
+GAIN = 1e-7  # a segment is refined if it may lower ρ by more
+MANY = 4096  # segments that are refined at a time
+RUN = 16  # number of times in a run; all samples are evaluated at its ends only
 BESIDE = 2  # samples on either side of a low one
-MARGIN = 0.05  # by which a sample may be lower in between than both ends of a run tell
-# Part of the interval beside each key in which the bounds tighten, from the worst of the outline to
+MARGIN = 0.05  # a sample may be lower within a run than at both ends, by this ratio
+# Share of the segment beside each key in which the bounds tighten, from the worst of the outline to
 # each point's own.
 BESIDE_KEY = 0.24
 
@@ -41,26 +41,25 @@ Rows = TypeVar("Rows", Floats, Booleans)
 class ExactRho:
     """The largest ρ at each time: the minimum of the pointwise ratios over the outline.
 
-    Being a minimum, it has a kink in time wherever another point or another bound takes over;
-    in-betweens use `engine.interpolation.scaling.Scaling`.
+    This minimum has a kink in time wherever another point or another bound becomes the lowest.
+    In-betweens therefore use `engine.interpolation.scaling.SmoothedRho`.
 
     Departs from the paper: next to a keyframe a point's own bounds leave no room where f_z̄ nearly
-    vanishes. ρ would fall within a moment, and the shape jump. Beside a key (`BESIDE_KEY`) this ρ
-    therefore comes by and by from the one for which the bounds are the worst of the outline. On the
+    vanishes. ρ would fall within a moment, and the shape would jump. Beside each key (`BESIDE_KEY`)
+    ρ is therefore blended, by a C^∞ step, from the ρ for the outline-wide worst bounds. On the
     outline Properties 5 to 7 hold point by point away from the keys; Properties 5' to 7' always do.
-    Along a course that is not straight the given bounds take their place everywhere.
+    With curved time weights the given bounds replace the keyframes' own everywhere.
 
-    Parameters
+    Attributes
     ----------
-    course : TimeWeights
     curves : OutlineCurves
         f_z and conj(f_z̄) of the keyframes.
     samples : PointSamples
         At the outline's samples (p,), in order along it, its vertices among them.
-    worst : KeyframeExtremes
-        Of the keyframes; with the given bounds, where the course is not straight.
+    extremes : KeyframeExtremes
+        Worst extremes of the keyframes, joined with the given bounds for curved time weights.
     closings : tuple of PiecewiseSeries
-        Around holes those of h and of d.
+        Series of h and d around holes.
     """
 
     time_weights: TimeWeights
@@ -78,7 +77,7 @@ class ExactRho:
         bounds: Bounds,
         closings: tuple[Closing, ...] = (),
     ) -> Self:
-        """Sample the keyframes of a course along the outline (p,), and along their holes."""
+        """Sample the weighted keyframes along the outline (p,) and along the holes."""
         span = maps[0].span
         longest = SEGMENT_PER_SIZE * diameter(outline)
         sampled = [
@@ -115,8 +114,8 @@ class ExactRho:
     def __call__(self, times: Floats) -> Floats:
         """Return ρ in (0, 1] at times (s,) in (0, 1), in ascending order.
 
-        Times are taken in runs: of the samples, only those that are low at the ends of a run, or
-        on the way to become so, are looked at in between.
+        Times are taken in runs. Within a run only those samples are evaluated that are low, or
+        falling towards low values, at the ends of the run.
         """
         if not self.time_weights.is_straight:
             return self._minima(times, is_own=False)
@@ -152,7 +151,7 @@ class ExactRho:
         return np.minimum((1.0 - TOO_HIGH) * lowest, 1.0)
 
     def _bounded(self, samples: PointSamples, *, is_own: bool) -> PointSamples:
-        """Return samples with their own bounds, wider around holes, or with the worst ones."""
+        """Return samples with their own bounds, wider around holes, or with the worst bounds."""
         return (
             replace(samples, largest_extremes=self.extremes)
             if is_own
@@ -166,7 +165,7 @@ class ExactRho:
         return np.concatenate([keys, *series])
 
     def _promising(self, chosen: Indices, ratios: Floats) -> Booleans:
-        """Tell from which of some samples (c,) segments start that may hold a minimum, (s, c)."""
+        """Mark the samples (c,) that start a segment with a possible minimum, (s, c)."""
         around = _wrapped(ratios, 1, 2)
         drops = np.abs(np.diff(around, axis=1))
         drop = np.maximum(drops[:, 1:-1], np.maximum(drops[:, :-2], drops[:, 2:]))
@@ -178,10 +177,10 @@ class ExactRho:
     def _refine(
         self, times: Floats, lowest: Floats, when: Indices, segment: Indices, *, is_own: bool
     ) -> None:
-        """Lower the minima by what is found on segments (c,) at times `when` (c,).
+        """Lower the minima by the values on segments (c,) at times `when` (c,).
 
-        The ratios have kinks where the worse keyframe changes, so that the stretches around low
-        places are only cut finer, round after round: no parabola is fitted.
+        The ratios have kinks where the worse keyframe changes. The segments are therefore halved
+        repeatedly around low places, and no parabola is fitted.
         """
         place, width = np.full(len(when), 0.5), 0.5
         weights, keys = self._weights(times), self.time_weights.count
@@ -201,7 +200,7 @@ class ExactRho:
 
 
 def blend_in_outline_bounds(times: Floats) -> Floats:
-    """Return how far the bounds are those of the whole outline: a C^∞ step, 1 at both keys."""
+    """Return the blend weight of the outline-wide bounds: 1 at both keys, 0 inside, C^∞."""
     beside = np.minimum(times, 1 - times) / BESIDE_KEY
     inside = np.clip(beside, 1e-3, 1 - 1e-3)
     steps = 0.5 + 0.5 * np.tanh(0.5 / inside - 0.5 / (1.0 - inside))
@@ -209,12 +208,9 @@ def blend_in_outline_bounds(times: Floats) -> Floats:
 
 
 def _low_samples(at_ends: Floats) -> Booleans:
-    """Tell which samples may be lowest at some time of a run, or are beside one, (runs, p).
+    """Mark the samples that may be lowest within a run, and their neighbours, (runs, p).
 
-    Parameters
-    ----------
-    at_ends : float64, shape (runs + 1, p)
-        The ratios at the times between runs, and at the first and the last one.
+    `at_ends` (runs + 1, p) are the ratios at the ends of all runs.
     """
     change = np.abs(np.diff(at_ends, axis=0))
     lowest = at_ends.min(axis=1)
@@ -227,5 +223,5 @@ def _low_samples(at_ends: Floats) -> Booleans:
 
 
 def _wrapped(rows: Rows, before: int, after: int) -> Rows:
-    """Return rows (n, p) of loops with some of their last and first entries on either side."""
+    """Return rows (n, p) of loops, extended by some of their last and first entries."""
     return np.hstack([rows[:, rows.shape[1] - before :], rows, rows[:, :after]])

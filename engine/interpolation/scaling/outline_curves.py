@@ -1,4 +1,4 @@
-"""Keyframes between the samples of an outline, and the worst that they do there."""
+"""Keyframes between the samples of an outline, and their extremes there."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -9,9 +9,10 @@ from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.geometry import next_on_loop
 from engine.interpolation.scaling.pointwise import NEGLIGIBLE, KeyframeExtremes, PointSamples
 
-# To which the worst bounds are known, or a scaling by them could have no room.
+# Accuracy of the worst bounds. With less, a scaling by them could have no room.
 EXACT = NEGLIGIBLE / 10
-# Into which a stretch around an extreme is cut; each round makes it PARTS / 2 times shorter.
+# Number of parts of a segment around an extreme; each round makes the segment PARTS / 2 times
+# shorter.
 PARTS = 8
 ROUNDS = 8
 
@@ -20,19 +21,19 @@ ROUNDS = 8
 class OutlineCurves:
     """Holomorphic functions between the samples of an outline, by Hermite interpolation.
 
-    Each segment has its own polynomial of degree 7 in w = (z − start) / span, in Newton's form: the
-    functions and their derivatives agree at four samples around it.
+    Each segment has its own polynomial of degree 7 in w = (z − start) / span, in Newton's form. It
+    matches the functions and their derivatives at four samples around the segment.
 
-    Parameters
+    Attributes
     ----------
     places : complex128, shape (8, p)
         w of the four samples of each segment, each twice.
     coefficients : complex128, shape (8, 2 q + j + i, p)
-        f_z of the keyframes, conj(f_z̄) of them, and the modes of h and d.
+        f_z of the keyframes, conj(f_z̄) of the keyframes, and the modes of h and d.
     counts : (int, int)
         q and j.
     following : intp, shape (p,)
-        The sample at which each segment ends.
+        The sample at the end of each segment.
     """
 
     places: Complexes
@@ -85,7 +86,8 @@ class OutlineCurves:
     def at(self, segment: Indices, places: Floats, weights: Floats | None = None) -> PointSamples:
         """Return the samples at places (c, s), each from 0 to 1, along segments (c,).
 
-        In place of the modes they have their sums with weights (j + i, c), or none at all.
+        With weights (j + i, c) the sums of the modes replace the modes. Without weights the modes
+        are left out.
         """
         nodes, coefficients = self.places[:, segment], self.coefficients[:, :, segment]
         count, modes = self.counts
@@ -104,7 +106,7 @@ class OutlineCurves:
 
 
 def keyframe_extremes(curves: OutlineCurves) -> KeyframeExtremes:
-    """Return the extremes of the keyframes along the outline, between the samples too."""
+    """Return the extremes of the keyframes along the outline, also between the samples."""
     segments = np.arange(len(curves.following))
     grid = places_around(np.full(len(segments), 0.5), 0.5)
     found = curves.at(segments, grid)
@@ -115,9 +117,9 @@ def keyframe_extremes(curves: OutlineCurves) -> KeyframeExtremes:
 
 
 def _least(curves: OutlineCurves, places: Floats, values: Floats, of: str, sign: int) -> float:
-    """Return the least value of a distortion, times a sign, that has these at places (c, s).
+    """Return the least value of a distortion, times a sign, given its values at places (c, s).
 
-    All stretches that may hold it are cut finer: next to a sample there is one on either side.
+    All segments that may contain the minimum are subdivided, on both sides of a sample.
     """
     segments, width, least = np.arange(len(values)), 0.5, float(values.min())
     for _ in range(ROUNDS):
@@ -134,5 +136,5 @@ def _least(curves: OutlineCurves, places: Floats, values: Floats, of: str, sign:
 
 
 def places_around(place: Floats, width: float) -> Floats:
-    """Return places (c, PARTS + 1) around some (c,) within their segments."""
+    """Return places (c, PARTS + 1) around places (c,), within their segments."""
     return np.clip(place[:, None] + width * np.linspace(-1.0, 1.0, PARTS + 1), 0.0, 1.0)

@@ -1,8 +1,8 @@
 """The largest ρ within the bounds of a point (Section 7.3, Appendix A).
 
-Around holes the period of f_z and that of ρ f_z̄ close together, so that the correction depends on
-ρ. Both are closed for ρ = 1 (F e^h, G e^−h) and for ρ = 0 (F e^(h + d), 0), and what is between is
-the mean of both maps with the weights ρ and 1 − ρ: closed for every ρ, and
+Around holes the periods of f_z and ρ f_z̄ close together, so the correction depends on ρ. Both
+periods are closed for ρ = 1 (F e^h, G e^−h) and for ρ = 0 (F e^(h + d), 0). For other ρ the map is
+the mean of both maps with the weights ρ and 1 − ρ. It is closed for every ρ, and
 
     F_ρ = F e^h (ρ + (1 − ρ) e^d),    G_ρ = ρ G e^−h.
 """
@@ -15,9 +15,9 @@ import numpy as np
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
 from engine.maps import Bounds
 
-NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, whatever the bounds
-CEILING = 2.0  # ratios are cut off there: only those below 1 matter
-TOO_HIGH = 2e-7  # by which a minimum that is found may be too high; taken off
+NEGLIGIBLE = 1e-9  # f_z̄ / f_z below which no scaling is needed, for any bounds
+CEILING = 2.0  # larger ratios are cut off: only ratios below 1 matter
+TOO_HIGH = 2e-7  # largest excess of a computed minimum; it is subtracted
 
 type_ = TypeVar("type_", Floats, Complexes)
 
@@ -31,7 +31,7 @@ class KeyframeExtremes:
     sigma_b: float
 
     def widened(self, bounds: Bounds) -> "KeyframeExtremes":
-        """Return the looser of some bounds and these, with slack for what `TOO_HIGH` takes off."""
+        """Return the looser of these and some bounds, with slack to offset `TOO_HIGH`."""
         slack = 5 * TOO_HIGH
         return KeyframeExtremes(
             k=max(self.k * (1 + slack), bounds.k),
@@ -42,9 +42,9 @@ class KeyframeExtremes:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointSamples:
-    """What ρ depends on at some points, for q keyframes; `...` is any shape.
+    """The quantities at some points that determine ρ, for q keyframes; `...` is any shape.
 
-    Parameters
+    Attributes
     ----------
     log_modulus : float64, shape (q + j, ...)
         ln |f_z|, and the real parts of the modes of h.
@@ -53,9 +53,9 @@ class PointSamples:
         The larger k and sigma_a and the smaller sigma_b of the keyframes: Properties 5 to 7.
     conformal : complex128, shape (i, ...)
         The modes of d; none without holes.
-    widest : KeyframeExtremes or None
-        Around holes h takes more of a point's own bounds than is left; they are wider by as much
-        as h and d change the map, but not wider than this. None leaves them as they are.
+    largest_extremes : KeyframeExtremes or None
+        Around holes h exceeds a point's own bounds. The bounds are then widened by as much as h and
+        d change the map, up to these extremes. None keeps the bounds.
     """
 
     log_modulus: Floats
@@ -91,27 +91,20 @@ class PointSamples:
         )
 
     def with_bounds(self, worst: KeyframeExtremes | None) -> Self:
-        """Return the same points with the worst bounds of the outline, or with their own."""
+        """Return the points with the worst bounds of the outline; None keeps their own bounds."""
         if worst is None:
             return self
         k, sigma_a, sigma_b = (np.array([x]) for x in (worst.k, worst.sigma_a, worst.sigma_b))
         return replace(self, k=k, sigma_a=sigma_a, sigma_b=sigma_b)
 
     def largest_rhos(self, weights: Floats) -> Floats:
-        """Return the largest scaling that each point allows at a time.
+        """Return the largest scaling that each point allows at a time, at most `CEILING`.
+
+        `weights` (q + j + i, ...) are those of the keyframes and of the modes. They broadcast with
+        the shape of the points.
 
         Departs from the paper: in these equations and in the denominators of Section 7.3 the bars
         were lost; the factor of ρ is |f_z̄|.
-
-        Parameters
-        ----------
-        weights : float64, shape (q + j + i, ...)
-            Of the keyframes and of the modes, each to be broadcast with the points' shape.
-
-        Returns
-        -------
-        float64
-            Of the common shape, at most `CEILING`.
         """
         count = len(self.log_modulus)
         a = np.exp(_total(weights[:count], self.log_modulus))
@@ -133,10 +126,10 @@ def largest_rho(
 ) -> Floats:
     """Return the largest ρ within limits of k, σ_a and σ_b for |F_1| = a, |G_1| = b, F_0 = F_1 e^d.
 
-    Without d it scales G alone.
+    Without d, ρ scales G alone.
     """
     k, sigma_a, sigma_b = limits
-    # ρ_k, ρ_a and ρ_b of Section 7.3 have the denominator |f_z̄| in common.
+    # ρ_k, ρ_a and ρ_b of Section 7.3 have the same denominator |f_z̄|.
     slack = np.minimum(
         k * a,  # Equation (16)
         np.minimum(
@@ -154,10 +147,10 @@ def largest_rho(
 
 
 def _tight(ratios: Floats, a: Floats, d: Complexes, bounds: Floats) -> Booleans:
-    """Tell where another |F_0| than |F_1| = a may change ratios, like all of the shape of `a`.
+    """Mark the points where d may change the ratio, with the shape of `a`; there |F_0| ≠ |F_1| = a.
 
-    With ε ≥ |e^d − 1|, |F_ρ| differs from |F_1| by at most ε |F_1|. Where the bounds have that room
-    no ρ leaves them, and the ratio stays what it is, above 1.
+    With ε ≥ |e^d − 1|, |F_ρ| differs from |F_1| by at most ε |F_1|. If the bounds have this room,
+    every ρ keeps them, and the ratio stays above 1.
     """
     most = np.expm1(np.abs(d).max(initial=0.0))
     _, sigma_a, sigma_b = bounds
@@ -169,9 +162,8 @@ def _tight(ratios: Floats, a: Floats, d: Complexes, bounds: Floats) -> Booleans:
 def _with_conformal(a: Floats, b: Floats, d: Complexes, bounds: Floats) -> Floats:
     """Return the largest ρ at points (n,) with |F_1| = a, |G_1| = b and F_0 = F_1 e^d.
 
-    The bounds (3, n) are those of k, sigma_a and sigma_b. |F_ρ|² is a quadratic in ρ, and so is
-    each of them. Where the map for ρ = 0 is beyond a bound there is no telling: the bound is left
-    to the others.
+    The bounds (3, n) are those of k, sigma_a and sigma_b. |F_ρ|² and each condition are quadratic
+    in ρ. A bound that the map for ρ = 0 exceeds gives no ρ and is ignored.
     """
     # a² |e^d|², and the products of a e^d and a − a e^d.
     k, sigma_a, sigma_b = bounds
@@ -187,8 +179,8 @@ def _with_conformal(a: Floats, b: Floats, d: Complexes, bounds: Floats) -> Float
     inverse = np.full(a.shape, 1.0 / CEILING)
     with np.errstate(invalid="ignore"):
         for c0, c1, c2 in quadratics:
-            # The first ρ at which c0 + 2 c1 ρ + c2 ρ² > 0; where there is none the root is no
-            # number, which `fmax` passes over.
+            # The first ρ with c0 + 2 c1 ρ + c2 ρ² > 0. Without a solution the root is NaN, which
+            # `fmax` ignores.
             root = c1 + np.sqrt(c1 * c1 - c2 * c0)
             root = np.divide(root, -c0, out=np.zeros_like(root), where=c0 < 0)
             np.fmax(inverse, root, out=inverse)

@@ -1,4 +1,4 @@
-"""A ρ that is C^∞ in time: Property 4 for scaled η (Section 5.5 leaves that to others)."""
+"""A ρ that is C^∞ in time: Property 4 for scaled η, which Section 5.5 leaves to future work."""
 
 import math
 from collections.abc import Callable
@@ -11,38 +11,37 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from engine.arrays import Floats, Indices, freeze, ragged_indices
 
-# Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))), so that a window of
-# constant width in u narrows towards both keyframes, where ρ has to be 1.
+# Time is stretched to u, t = 1 / (1 + exp(−STRETCH sinh(u / STRETCH))). A window of constant width
+# in u therefore narrows towards both keyframes, where ρ must be 1.
 STRETCH = 2.0
 SPACING = 1 / 192
-FARTHEST = 7.125  # |u| from which on time is a keyframe's, to rounding
-HALF_WINDOW = 3  # samples on each side from which the value at a time is taken
-# Every so many samples the sharp ρ is looked at first, and in the middle between two of them. What
-# is between these is interpolated where that would have told the middle to `SMOOTH`: but around
-# its kinks.
+FARTHEST = 7.125  # for larger |u| the time equals that of a keyframe, to rounding
+HALF_WINDOW = 3  # samples on each side of a window's middle
+# The exact ρ is first evaluated at every COARSEST-th sample and halfway between two of them. Away
+# from kinks the interpolation predicts the middle to `SMOOTH`; the other samples are interpolated.
 COARSEST = 8
 SMOOTH = 3e-7
 MIDDLE = (3, -25, 150, 150, -25, 3)  # over 256, of six samples: the polynomial through them
-# What the difference from the sharp ρ is enlarged by, since it is seen at the samples only.
+# Factor on the difference from the exact ρ, which is evaluated at the samples only.
 CAUTION = 1.25
 ROUNDING = 2e-7
-STRIPS = 128  # of each sample's surroundings, on which ρ is bounded from above
+STRIPS = 128  # per sample; upper and lower bounds of ρ are constant on a strip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SmoothedRho:
-    """A C^∞ function of time between two keyframes, nowhere above the sharp ρ, and 1 at both.
+    """A C^∞ function of time between two keyframes, nowhere above the exact ρ, and 1 at both ends.
 
-    ln ρ is fitted at each time by the parabola through the samples of a window, weighted by a C^∞
-    bump. Where the sharp ρ is smooth the fit returns it to some 1e-6; around a kink it cuts the
-    corner. What it would be too high by near a time is taken off, likewise smoothed.
+    At each time ln ρ is the value of a parabola fitted to the samples of a window, weighted by a
+    C^∞ bump. Where the exact ρ is smooth the fit reproduces it to some 1e-6; at a kink it rounds
+    the corner. The excess of the fit near a time is smoothed likewise and subtracted.
 
-    Parameters
+    Attributes
     ----------
     logarithms : float64, shape (s,)
-        ln ρ of the sharp scaling at the samples of u, and some beyond both ends.
+        ln ρ of the exact scaling at the samples of u, and at some beyond both ends.
     excess : float64, shape (s,)
-        The most by which the fit is above them within a window around each.
+        Largest excess of the fit over the samples within a window around each sample.
     """
 
     logarithms: Floats
@@ -50,7 +49,7 @@ class SmoothedRho:
 
     @classmethod
     def of(cls, sharp: Callable[[Floats], Floats]) -> Self:
-        """Sample a sharp ρ and fit it."""
+        """Sample an exact ρ and fit it."""
         count = round(2 * FARTHEST / SPACING) + 1
         u = np.linspace(-FARTHEST, FARTHEST, count)
         logarithms = _sampled(lambda at: np.log(sharp(unstretch_times(at))), u)
@@ -61,7 +60,7 @@ class SmoothedRho:
         above = np.where(above > 0.0, CAUTION * above + ROUNDING, 0.0)
         around = HALF_WINDOW + 1
         windows = sliding_window_view(np.pad(above, around), 2 * around + 1)
-        # Beyond the ends time is a keyframe's and ln ρ is 0.
+        # Beyond the ends the time is that of a keyframe, and ln ρ is 0.
         beyond = HALF_WINDOW + 1
         return cls(
             logarithms=freeze(np.pad(logarithms, beyond)),
@@ -70,7 +69,7 @@ class SmoothedRho:
 
     @property
     def least(self) -> float:
-        """The smallest ρ that it may have."""
+        """Lower bound of ρ."""
         return math.exp(float((self.logarithms - self.excess).min()))
 
     def __call__(self, time: float) -> float:
@@ -78,7 +77,6 @@ class SmoothedRho:
         return float(self.at(np.array([time]))[0])
 
     def at(self, times: Floats) -> Floats:
-        """Return ρ at times (t,)."""
         place = _places(times)
         nearest = np.rint(place)
         fit, mean = _weights(place - nearest)
@@ -90,13 +88,13 @@ class SmoothedRho:
         return rho
 
     def enclosures(self) -> "RhoEnclosures":
-        """Return what is proven of ρ on pieces of time."""
+        """Return bounds of ρ on pieces of time."""
         fits, means = _weights((np.arange(STRIPS) + 0.5) / STRIPS - 0.5)
         width = 2 * HALF_WINDOW + 1
         windows = sliding_window_view(self.logarithms, width)
         excess = sliding_window_view(self.excess, width)
-        # The weights sum to 1, so that of the values only their range counts; and as a fit follows
-        # what is linear, only that of what is not.
+        # The weights sum to 1, so only the range of the values matters. A fit reproduces linear
+        # functions, so for fits only the range of the nonlinear part matters.
         samples = np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
         slope = windows @ samples / (samples @ samples)
         bent, of_excess = _steepness()
@@ -119,13 +117,8 @@ class SmoothedRho:
 class RhoEnclosures:
     """Bounds of ln ρ on strips of the stretched time.
 
-    Parameters
-    ----------
-    scaling : SmoothedRho
-    lowest, highest : float64, shape (s,)
-        From half a sample before the first window's middle on.
-    times : float64, shape (s + 1,)
-        The ends of the strips.
+    `lowest` and `highest` (s,) start half a sample before the middle of the first window. `times`
+    (s + 1,) are the ends of the strips.
     """
 
     scaling: SmoothedRho
@@ -134,16 +127,10 @@ class RhoEnclosures:
     times: Floats
 
     def linear_enclosures(self, starts: Floats, ends: Floats) -> tuple[Floats, Floats]:
-        """Return ln ρ at both ends of pieces of time (c,), and by how much it may be off the chord.
-
-        Returns
-        -------
-        float64, shape (c, 2)
-        float64, shape (c,)
-        """
+        """Return ln ρ at both ends of pieces of time, (c, 2), and the chords' errors, (c,)."""
         pairs, which = np.unique(np.stack([starts, ends]), axis=1, return_inverse=True)
         values = np.log(np.stack([self.scaling.at(times) for times in pairs], axis=1))
-        # By the strips before and behind, against rounding.
+        # One strip more on either side, against rounding.
         first = np.maximum(self._strip(pairs[0]) - 1, 0)
         counts = np.minimum(self._strip(pairs[1]) + 2, len(self.highest)) - first
         owner, place = ragged_indices(counts)
@@ -155,7 +142,7 @@ class RhoEnclosures:
         above = self.highest[strip] - chord.min(axis=0)
         off = np.maximum(above, chord.max(axis=0) - self.lowest[strip])
         errors = np.maximum(np.maximum.reduceat(off, counts.cumsum() - counts), 0.0)
-        # At a single time nothing lies between the ends.
+        # A single time has no points between its ends.
         errors = np.where(length > 0, errors, 0.0)
         return values[which], errors[which]
 
@@ -164,13 +151,13 @@ class RhoEnclosures:
 
 
 def unstretch_times(u: Floats) -> Floats:
-    """Return the times in (0, 1) of stretched ones."""
+    """Return the times in (0, 1), given stretched times."""
     times: Floats = 1.0 / (1.0 + np.exp(-STRETCH * np.sinh(u / STRETCH)))
     return times
 
 
 def _places(times: Floats) -> Floats:
-    """Return where times in [0, 1] are among the samples, at most one beyond the ends."""
+    """Return times in [0, 1] as fractional indices of samples, at most one beyond the ends."""
     with np.errstate(divide="ignore"):
         u = STRETCH * np.arcsinh((np.log(times) - np.log1p(-times)) / STRETCH)
     places: Floats = np.clip((u + FARTHEST) / SPACING, -1.0, round(2 * FARTHEST / SPACING) + 1.0)
@@ -180,7 +167,7 @@ def _places(times: Floats) -> Floats:
 def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
     """Return the values of a function, 0 beyond both ends, at equidistant places (s,).
 
-    Where it is smooth most of them are interpolated.
+    Most values are interpolated where the function is smooth.
     """
     values, rough = np.empty(len(u)), np.ones(len(u), np.bool_)
     step = COARSEST
@@ -193,7 +180,7 @@ def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
         found = function(u[looked])
         wrong = looked[np.abs(found - values[looked]) > SMOOTH]
         values[looked] = found
-        # A kink is within half a step of one that is wrong, and the next stencils reach 5/4 steps.
+        # A kink is within half a step of a wrong sample, and the next stencils reach 5/4 steps.
         near = wrong[:, None] + np.arange(-2 * step, 2 * step + 1)
         rough[:] = False
         rough[np.clip(near, 0, len(u) - 1)] = True
@@ -202,12 +189,10 @@ def _sampled(function: Callable[[Floats], Floats], u: Floats) -> Floats:
 
 
 def _weights(offsets: Floats) -> tuple[Floats, Floats]:
-    """Return by how much each sample of a window counts at offsets (t,) from its middle.
+    """Return the weights of a window's samples at offsets (t,) from its middle.
 
-    Returns
-    -------
-    fit, mean : float64, shape (t, 2 HALF_WINDOW + 1)
-        Of the value of the fitted parabola, and of the mean; both sum to 1.
+    The first weights give the fitted parabola's value, the second the mean. Each has the shape
+    (t, 2 HALF_WINDOW + 1) and sum 1.
     """
     samples = np.arange(-HALF_WINDOW, HALF_WINDOW + 1)
     place = (samples - offsets[:, None]) / (HALF_WINDOW + 0.5)
@@ -225,9 +210,9 @@ def _weights(offsets: Floats) -> tuple[Floats, Floats]:
 
 @cache
 def _steepness() -> tuple[float, float]:
-    """Return how fast a fit and a mean may change with the offset, over the range of the values."""
+    """Return the largest slopes of a fit and a mean by the offset, for values of range 1."""
     fits, means = _weights(np.linspace(-0.5, 0.5, 1025))
-    # The weights are smooth; the margin covers what their steepest place is off the samples.
+    # The weights are smooth; the margin covers steeper places between the samples.
     return tuple(
         1.05 * float(np.abs(np.diff(each, axis=0)).sum(axis=1).max()) * 1024 / 2
         for each in (fits, means)

@@ -1,7 +1,7 @@
-"""Functions of time as Chebyshev series, alone or times functions of the place.
+"""Functions of time as Chebyshev series, alone or multiplied by functions of space.
 
 In: functions of time.
-Out: series on pieces of time; few functions of the place, each times a series.
+Out: series on pieces of time; a few functions of space, each times a series.
 Imports: `engine.arrays`.
 """
 

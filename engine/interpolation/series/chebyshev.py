@@ -1,4 +1,4 @@
-"""Chebyshev series: what an analytic function of time is on a piece of it."""
+"""Chebyshev series: an analytic function of time on pieces of time."""
 
 import math
 from collections import deque
@@ -17,10 +17,10 @@ from engine.arrays import Floats, freeze
 
 Result = TypeVar("Result")
 
-DEGREES = (12, 24)  # of the series of a piece of time; half the degree mostly does
+DEGREES = (12, 24)  # of the series of a piece of time; half the degree usually suffices
 LAST_TERMS = 3
-HOPE = 10.0  # times the tolerance: what the next degree may be expected to leave
-SURELY = 0.1  # of what may be left out
+HOPE = 10.0  # times the tolerance: the next degree is tried if the expected error is below
+SURELY = 0.1  # of `left_out`
 SHORTEST = 2.0**-30  # pieces of time are not halved below this
 
 
@@ -28,14 +28,14 @@ SHORTEST = 2.0**-30  # pieces of time are not halved below this
 def chebyshev_nodes(degree: int) -> Floats:
     """Return the extrema (degree + 1,) of T_degree, from −1 to 1.
 
-    Every other one of them is one of half the degree.
+    Every second extremum is an extremum for half the degree.
     """
     return freeze(chebyshev.chebpts2(degree + 1))
 
 
 @cache
 def to_coefficients(degree: int) -> Floats:
-    """Return the matrix that takes the values at `nodes` to the coefficients of their series."""
+    """Return the matrix from values at `chebyshev_nodes` to the coefficients of the series."""
     inverse = np.linalg.inv(chebyshev.chebvander(chebyshev_nodes(degree), degree))
     return freeze(np.asarray(inverse, dtype=np.float64))
 
@@ -56,12 +56,8 @@ def _orders(count: int) -> Floats:
 class PiecewiseSeries:
     """Some functions of time as Chebyshev series on pieces of [0, 1].
 
-    Parameters
-    ----------
-    breaks : float64, shape (b + 1,)
-        Ends of the pieces, from 0 to 1.
-    coefficients : float64, shape (b, n, j)
-        Of T_0 … T_(n − 1) in each piece.
+    `breaks` (b + 1,) are the ends of the pieces, from 0 to 1. `coefficients` (b, n, j) are those of
+    T_0 … T_(n − 1) in each piece.
     """
 
     breaks: Floats
@@ -90,22 +86,17 @@ class PiecewiseSeries:
 
 
 def constant_one() -> PiecewiseSeries:
-    """Return one function, which is 1 at all times."""
+    """Return one function that is 1 at all times."""
     return PiecewiseSeries(
         breaks=freeze(np.array([0.0, 1.0])), coefficients=freeze(np.ones((1, 1, 1)))
     )
 
 
 class Resolved(NamedTuple):
-    """Functions of time on a piece of it.
+    """Functions of time on a piece of time.
 
-    Parameters
-    ----------
-    start, end : float
-    coefficients : float64, shape (N, n)
-        Of T_0 … T_(n − 1).
-    missing : float
-        The largest of the last terms: about what the series leaves out.
+    `coefficients` (N, n) are those of T_0 … T_(n − 1). `missing` is the largest of the last terms,
+    an estimate of the truncation error.
     """
 
     start: float
@@ -123,31 +114,31 @@ def resolve_series(
     shortest: float = SHORTEST,
     most: float = inf,
 ) -> Generator[None, None, list[Resolved]]:
-    """Write functions of time as series on pieces, which are halved until their last terms are few.
+    """Write functions of time as series on pieces, halved until the last terms are small.
 
-    It may be left after each evaluation.
+    The caller may leave the generator after each evaluation.
 
     Parameters
     ----------
     values : callable
         Returns the functions at times (t,) in [0, 1], float64 (N, t).
     tolerance : float
-        Of the last terms.
+        Limit of the last terms.
     degrees : tuple of int
-        That are tried, each twice the one before, whose nodes serve it.
+        Degrees to try. Each is twice the previous one and reuses its nodes.
     breaks : sequence of float
-        From 0 to 1: where the functions may have kinks.
+        Times from 0 to 1 at which the functions may have kinks.
     shortest : float
-        Piece of time that is not halved any more.
+        Shorter pieces of time are not halved.
     most : float
-        Pieces that are tried.
+        Largest number of pieces to try.
 
     Returns
     -------
     list of Resolved
-        In the order of time; `missing` is above the tolerance where they cannot be resolved.
+        In the order of time; `missing` is above the tolerance in unresolved pieces.
     """
-    # The longest first: easy stretches are covered before the hard ones take all attempts.
+    # The longest piece first: easy pieces are finished before hard pieces use up all attempts.
     pending, found, tried = deque(pairwise(breaks)), [], 0
     while pending and tried < most:
         tried += 1
@@ -168,7 +159,7 @@ def _tried(
     tolerance: float,
     degrees: tuple[int, ...],
 ) -> Generator[None, None, Resolved]:
-    """Write functions of time as series on one piece, of the first degree that does."""
+    """Write functions of time as series on one piece, with the lowest sufficient degree."""
     at_nodes, before = None, inf
     for degree in degrees:
         times = start + (end - start) * (1.0 + chebyshev_nodes(degree)) / 2
@@ -181,7 +172,7 @@ def _tried(
         yield
         coefficients = at_nodes @ to_coefficients(degree).T
         missing = float(np.abs(coefficients[:, -LAST_TERMS:]).max(initial=0.0))
-        # At the rate at which the terms came down, the next degree brings their ratio squared.
+        # If the terms fall at the same rate, the next degree multiplies them by the squared ratio.
         if missing <= tolerance or not missing * (missing / before) ** 2 <= HOPE * tolerance:
             break
         before = missing
@@ -203,17 +194,17 @@ def separate_variables(
     Parameters
     ----------
     values, tolerance, shortest, breaks, degrees
-        As in `resolve`.
+        As in `resolve_series`.
     left_out : float
-        The most that the forms which are left out add to the functions.
+        Largest sum of the omitted terms.
     vanishing : bool
-        Whether they are 0 at times 0 and 1, and the series made exactly so.
+        Whether the functions are 0 at times 0 and 1. Then the series are made exactly 0 there.
 
     Returns
     -------
     forms : float64, shape (N, j)
     series : PiecewiseSeries
-        Of the j coefficients; the functions are `forms @ series(t)`.
+        Series of the j coefficients; the functions are `forms @ series(t)`.
     """
     pieces = finish(
         resolve_series(
@@ -230,26 +221,26 @@ def separate_variables(
 def compress_series(
     pieces: Sequence[Resolved], left_out: float, *, least: int = 1
 ) -> tuple[Floats, PiecewiseSeries]:
-    """Write resolved functions as sums of forms (N, j) times series, but for a small rest.
+    """Write resolved functions as sums of at least `least` forms (N, j) times series.
 
-    There are `least` forms or more.
+    The omitted terms sum up to at most `left_out`.
     """
     count = max(piece.coefficients.shape[1] for piece in pieces)
     padded = np.zeros((len(pieces), count, len(pieces[0].coefficients)))
     for row, piece in zip(padded, pieces, strict=True):
         row[: piece.coefficients.shape[1]] = piece.coefficients.T
     rows = padded.reshape(-1, padded.shape[2])
-    # Where a lower degree did, the other rows are 0.
+    # In a piece of a lower degree the other rows are 0.
     used = np.asarray(rows.any(axis=1))
     used[0] = True
     columns = rows[used].T
-    # The singular vectors of the triangle are those of the columns, and it is far smaller. (Those
-    # of a Gram matrix would have half the digits.)
+    # The triangle R of a QR decomposition has the singular vectors of the columns, and is far
+    # smaller. (A Gram matrix would lose half the digits.)
     _, sizes, functions = np.linalg.svd(np.linalg.qr(columns, mode="r"), full_matrices=False)
     spread = np.zeros((len(sizes), len(used)))
     spread[:, used] = sizes[:, None] * functions
     series = spread.reshape(len(sizes), len(pieces), count)
-    # Forms have the length 1, and no entry above: those that are surely left out are not formed.
+    # Forms have length 1, so no entry above 1. Forms that are certainly omitted are not computed.
     most = np.abs(series).sum(axis=2).max(axis=1)
     formed = max(1, int(np.count_nonzero(most[::-1].cumsum() > SURELY * left_out)))
     forms = columns @ functions[:formed].T
@@ -264,7 +255,7 @@ def compress_series(
 
 
 def finish(steps: Generator[None, None, Result]) -> Result:
-    """Take all steps that are left, and return what comes of them."""
+    """Run a generator to its end, and return its result."""
     while True:
         try:
             next(steps)
@@ -274,7 +265,7 @@ def finish(steps: Generator[None, None, Result]) -> Result:
 
 
 def _vanishing_at_ends(breaks: Floats, coefficients: Floats) -> Floats:
-    """Take off the rounding that is left at the keyframes, so that they come out exactly."""
+    """Remove the rounding errors at times 0 and 1, so that the keyframes are exact."""
     signs = (-1.0) ** np.arange(coefficients.shape[1])
     first, last = signs @ coefficients[0], coefficients[-1].sum(axis=0)
     at_breaks = first + np.multiply.outer(breaks, last - first)

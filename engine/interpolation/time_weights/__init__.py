@@ -1,7 +1,7 @@
-"""The way from one keyframe to the next in time, and through keyframes at one velocity.
+"""Time weights from one keyframe to the next, and through keyframes with continuous velocity.
 
-In: how the motion passes keyframes; bounds.
-Out: weights of the keyframes at any time; tangents that are short enough.
+In: end conditions at keyframes; bounds.
+Out: weights of the keyframes at any time; tangents short enough for the bounds.
 Imports: `engine.maps`.
 """
 

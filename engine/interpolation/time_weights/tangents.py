@@ -1,11 +1,11 @@
-"""How long a tangent may be: the control values beside a keyframe obey the bounds.
+"""Largest length of a tangent: the control values beside a keyframe obey the bounds.
 
 For the metric variant the bounds are convex in (𝒜, η): 𝒜 + 2|η| ≤ σ_a², 𝒜 − 2|η| ≥ σ_b² and
-|η| ≤ 𝒜 k / (1 + k²). Obeyed by the control values on the boundary, they hold for every in-between,
-there and, as η is anti-holomorphic and f_z has no zeros, inside. As 𝒜 is free at each point of the
-boundary, it is only curbed where it must be; what is left to bisection is the velocity of η. For ν
-the bound on k is convex, and those on σ are not; nor are any of the others'. Scaled η has its ρ to
-obey them (`engine.interpolation.scaling`).
+|η| ≤ 𝒜 k / (1 + k²). If the control values on the boundary obey them, so does every in-between on
+the boundary. As η is anti-holomorphic and f_z has no zeros, so does every in-between inside. 𝒜 is
+free at each point of the boundary and is limited only where necessary; bisection finds the velocity
+of η. For ν the bound on k is convex, but the bounds on σ are not. For the other variants no bound
+is convex. Scaled η obeys the bounds by its ρ (`engine.interpolation.scaling`).
 """
 
 from collections.abc import Callable
@@ -18,13 +18,13 @@ from engine.arrays import Complexes, Floats
 from engine.interpolation.time_weights.weights import InteriorKnot, Tangent
 from engine.maps import Boundary, Bounds, HarmonicMap
 
-PARTS = 6  # into which the boundary's segments are cut for the samples of control values
+PARTS = 6  # of each boundary segment, for the samples of control values
 # Between samples a value exceeds them by an eighth of its second differences, to leading order.
 BETWEEN = 1.5 / 8
-# Part of a bound that is left to the errors of the Dirichlet problem's solution.
+# Share of a bound reserved for the error of the Dirichlet problem's solution.
 SPARE = 1e-4
-# Shares of the way to a control value that are looked at too: where a variant's bounds are not
-# convex, the way may leave them at once and come back.
+# Shares of the distance to a control value that are tested. If a variant's bounds are not convex,
+# the segment to the control value may leave them and return.
 SHARES = (1.0, 0.25, 0.0625)
 HALVINGS = 30
 SAME_MAP = 1e-9  # of the size of the shape
@@ -42,7 +42,7 @@ def derivatives_along(f: HarmonicMap, boundary: Boundary) -> tuple[Complexes, Co
 
 
 def are_same_maps(f: HarmonicMap, other: HarmonicMap, boundary: Boundary) -> bool:
-    """Tell whether two maps place the boundary alike."""
+    """Return whether two maps agree on the boundary."""
     if f is other:
         return True
     vertices = np.concatenate(boundary.loops)
@@ -53,17 +53,16 @@ def are_same_maps(f: HarmonicMap, other: HarmonicMap, boundary: Boundary) -> boo
 def shorten_tangent(
     quantities: Complexes, stretches: SingularValues, joint: InteriorKnot, bounds: Bounds
 ) -> Tangent:
-    """Return a joint's tangent, short enough for the control values to obey the bounds.
+    """Return the tangent at a knot, short enough for the control values to obey the bounds.
 
     Parameters
     ----------
     quantities : complex128, shape (3, 2, p, PARTS + 1)
-        What is blended of a keyframe and its neighbours, along the boundary's segments.
+        The blended quantities of a keyframe and its neighbours, along the boundary's segments.
     stretches : callable
-        Returns σ_a and σ_b of two such quantities.
-    joint : InteriorKnot
+        Returns σ_a and σ_b, given the two quantities.
     bounds : Bounds
-        Widened where the keyframe itself exceeds them.
+        Widened by the keyframe's own extremes.
     """
     key, velocity = quantities[1], np.tensordot(joint.velocity, quantities, axes=1)
     worst_a, worst_b = stretches(*key)
@@ -87,21 +86,16 @@ def shorten_tangent(
 def shorten_metric_tangent(
     quantities: Complexes, joint: InteriorKnot, bounds: Bounds, boundary: Boundary
 ) -> Tangent:
-    """Return a tangent of 𝒜 and η, with the velocity of η as long as 𝒜 can make up for it.
+    """Return a tangent of 𝒜 and η, with the longest velocity of η that 𝒜 can compensate.
 
-    Parameters
-    ----------
-    quantities : complex128, shape (3, 2, p, PARTS + 1)
-    joint, bounds
-        As in `shortened`.
-    boundary : Boundary
+    The arguments are as in `shorten_tangent`.
     """
     trace, eta = quantities[:, 0].real, quantities[:, 1]
     velocity, turned = np.tensordot(joint.velocity, quantities, axes=1)
 
     def is_within(length: float) -> bool:
         lowest, highest = _allowed(trace[1], eta[1], length * turned, joint, bounds)
-        # Between samples the slack may be less.
+        # Between samples the slack may be smaller.
         slack = highest - lowest
         return bool((slack.min(axis=1) >= BETWEEN * _second(slack)).all())
 
@@ -118,19 +112,10 @@ def shorten_metric_tangent(
 
 
 def limit_velocity(trace: Floats, eta: Complexes, tangent: Tangent, bounds: Bounds) -> Floats:
-    """Return the velocity of 𝒜 at a joint, curbed point by point where bounds ask for it.
+    """Return the velocity of 𝒜 at a knot, limited point by point by the bounds, float64 (...).
 
-    Parameters
-    ----------
-    trace : float64, shape (3, ...)
-        𝒜 of the keyframe and its neighbours at points of the boundary.
-    eta : complex128, shape (3, ...)
-    tangent : Tangent
-    bounds : Bounds
-
-    Returns
-    -------
-    float64, shape (...)
+    `trace` and `eta` (3, ...) are 𝒜 and η of the keyframe and its neighbours, at points of the
+    boundary.
     """
     joint = tangent.knot
     velocity: Floats = np.tensordot(joint.velocity, trace, axes=1)
@@ -141,16 +126,16 @@ def limit_velocity(trace: Floats, eta: Complexes, tangent: Tangent, bounds: Boun
 
 
 def clamp_smoothly(velocity: Floats, lowest: Floats, highest: Floats) -> Floats:
-    """Return velocities of 𝒜 that are smoothly held between the least and the largest allowed.
+    """Limit velocities of 𝒜 smoothly to the range from `lowest` to `highest`.
 
-    What is returned does not fall where any of the three rises.
+    The result is nondecreasing in all three arguments.
     """
     middle = (lowest + highest) / 2
     lowest, highest = np.minimum(lowest, middle), np.maximum(highest, middle)
     still = np.clip(0.0, lowest, highest)
     wanted = velocity - still
     slack = np.where(wanted > 0, highest - still, still - lowest)
-    # Full up to half of the slack, and all of it at one and a half: without a kink in between.
+    # The full velocity up to half of the slack, and the full slack from 1.5 of it, without a kink.
     share = np.abs(wanted) / np.where(slack > 0, slack, 1.0)
     bent = share - np.clip(share - 0.5, 0.0, None) ** 2 / 2
     held = np.where(share <= 0.5, share, np.where(share < 1.5, bent, 1.0))
@@ -159,7 +144,7 @@ def clamp_smoothly(velocity: Floats, lowest: Floats, highest: Floats) -> Floats:
 
 
 class ValueRange(NamedTuple):
-    """What a quantity is at least and at most, float64 (...) each."""
+    """Lower and upper bounds of a quantity, float64 (...) each."""
 
     least: Floats
     most: Floats
@@ -172,17 +157,10 @@ def allowed_velocities(
     joint: InteriorKnot,
     bounds: Bounds,
 ) -> tuple[ValueRange, ValueRange]:
-    """Return the least and the largest velocity of 𝒜 with which both control values obey bounds.
+    """Return ranges of the least and largest velocity of 𝒜 with both control values in bounds.
 
-    Parameters
-    ----------
-    trace, size : ValueRange
-        𝒜 and |η| of the keyframe.
-    turned : (Range, Range)
-        |η| of the control values.
-    joint : InteriorKnot
-    bounds : Bounds
-        Widened where the keyframe exceeds them.
+    `trace` and `size` are 𝒜 and |η| of the keyframe, `turned` |η| of the control values. `bounds`
+    are widened by the keyframe's own extremes.
     """
     stretch = (bounds.sigma_a * (1.0 - SPARE)) ** 2
     squeeze = (bounds.sigma_b * (1.0 + SPARE)) ** 2
@@ -190,7 +168,7 @@ def allowed_velocities(
     shear = k / (1.0 + k * k)
     lowest, highest = [], []
     for arm, around in zip(joint.control_offsets, turned, strict=True):
-        # By how much 𝒜 must and may grow, for σ_b and k, and for σ_a.
+        # Least and largest growth of 𝒜: for σ_b and k, and for σ_a.
         must = ValueRange(
             *(
                 np.maximum(
@@ -222,7 +200,7 @@ def allowed_velocities(
 def _in_proportion(
     turned: Floats, size: Floats, trace: ValueRange, extreme: Callable[[Floats, Floats], Floats]
 ) -> Floats:
-    """Return by how much 𝒜 must grow to keep its proportion to |η|, whatever it is."""
+    """Return the growth of 𝒜 that keeps its ratio to |η|."""
     with np.errstate(divide="ignore", invalid="ignore"):
         growth = np.where(size > 0, turned / size - 1.0, np.inf)
     found: Floats = extreme(trace.least * growth, trace.most * growth)
@@ -232,7 +210,7 @@ def _in_proportion(
 def _allowed(
     trace: Floats, eta: Complexes, turned: Complexes, joint: InteriorKnot, bounds: Bounds
 ) -> tuple[Floats, Floats]:
-    """Return the same at points, with the velocity of η."""
+    """Return the least and largest velocity of 𝒜 at points, given the change of η."""
     own, size = ValueRange(trace, trace), np.abs(eta)
     around = [np.abs(eta + arm * turned) for arm in joint.control_offsets]
     lowest, highest = allowed_velocities(
@@ -246,7 +224,7 @@ def _allowed(
 
 
 def _longest(is_within: Callable[[float], bool]) -> float:
-    """Return the largest number from 0 to 1 that is found to be within, by bisection."""
+    """Return the largest number in [0, 1] within the condition, by bisection."""
     if is_within(1.0):
         return 1.0
     low, high = 0.0, 1.0
@@ -260,7 +238,7 @@ def _longest(is_within: Callable[[float], bool]) -> float:
 
 
 def _obeys(sigma_a: Floats, sigma_b: Floats, limits: tuple[float, float, float]) -> bool:
-    """Tell whether σ_a and σ_b (p, PARTS + 1), and k, obey limits, between the samples too."""
+    """Return whether σ_a and σ_b (p, PARTS + 1), and k, obey limits, also between samples."""
     k = _dilatation(sigma_a, sigma_b)
     return (
         _largest(sigma_a) <= limits[0]
@@ -270,7 +248,7 @@ def _obeys(sigma_a: Floats, sigma_b: Floats, limits: tuple[float, float, float])
 
 
 def _largest(values: Floats) -> float:
-    """Return the largest of values (p, PARTS + 1) along segments, with what it may miss."""
+    """Return an upper bound along segments, also between the samples (p, PARTS + 1)."""
     return float((values.max(axis=1) + BETWEEN * _second(values)).max())
 
 
@@ -281,7 +259,7 @@ def _second(values: Floats) -> Floats:
 
 
 def _dilatation(sigma_a: Floats, sigma_b: Floats) -> Floats:
-    """Return k; a map that folds has more than 1."""
+    """Return k; above 1 for a map that folds."""
     whole = sigma_a + sigma_b
     k: Floats = np.where(whole > 0, (sigma_a - sigma_b) / np.where(whole > 0, whole, 1.0), inf)
     return k

@@ -1,9 +1,9 @@
-"""The weights of keyframes between two of them, and through them with continuous velocity.
+"""Time weights of keyframes, also through keyframes with continuous velocity.
 
-Each interval is a cubic Bézier curve in the quantities that its variant blends. As weights of the
-keyframes its Bernstein polynomials sum to 1, so that they act on log f_z and on the anchor's pose
-too. Bernstein weights are convex: where the control values obey a convex bound, so does every
-in-between. The paper blends two keyframes only.
+Each segment is a cubic Bézier curve in the quantities that its variant blends. The Bernstein
+polynomials sum to 1, so they serve as weights of log f_z and of the anchor's pose, too. They are
+positive: if the control values obey a convex bound, so does every in-between. The paper blends two
+keyframes only.
 """
 
 from dataclasses import dataclass, fields
@@ -16,15 +16,15 @@ from engine.arrays import Floats, as_number, freeze
 
 @dataclass(frozen=True, slots=True)
 class InteriorKnot:
-    """Where the motion passes a keyframe between two others at one velocity.
+    """A keyframe between two others, through which the motion goes at one velocity.
 
-    Parameters
+    Attributes
     ----------
     before, after : float
-        Lengths of the intervals on both sides, above 0, in any unit of time.
+        Lengths of the segments on both sides, above 0, in any unit of time.
     end_pace, start_pace : float
-        How fast time runs at the end of the former and at the start of the latter, above 0: 1
-        where no easing changes it.
+        Speed of time at the end of the segment before and at the start of the segment after, above
+        0; 1 without easing.
     """
 
     before: float
@@ -48,20 +48,15 @@ class InteriorKnot:
 
     @property
     def control_offsets(self) -> tuple[float, float]:
-        """The times by which the velocity, full, leads back and forth to the control values."""
+        """Times from the keyframe to the control values on both sides, at full velocity."""
         return -self.before / (3 * self.end_pace), self.after / (3 * self.start_pace)
 
 
 class Tangent(NamedTuple):
-    """A joint with what the bounds leave of its velocity.
+    """A knot with the share of its velocity that the bounds allow.
 
-    Parameters
-    ----------
-    joint : InteriorKnot
-    length : float
-        Part of the velocity, from 0 to 1; with the metric variant, of that of η.
-    kept : float
-        How much of all of the velocity is left, from 0, a stop, to 1.
+    `length` is the share of the velocity, from 0 to 1; in the metric variant, that of η.
+    `velocity_share` is the share of the whole velocity, from 0 (a stop) to 1.
     """
 
     knot: InteriorKnot
@@ -69,28 +64,28 @@ class Tangent(NamedTuple):
     velocity_share: float
 
 
-# How an interval leaves a keyframe, or reaches it: a tangent, or the share of a straight blend's
-# velocity, 1 for a corner and 0 for a stop.
+# How a segment leaves or reaches a keyframe: a tangent, or the share of a straight blend's velocity
+# (1 for a corner, 0 for a stop).
 EndCondition = Tangent | float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TimeWeights:
-    """The weights of an interval's keyframes as cubic polynomials of time.
+    """Weights of a segment's keyframes as cubic polynomials of time.
 
-    Parameters
+    Attributes
     ----------
     controls : float64, shape (4, q), or None
-        The control values as weights of the q keyframes: the two of the interval, with one before
-        them and one after them where there are tangents, and behind all of these the ones that
-        tangents apart have in place of the interval's other keyframe. None for a linear blend of
-        two.
+        The control values as weights of q keyframes; None for a linear blend of two. The order is:
+        the keyframe before if the start has a tangent, the two of the segment, the keyframe after
+        if the end has a tangent. Last come the keyframes that one-sided tangents use in place of
+        the segment's other keyframe.
     first : int
-        Index of the keyframe at time 0; that at time 1 comes after it.
+        Index of the keyframe at time 0; the keyframe at time 1 follows it.
     ends : tuple of EndCondition
-        What it was built from.
-    apart : tuple of bool
-        Whether the tangents are of a motion that the interval only comes from, or leads to.
+        End conditions of the segment.
+    one_sided : tuple of bool
+        Whether a tangent's outer keyframes belong to a neighbouring motion, not to this pair.
     """
 
     controls: Floats | None
@@ -100,19 +95,19 @@ class TimeWeights:
 
     @classmethod
     def straight(cls) -> Self:
-        """Return the linear blend of two keyframes, as the paper has it."""
+        """Return the linear blend of two keyframes, as in the paper."""
         return cls(controls=None, first=0, ends=(1.0, 1.0))
 
     @classmethod
     def cubic(cls) -> Self:
-        """Return the weights of control values that are given as such."""
+        """Return weights for four given control values."""
         return cls(controls=freeze(np.eye(4)), first=0, ends=(1.0, 1.0))
 
     @classmethod
     def between(
         cls, start: EndCondition, end: EndCondition, *, apart: tuple[bool, bool] = (False, False)
     ) -> Self:
-        """Return the course of an interval that leaves one keyframe and reaches the next one so."""
+        """Return the weights of a segment with these end conditions."""
         for share in (start, end):
             if not isinstance(share, Tangent):
                 as_number(share, "The share of a straight velocity", least=0)
@@ -137,14 +132,14 @@ class TimeWeights:
 
     @property
     def support(self) -> tuple[list[int], list[int]]:
-        """The indices of the three keyframes of both tangents, where there are any."""
+        """The indices of the three keyframes of each tangent."""
         start, end = (isinstance(end, Tangent) for end in self.ends)
         return support_of(start, end, self.one_sided)
 
     @property
     def unlimited(self) -> Self:
-        """The course with all of its velocities."""
-        # But for a stop at a pose that is to be kept.
+        """The same weights with full velocity at each tangent."""
+        # A stop stays where the pose must be kept exactly.
         ends = (
             e._replace(length=1.0) if isinstance(e, Tangent) and e.velocity_share else e
             for e in self.ends
@@ -158,7 +153,7 @@ class TimeWeights:
 
     @property
     def is_straight(self) -> bool:
-        """Whether it is the linear blend."""
+        """Whether the weights are those of the linear blend."""
         return self.controls is None
 
     def __call__(self, time: float) -> Floats:
@@ -173,17 +168,15 @@ class TimeWeights:
         return weights
 
     def controls_on(self, starts: Floats, ends: Floats) -> Floats:
-        """Return the weights of the keyframes at the control values of pieces of time (c,).
+        """Return the keyframes' weights at the control values of pieces of time (c,).
 
-        Returns
-        -------
-        float64, shape (c, 2, 2) or (c, 4, q)
+        The shape is (c, 2, 2) for a linear blend, else (c, 4, q).
         """
         if self.controls is None:
             return np.stack([self.at(starts).T, self.at(ends).T], axis=1)
         weights = []
         for count in range(4):
-            # The polar form: three times of which so many are the end.
+            # The polar form with `count` of its three arguments at the end time.
             u, v, w = [ends if i < count else starts for i in range(3)]
             x, y, z = 1.0 - u, 1.0 - v, 1.0 - w
             weights.append(
@@ -205,9 +198,9 @@ def support_of(
     end: bool,  # noqa: FBT001
     apart: tuple[bool, bool],
 ) -> tuple[list[int], list[int]]:
-    """Return the indices of the keyframes of the tangents that an interval has at its ends.
+    """Return the indices of the three keyframes of the tangents at both ends of a segment.
 
-    Three at each end, with its own keyframe in the middle; of an end without one they say nothing.
+    The segment's own keyframe is in the middle. The indices of an end without tangent are invalid.
     """
     first, count = int(start), start + 2 + end
     after, before = count if apart[0] else first + 1, count + apart[0] if apart[1] else first

@@ -1,4 +1,4 @@
-"""Corrections folded into in-betweens: the change of their derivatives at any points."""
+"""Corrections applied to in-betweens: the change of their derivatives at any points."""
 
 from dataclasses import dataclass
 from typing import NamedTuple, Self
@@ -16,7 +16,7 @@ from engine.maps import Span
 class SpanBasis(NamedTuple):
     """The functions of a span (n,) at nodes (s,), and their derivatives, in single precision.
 
-    Corrections are small beside the places, and so are their rounding errors.
+    Corrections are small relative to positions, and so are their rounding errors.
     """
 
     values: npt.NDArray[np.complex64]
@@ -24,13 +24,12 @@ class SpanBasis(NamedTuple):
 
     @classmethod
     def of(cls, span: Span, nodes: Complexes) -> Self:
-        """Evaluate them."""
+        """Evaluate the functions at nodes (s,)."""
         values, slopes = span.coordinates(nodes), span.derivatives(nodes)
         return cls(freeze(values.astype(np.complex64)), freeze(slopes.astype(np.complex64)))
 
     @property
     def nbytes(self) -> int:
-        """Memory that the arrays take, in bytes."""
         return self.values.nbytes + self.slopes.nbytes
 
     def evaluate(self, functions: Complexes) -> tuple[Complexes, Complexes]:
@@ -41,7 +40,7 @@ class SpanBasis(NamedTuple):
 
 
 class Mixing(NamedTuple):
-    """K, which multiplies q, at nodes (s,), and the derivative of its logarithm."""
+    """K, which multiplies q, at nodes (s,), and the derivative of log K."""
 
     k: Complexes
     log_k_z: Complexes
@@ -49,13 +48,7 @@ class Mixing(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EvaluatedCorrection:
-    """h and q of a correction at nodes (s,).
-
-    Parameters
-    ----------
-    known : CorrectionSeries
-    h, q : Residual
-    """
+    """h and q of a correction at nodes (s,)."""
 
     known: CorrectionSeries
     h: Residual
@@ -65,7 +58,7 @@ class EvaluatedCorrection:
     def of(
         cls, known: CorrectionSeries, span: Span, nodes: Complexes, basis: SpanBasis | None = None
     ) -> Self:
-        """Evaluate the functions of a correction at nodes (s,), by a basis there if it is known."""
+        """Evaluate the functions of a correction at nodes (s,); a known basis there saves time."""
         count, functions = known.h.shape[1], np.hstack([known.h, known.q])
         if basis is None:
             values, slopes = span.evaluate(functions, nodes, orders=(0, 1))
@@ -78,7 +71,7 @@ class EvaluatedCorrection:
         )
 
     def at(self, which: Indices) -> Self:
-        """Return the same at some of the nodes."""
+        """Return a copy restricted to some of the nodes."""
         return type(self)(known=self.known, h=self.h.at(which), q=self.q.at(which))
 
     def changed(
@@ -100,7 +93,7 @@ class EvaluatedCorrection:
     def changed_values(
         self, fz: Complexes, g: Complexes, k: Complexes, sign: int, times: Floats
     ) -> tuple[Complexes, Complexes, Complexes]:
-        """Return the same at times (t,), of F, G and K (t, s), without derivatives."""
+        """Return F e^h, G e^{σh} + q K e^h and K e^h at times (t,), for F, G and K (t, s)."""
         h, q = self.h.at_times(times), self.q.at_times(times)
         grown = np.exp(h)
         k = k * grown

@@ -20,23 +20,18 @@ from engine.interpolation.added.pins.targets import SegmentPins
 from engine.interpolation.series import PiecewiseSeries, constant_one, separate_variables
 from engine.maps import Bounds
 
-# Of the series and of what they leave out, where unknowns are about |h| and places over the size
-# of the domain: some thousandths of a pixel of a thousand.
+# Accuracy of the series and of the omitted terms. Unknowns are of the size of |h|, and positions
+# relative to the size of the domain: some thousandths of a pixel in a thousand.
 TOLERANCE, LEFT_OUT = 5e-6, 1e-6
 SHORTEST = 2.0**-3  # pieces of time are not halved below this
 DEGREES = (8, 16)
 
 
 class CorrectionBase(NamedTuple):
-    """An in-between that is to be corrected, at a time.
+    """An in-between before its correction, at one time.
 
-    Parameters
-    ----------
-    places, fz : complex128, shape (m,)
-        At the handles.
-    anchor : complex
-    nodes, samples : BaseFrame
-        At the nodes of the corrector's paths, and at the samples of the boundary.
+    `places` and `fz` are at the handles, complex128 (m,). `nodes` and `samples` are the base at the
+    nodes of the corrector's paths, and at the samples of the boundary.
     """
 
     places: Complexes
@@ -50,15 +45,14 @@ class CorrectionBase(NamedTuple):
 class CorrectionSeries:
     """h, q and a translation: few functions times series in time.
 
-    Parameters
+    Attributes
     ----------
-    series : PiecewiseSeries
     h, q : complex128, shape (n, j)
         The functions in the domain's span.
     shifts : complex128, shape (j,)
-        Of the translation.
+        Coefficients of the translation.
     share : float
-        The part of the correction that keeps the limits; 1 where all of it does.
+        Applied share of the correction, reduced to keep the limits; 1 is the whole correction.
     """
 
     series: PiecewiseSeries
@@ -93,15 +87,8 @@ def fit_pin_corrections(
 ) -> CorrectionSeries:
     """Find the corrections of a segment.
 
-    Parameters
-    ----------
-    corrector : PointCorrector
-        For the handles.
-    base_at : callable
-        Returns the base at a time in [0, 1].
-    pins : SegmentPins
-    bounds : Bounds
-        Limits that are kept at the samples, or those that the keyframes have beyond them.
+    `base_at` returns the base at a time in [0, 1]. The samples keep `bounds`, widened by the
+    extremes of the keyframes.
     """
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
@@ -125,7 +112,7 @@ def fit_pin_corrections(
     forms, series = separate_variables(
         values, tolerance=TOLERANCE, left_out=LEFT_OUT, shortest=SHORTEST, degrees=DEGREES
     )
-    # One share for all of the segment: a limit that is reached for a moment makes no jolt.
+    # One share for the whole segment, so that a limit reached for a moment causes no jolt.
     forms *= share
     count = known.count
     return CorrectionSeries(

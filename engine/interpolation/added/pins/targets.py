@@ -1,4 +1,4 @@
-"""Where handles are wanted during a segment, as functions of its own time from 0 to 1."""
+"""Targets of handles during a segment, as functions of segment time from 0 to 1."""
 
 from dataclasses import dataclass
 
@@ -11,26 +11,26 @@ from engine.geometry import fit_rigid
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SegmentPins:
-    """Handles that stay from one keyframe to the next, and how the others leave and reach them.
+    """Handles pinned from one keyframe to the next, and the transition of all other handles.
 
-    A pinned handle goes from its place at the first keyframe to that at the second one as 3t² − 2t³
-    does. One that is pinned in the segment before or after only is there with its velocity: it is
-    moved by t(1−t)² s₀ − t²(1−t) s₁, with a weight that fades as (1−t)³ and t³. The others move
-    with the rigid motion that does most of it.
+    A pinned handle moves from its place at the first keyframe to its place at the second one by
+    3t² − 2t³. A handle pinned only in the previous or next segment starts or ends at its velocity
+    there. Its displacement is t(1−t)² s₀ − t²(1−t) s₁, with a weight that fades as (1−t)³ and t³.
+    The other handles follow the rigid motion that explains most of the displacement.
 
-    Parameters
+    Attributes
     ----------
     is_pinned : bool, shape (m,)
     ends : complex128, shape (2, m)
-        The places of the handles at the keyframes.
+        Places of the handles at the keyframes.
     slopes : complex128, shape (2, m)
-        s₀ and s₁, by time; 0 where the segments beyond pin nothing.
+        s₀ and s₁, per unit of time; 0 if the neighbouring segment pins nothing.
     weights : float64, shape (2, m)
-        Of these, 0 or 1.
+        Weights of the slopes, 0 or 1.
     firmness : float64, shape (m,)
-        How firmly a handle is held, 1 but next to an anchor that stays.
+        Stiffness of each target: 1, less close to a fixed anchor.
     is_anchored : bool
-        Whether the anchor stays where the base has it.
+        Whether the anchor stays at its position in the base.
     """
 
     is_pinned: Booleans
@@ -41,7 +41,7 @@ class SegmentPins:
     is_anchored: bool
 
     def targets(self, time: float, places: Complexes, anchor: complex) -> PointTargets:
-        """Return where handles are wanted that the base has at places (m,), and its anchor."""
+        """Return the targets of the handles, given places (m,) and anchor of the base."""
         rest = 1.0 - time
         wanted = self.ends[0] + time * time * (3.0 - 2.0 * time) * (self.ends[1] - self.ends[0])
         moving = time * rest * (rest * self.slopes[0] - time * self.slopes[1])
