@@ -31,8 +31,6 @@ class ConstrainedShape:
         )
 
     def measure_state(self, state: State, wish: HandleTargets) -> tuple[Objective, Evaluation]:
-        """Return the objective without a barrier over the shape's samples, and the map's
-        evaluation.
-        """
+        """Return the objective without a barrier, over the shape's samples, and the evaluation."""
         objective = Objective(boundary=self.boundary, handles=self.handles, targets=wish)
         return objective, objective.evaluate(*state.map.columns)

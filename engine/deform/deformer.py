@@ -234,9 +234,7 @@ class Deformer(ConstrainedShape):
         return state, count
 
     def track_path_row(self, state: State, wish: HandleTargets) -> tuple[State, int]:
-        """Take up to `PATH_STEPS` steps towards one row of a recorded path; return their number
-        too.
-        """
+        """Take up to `PATH_STEPS` steps towards one row of a recorded path; return their number."""
         self._require_own(wish)
         for count in range(1, PATH_STEPS + 1):
             state = take_drag_step(self, state, wish)
