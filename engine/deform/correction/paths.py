@@ -17,21 +17,7 @@ GAUSS = 5  # nodes of a piece
 # over the domain's diameter. The error is then some 1e-6 of the diameter.
 PIECE_PER_DISTANCE, LEAST_DISTANCE = 1.5, 2e-3
 LOOKED_AT = 9  # places of a leg at which its pieces are counted
-SPANS = (
-    1,
-    2,
-    3,
-    4,
-    6,
-    8,
-    12,
-    16,
-    24,
-    32,
-    48,
-    64,
-    96,
-)  # numbers of corners that a tried leg may skip
+SPANS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # corners that a tried leg may skip
 LARGEST_PRICE = 1e6  # of a leg inside the domain
 SHARED = 0.05  # part of its price for a leg that already leads to another point
 

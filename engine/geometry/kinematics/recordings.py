@@ -14,7 +14,7 @@ from engine.geometry.kinematics.springs import FARTHEST
 # Longest gap in frames between two recorded places; in longer gaps the straight way counts as
 # recorded.
 GAP = 1.0
-EARLY = 0.1  # frames: how early the first key may be before the recording, and how late the last one after it
+EARLY = 0.1  # frames between the recording and a first key before it, or a last key after it
 # Of a sample's weight: how strongly an otherwise undetermined key is held on the recording.
 TIE = 1e-6
 # Keys this far apart hardly influence each other.

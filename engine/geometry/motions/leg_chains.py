@@ -105,7 +105,7 @@ class _LimbInstance(MotionInstance):
         )
 
     def _trunk_and_arms(self, phase: float) -> tuple[dict[str, complex], dict[str, float]]:
-        """Return the positions of all joints that no step moves, and the rotations of their bones."""
+        """Return the positions of all joints that no step moves, and their bones' rotations."""
         body, course = self.body, self.template
         amount = self.parameters.size * self.parameters.energy * self.reach
         moved = body.facing * course.shift(phase) + 1j * course.rise(phase)

@@ -81,9 +81,7 @@ class FootSteps:
         return abs((self.body.joints[pair[0]] - self.body.joints[pair[1]]).real)
 
     def _step(self) -> float:
-        """Return the distance that a foot covers while it stands, limited by the room for the other
-        foot.
-        """
+        """Return the distance that a foot covers while it stands, within its room."""
         wanted = self.gait.stride * self.gait.stance * self.size * self.reach
         rooms = [self._apart(pair) + (SPREAD - CLEAR) * self.reach for pair in self._pairs()]
         return min([wanted, *rooms])

@@ -86,7 +86,7 @@ def find_leg(body: Body, tip: str) -> BodyLeg:
 
 
 def _usual_bend(body: Body, tip: str) -> int:
-    """Return the side to which the middle of a leg bends: 1 is counter-clockwise from root to tip."""
+    """Return the side to which a leg bends: 1 is counter-clockwise from root to tip."""
     if body.kind.name == "biped-front":
         middle = body.joints[next(iter(body.joints))].real
         return -1 if body.joints[tip].real < middle else 1
