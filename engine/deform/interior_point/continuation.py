@@ -70,7 +70,7 @@ LEAST_PER_ENERGY = 1e-7
 # along their direction as across. Otherwise their stiffness along it is 0, and steps lead a hundred
 # times too far. Near rest the true Hessian needs fewer steps.
 FAR_FROM_REST = 1e-3
-# Less slack than this cannot be told from none: the bound is moved this far away.
+# Less slack than this cannot be distinguished from none: the bound is moved this far away.
 ROUNDING_SLACK = 1e-11
 MOVED_OUT = 1e-9
 # A step whose map is not certified is halved this many times.

@@ -12,11 +12,12 @@ from engine.geometry import contains
 from engine.geometry.motions import BodyKind
 
 CROWN = 0.65  # radii above the middle of a head, off the face
-# The centre of a head without a neck is this far below its top, in heights.
+# A head without a neck is the first node whose disc comes this near to the top, in heights.
 BELOW_TOP = 0.08
 # Distance of a limb's root from the node it leaves, in radii of the node.
 ROOT = 0.8
-# The chest is the last place where the trunk is as thick as at the hips, within this share of it.
+# The chest is the last place where the trunk has this part of the hips' thickness, at most at this
+# share of it.
 THICK_HEAD = 0.5  # of a lying trunk: thickness of the head over the chest's
 THICK_CHEST, HIGHEST_CHEST = 0.6, 0.75
 LOWEST_ARM = 0.35  # share from hips to neck below which a limb is a tail

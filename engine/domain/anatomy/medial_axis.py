@@ -33,7 +33,8 @@ EMPTY = 0.7
 class MedialAxis(NamedTuple):
     """A graph of n nodes in the middle of a shape; links (m, 2) are pairs of them.
 
-    Radii are distances from the boundary, and gates (m,) half the widths of the passages of links.
+    Radii are distances from the boundary, and gates (m,) half the widths of the openings that links
+    lead through.
     """
 
     places: Complexes

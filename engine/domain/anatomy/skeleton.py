@@ -13,9 +13,9 @@ from engine.domain.anatomy.medial_axis import MedialAxis
 # A limb reaches out of the body by these parts of the body's half width at its root, and of the
 # diameter. Corners of a square reach out by 0.41, those of a regular triangle by 1.
 LEAST_REACH, LEAST_SHARE = 0.6, 0.05
-# Handles of tips. A tip is sharp if its largest disc's middle is this many radii away or more; its
-# handle is at this share of the limb. In a round tip, the handle is where the discs further
-# inwards, within so many radii, are hardly larger.
+# A node this many radii or more from the tip belongs to a sharp tip; the handle is at this share of
+# the limb. In a round tip, the handle is at the first node whose discs further inwards, within so
+# many radii, are hardly larger.
 ROUND, SHARP = 1.5, 0.1
 AHEAD, LEVEL = 0.6, 1.2
 THIN = 0.25

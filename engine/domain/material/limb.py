@@ -16,8 +16,8 @@ from engine.geometry import ON_OUTLINE, as_xy, diameter, shapely_region
 
 # Places along a bone at which its limb is measured.
 PLACES = 48
-# The half width on each side is the value at this quantile of the places. Points up to so many
-# times the half width belong to the limb; from there to the last factor the share falls to 0.
+# The half width on each side is this quantile of the places' distances. Points up to so many times
+# the half width belong to the limb; from there to the last factor the share falls to 0.
 USUAL, THICKEST, BEYOND = 0.4, 1.35, 1.8
 # Length of the joint at each end, over the limb's half width, and at most over its length.
 # Measured: with 1 an arm rotates at its shoulder by less than half as far.
