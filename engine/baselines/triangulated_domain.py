@@ -263,7 +263,6 @@ def _gradient(points: Complexes, corners: Indices, areas: Floats) -> csr_array:
 
 
 def _farthest(points: Complexes, border: Booleans) -> int:
-    """Return the vertex farthest from those on the border."""
     xy = as_xy(points)
     distances, _ = cKDTree(xy[border]).query(xy)
     return int(np.argmax(distances))

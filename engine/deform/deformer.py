@@ -161,7 +161,6 @@ class Deformer(ConstrainedShape):
         return replace(state, status=Status.MOVING, search=None, outcome=None, starting_points=())
 
     def _require_own(self, wish: HandleTargets) -> None:
-        """Raise an error if the targets belong to other handles."""
         require_kind(wish, HandleTargets, "targets")
         if len(wish.positions) != len(self.handles.points):
             raise EngineError(

@@ -57,7 +57,6 @@ MISFIT = 0.12
 def begin_searches(
     shape: ConstrainedShape, state: State, wish: HandleTargets, ways: tuple[StartingPoint, ...]
 ) -> State:
-    """Return the state at the beginning of the searches from these starting points."""
     if wish.pulls is not None:
         # From the handles' present positions one search finds the same minimum as all, in half the
         # steps.
@@ -142,7 +141,6 @@ def _search(shape: ConstrainedShape, state: State, wish: HandleTargets) -> Searc
 def _further_starting_points(
     shape: ConstrainedShape, state: State, outcome: Search
 ) -> tuple[StartingPoint, ...]:
-    """Return the starting points that are left to search."""
     if state.search_steps >= MOST_IN_ALL:
         return ()
     others = tuple(way for way in state.starting_points[1:] if _may_pay(shape, way, outcome))

@@ -125,7 +125,6 @@ class BoundedPulls(NamedTuple):
         return spread
 
     def slack_energy(self, given: Complexes) -> float:
-        """Return the energy of a slack."""
         return float((2.0 * self.stiffness * self.huber_thresholds) @ np.abs(given))
 
 

@@ -61,7 +61,6 @@ class MeshedDomain(Domain):
         )
 
     def moved(self, by: complex) -> Self:
-        """Return the domain translated by `by`."""
         mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
         closed = None if self.closed is None else self.closed + by
         return replace(Domain.moved(self, by), mesh=mesh, closed=closed)

@@ -56,6 +56,5 @@ class Domain:
         return contains(self.outline, points, holes=self.loops[1:])
 
     def moved(self, by: complex) -> Self:
-        """Return the domain translated by `by`."""
         holes = tuple(hole.moved(by) for hole in self.holes)
         return replace(self, outline=self.outline + by, cage=self.cage + by, holes=holes)

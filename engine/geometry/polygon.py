@@ -134,7 +134,6 @@ def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes]
 
 
 def shapely_region(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
-    """Return the inside of a polygon, less its holes, as a Shapely polygon."""
     return shapely.Polygon(as_xy(polygon), [as_xy(hole) for hole in holes])
 
 

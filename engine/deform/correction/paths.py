@@ -156,7 +156,6 @@ def _prices(starts: Complexes, ends: Complexes, near: cKDTree, size: float) -> F
 def _cheapest(
     chain: list[complex], tried: Indices, prices: Floats, used: set[PathLeg]
 ) -> list[PathLeg]:
-    """Return the legs of the cheapest path along a chain."""
     best, came = [0.0] + [np.inf] * (len(chain) - 1), [0] * len(chain)
     for (i, j), price in zip(tried.tolist(), prices.tolist(), strict=True):
         cost = best[i] + price * (SHARED if (chain[i], chain[j]) in used else 1.0)

@@ -138,7 +138,6 @@ def solve_correction(
 
 
 def _require_targets(targets: PointTargets, count: int) -> None:
-    """Raise an `EngineError` unless the targets are valid for `count` points."""
     as_points(targets.offsets, "The moves of targets")
     for name, values, fits in (
         ("moves", targets.offsets, True),

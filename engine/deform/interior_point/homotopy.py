@@ -17,7 +17,6 @@ WIDER = 1.4
 
 
 def exceed_first_level(walls: BarrierBounds) -> bool:
-    """Whether these bounds are wider than the first level."""
     return not are_same_bounds(homotopy_level(walls, FIRST_LEVEL_WIDTH), walls)
 
 

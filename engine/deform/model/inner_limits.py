@@ -46,7 +46,6 @@ def limits_inside(
 
 
 def _stiffness_at(boundary: Boundary, nodes: Complexes) -> Floats:
-    """Return the stiffness at points of the boundary."""
     starts, ends = boundary.points, boundary.points[boundary.next_samples]
     both = np.column_stack([starts, ends])
     segments = shapely.STRtree(shapely.linestrings(both.real, both.imag))

@@ -173,7 +173,6 @@ def _joint_shares() -> Floats:
 
 
 def _along(shares: Floats, lengths: Floats, values: Floats) -> Floats:
-    """Return the values at shares of a limb."""
     return np.asarray(np.interp(shares * lengths[-1], lengths, values))
 
 

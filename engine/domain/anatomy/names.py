@@ -18,15 +18,11 @@ SIDES = (
 
 
 class SuggestedHandle(NamedTuple):
-    """A place for a handle, and its name."""
-
     place: complex
     name: str
 
 
 class Limb(NamedTuple):
-    """Handles of a limb."""
-
     tip: complex
     joints: list[complex]
     is_leg: bool

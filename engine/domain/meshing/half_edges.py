@@ -91,11 +91,9 @@ class HalfEdgeMesh:
         return len(self.origins) // 3
 
     def ends(self, half_edges: Indices) -> tuple[Indices, Indices]:
-        """Return the vertices at the start and the end of half-edges."""
         return self.origins[half_edges], self.origins[following(half_edges)]
 
     def end_points(self, half_edges: Indices) -> tuple[Complexes, Complexes]:
-        """Return the points at the start and the end of half-edges."""
         start, end = self.ends(half_edges)
         return self.points[start], self.points[end]
 

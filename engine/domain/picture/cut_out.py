@@ -173,7 +173,6 @@ class CutOut:
 
     @property
     def lines(self) -> "tuple[Stroke | CutLine, ...]":
-        """All strokes and cut lines."""
         return (*self.strokes, *self.cut_lines)
 
 

@@ -111,7 +111,6 @@ def keep_touching(area: Booleans, seeds: Booleans) -> Booleans:
 
 
 def remove_specks(mask: Booleans) -> Booleans:
-    """Return a mask without its specks."""
     labels, count = ndimage.label(mask, WITH_CORNERS)
     areas = np.bincount(labels.ravel(), minlength=count + 1)
     kept = areas >= SPECK * areas[1:].sum()

@@ -90,7 +90,6 @@ class Body:
         return tuple(name for name in reversed(path) if name)
 
     def path_length(self, joints: Iterable[str]) -> float:
-        """Return the length of the path from joint to joint."""
         names = list(joints)
         self.require_joints(names, "A length")
         places = np.array([self.joints[name] for name in names])

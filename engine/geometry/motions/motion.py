@@ -150,12 +150,10 @@ class Motion:
 
 
 def _moved(moment: JointPose, way: float) -> JointPose:
-    """Return a moment shifted to the right."""
     return moment._replace(places={name: at + way for name, at in moment.places.items()})
 
 
 def _swapped(moment: JointPose) -> JointPose:
-    """Return a moment with its sides swapped."""
     places = {other_side(name): place for name, place in moment.places.items()}
     turns = {other_side(name): turn for name, turn in moment.turns.items()}
     return JointPose(places, turns, frozenset(map(other_side, moment.standing)))

@@ -29,8 +29,6 @@ class SquashStretch(MotionTemplate):
 
 
 class _SquashStretchInstance(MotionInstance):
-    """One body as a whole."""
-
     def __init__(self, course: SquashStretch, body: Body, parameters: Parameters) -> None:
         self.template, self.body, self.parameters = course, body, parameters
         low, high = body.box

@@ -24,8 +24,6 @@ class Wave(MotionTemplate):
 
 
 class _WaveInstance(MotionInstance):
-    """A wave along one chain."""
-
     def __init__(self, course: Wave, body: Body, parameters: Parameters) -> None:
         self.template, self.parameters, self.facing = course, parameters, body.facing
         self.names = tuple(body.joints)
