@@ -27,7 +27,7 @@ class FfmpInbetweens:
     the frames.
 
     If keyframe i becomes B_i f^i with affine B_i, every in-between becomes an affine map of its
-    former value: both systems are linear in the rows of the Jacobians, and the frame at the anchor
+    former value. Both systems are linear in the rows of the Jacobians, and the frame at the anchor
     is a factor on the left of all others. So nothing bounds the distortion.
 
     Departs from their paper: surfaces in space have frames of three vectors, a plane mesh of two;

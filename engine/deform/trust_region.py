@@ -15,7 +15,7 @@ from engine.deform.model import MARGIN, BarrierBounds, Evaluation
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds, segment_enclosures
 
 # Trust region: a handle is pulled towards a point at most this far (of L) ahead of it, and turned
-# by at most this angle; farther away the quadratic model is useless. Both times the present radius.
+# by at most this angle. Farther away the quadratic model is useless. Both times the present radius.
 STEP_RADIUS = 0.02
 TURN_RADIUS = 0.2
 # Least relative radius.
@@ -38,7 +38,7 @@ FULL = 0.7
 PROGRESS = 1e-3
 # After so many steps without progress the drag is at rest.
 IDLE_AT_REST = 50
-# The barrier stands beyond every sample by this much, or this part of sigma_a: a map may be at its
+# The barrier stands beyond every sample by this much, or this part of sigma_a. A map may be at its
 # limits to the last digit, and the barrier's Hessian has a root only where there is slack.
 LEAST_SLACK = 1e-10
 # A step leaves at least this part of the slack between the barrier and the map.

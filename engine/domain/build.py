@@ -27,7 +27,7 @@ from engine.geometry import (
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
 # Edges of a polygon are halved until they are no longer than this, over the diagonal of the outline
-# and over the length of the loop: with the cage's offset they give maps that bend well.
+# and over the length of the loop. With the cage's offset they give maps that bend well.
 LONGEST_EDGE, FEWEST_EDGES = 0.05, 16
 # Size of the cage around a rectangle; any cage serves a picture that is never deformed.
 FRAME = 1.1

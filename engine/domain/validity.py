@@ -48,7 +48,7 @@ def require_domain(domain: MeshedDomain) -> None:
     -----
     The triangles all run counter-clockwise, so they cover each point as often as the mesh's own
     border winds around it. That border lies on the outline, so its winding number is equal at all
-    inner points and 0 outside; the test at a hole's centre shows that it is 0 in the hole. The
+    inner points and 0 outside. The test at a hole's centre shows that it is 0 in the hole. The
     triangles' areas sum to the domain's, so the number is 1 inside. Together: the triangles tile
     the inside, without gap or overlap.
 

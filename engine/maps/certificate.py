@@ -16,8 +16,9 @@ If that is 0, F has no zero in the domain, and the extremes of k, σ_a and σ_b 
 (Theorem 4 of Chen and Weber 2015). Segments whose bounds are not good enough are bisected.
 
 Around holes both statements hold for the whole boundary, and |Φ'''| also has 2 |a_j| / d³ of each
-logarithm. The winding has to be 0 along every loop by itself: a map like 1/z turns a ring inside
-out without a fold, but comes from the identity by no deformation, and has no single-valued log f_z.
+logarithm. The winding has to be 0 along each loop separately. A map like 1/z turns a ring inside
+out without a fold, but no deformation leads to it from the identity. Its log f_z is not
+single-valued.
 """
 
 from dataclasses import dataclass, replace

@@ -19,8 +19,8 @@ from engine.arrays import Complexes, Floats
 from engine.geometry import Hole, distance_to_segments
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, difference_jumps, evaluate
 
-# Combinations whose mean square derivative is less than this part of the mean of all are left out:
-# steps along them hardly change the samples, and bend most between them. Cages whose vertices are
+# Combinations whose mean square derivative is less than this part of the mean of all are left out.
+# Steps along them hardly change the samples, and bend most between them. Cages whose vertices are
 # nearer to each other than to the outline have many such combinations.
 DEGENERATE = 1e-5
 

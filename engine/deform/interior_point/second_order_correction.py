@@ -1,6 +1,6 @@
 """Newton step with second-order correction (Nocedal and Wright, section 15.5).
 
-Bounds are curved, so a straight step along one soon leaves it (the Maratos effect): where the step
+Bounds are curved, so a straight step along one soon leaves it (the Maratos effect). Where the step
 turns F = f_z by an angle θ, it lengthens F by θ² / 2, and a slack of 1e-9 allows for 4e-5 of it. So
 the full step is taken, beyond the bounds if need be, and the map is then brought back. Further
 steps of the same model restore each slack to its first-order value; each costs a product with the

@@ -2,11 +2,11 @@
 
 Each bound reads b < u with u linear in a = |f_z|: k a for the conformal distortion, a − sigma_b for
 the smallest stretch, sigma_a − a for the largest. As c = u² − b² > 0 it is smooth at b = 0, and its
-barrier is −weight · log c. The Hessian of the barrier is (weight / c²) ∇c ∇cᵀ − (weight / c) ∇²c;
-with a dual variable y that follows weight / c from step to step it becomes (y / c) ∇c ∇cᵀ − y ∇²c,
-the condensed system of a primal–dual interior point method (Nocedal and Wright, ch. 19): near a
-bound the former trusts a step no longer than the slack, and a map that once touched a bound crawls
-along it.
+barrier is −weight · log c. The Hessian of the barrier is (weight / c²) ∇c ∇cᵀ − (weight / c) ∇²c.
+With a dual variable y that follows weight / c from step to step it becomes (y / c) ∇c ∇cᵀ − y ∇²c,
+the condensed system of a primal–dual interior point method (Nocedal and Wright, ch. 19). The exact
+Hessian trusts a step near a bound no longer than the slack, and a map that once touched a bound
+crawls along it.
 """
 
 from dataclasses import dataclass

@@ -36,7 +36,7 @@ SHORTEST = 1e-6
 REFINED = 0.3
 REFINEMENTS = 4
 # A factor serves so many steps, as long as it takes at most so many rounds and leaves no more than
-# this residual: a factor of another map's Hessian measures the residual less well. Measured: drags
+# this residual. A factor of another map's Hessian measures the residual less well. Measured: drags
 # then get as near to their targets as with a new factor for each step.
 SERVES_STEPS = 8
 SERVES_ROUNDS = 2

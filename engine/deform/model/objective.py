@@ -1,10 +1,10 @@
 """The objective of a step: energy, barrier and handles, with the gradient.
 
 The unknowns are φ and ψ in the boundary's basis, whose derivatives are orthonormal and whose means
-are 0: the Hessian is then well conditioned except next to bounds, and single precision suffices for
+are 0. The Hessian is then well conditioned except next to bounds, and single precision suffices for
 all other samples. ψ_0, a constant, is no unknown (the gauge: (φ + c, ψ − conj(c)) is the same map).
 As a real vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1,
-ψ_2, …; with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and
+ψ_2, …. In this order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and
 matrices need no rearrangement.
 
 Around q holes the last q entries of φ are the logarithms' a_j, scaled, and those of ψ their

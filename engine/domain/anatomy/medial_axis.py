@@ -1,9 +1,9 @@
 """The medial axis of a shape: the middle between its sides, and the distance from them.
 
-It is made of the triangles of the constrained Delaunay triangulation of a sampled boundary, each
-linked to its neighbours: their circumcentres tend to the medial axis (Brandt and Algazi,
-"Continuous skeleton computation by Voronoi diagram", 1992), and the links to its connectivity
-(Prasad, "Morphological analysis of shapes", 1997).
+Its nodes are the triangles of the constrained Delaunay triangulation of a sampled boundary, each
+linked to its neighbours. The circumcentres tend to the medial axis (Brandt and Algazi, "Continuous
+skeleton computation by Voronoi diagram", 1992), and the links to its connectivity (Prasad,
+"Morphological analysis of shapes", 1997).
 """
 
 from collections.abc import Sequence

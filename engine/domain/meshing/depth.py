@@ -37,7 +37,8 @@ def spread_depth(
     -------
     float64, shape (v,)
         Within the extent of one point, its depth times a weight that is 1 up to half its extent and
-        falls smoothly to 0; within several, their mean, which equals each depth at its point.
+        falls smoothly to 0. Within several extents, their mean, which equals each depth at its
+        point.
 
     Notes
     -----

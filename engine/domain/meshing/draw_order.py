@@ -57,7 +57,7 @@ def _where_ways_meet(mesh: Mesh, edges: Integers, previous: Integers) -> Boolean
     """Mark the `Mesh.edges` that cross a line from a hole to the border where shortest paths meet.
 
     The edges on no shortest path join the triangles, the holes and the outside to another tree
-    (Eppstein 2003); its branches to the holes are the lines. `previous` (v,) is the vertex before
+    (Eppstein 2003). Its branches to the holes are the lines. `previous` (v,) is the vertex before
     each vertex on its shortest path.
     """
     faces, outside = _faces_beside(mesh, edges)

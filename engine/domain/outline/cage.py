@@ -25,8 +25,8 @@ CLOSE_OUTLINE = (
 def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Complexes:
     """Return the cage around an outline, or inside that of a hole.
 
-    Each vertex of the outline is moved outwards, so that the adjacent edges move by `offset`; less
-    at very sharp corners, and less where the cage would meet itself.
+    Each vertex of the outline is moved outwards, so that the adjacent edges move by `offset`. The
+    displacement is less at very sharp corners, and where the cage would meet itself.
 
     Parameters
     ----------

@@ -31,8 +31,8 @@ class Background:
     mask : bool, shape (h, w)
         True on the background.
     enclosed : bool, shape (h, w)
-        True on inner places with the colour of the background, or of the background nearby: wide
-        enough to be visible, and of any width if the colour is vivid.
+        True on inner places with the colour of the background, or of the background nearby. They
+        are wide enough to be visible, and of any width if the colour is vivid.
     agreement : float
         Share of the border's pixels that have the background's colour.
     """

@@ -2,7 +2,7 @@
 
 A pixel at the subject's edge shows the colour C = α F + (1 − α) B, a mixture of the subject's F and
 the background's B (T. Porter and T. Duff, "Compositing digital images", 1984). B is the colour of
-the background nearby, F the colour of the subject where its edge ends; α is the mixture on the line
+the background nearby, F the colour of the subject where its edge ends. α is the mixture on the line
 from B to F that is nearest to C, with each channel weighted by its noise. Where there is more noise
 than difference, as in a busy photograph, α follows from the distance to the mask's border instead.
 F replaces C, so that nothing of B remains.

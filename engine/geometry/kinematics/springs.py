@@ -134,7 +134,7 @@ def simulate_spring(
     The offset o obeys ö + 2ζωȯ + ω²o = −q̈. Between frames q is linear, so that q̈ is an impulse at
     each frame, where ȯ jumps by −Δq̇; between frames the exact flow of the free oscillator applies.
     So every frame rate of an export shows one motion. q stands still before its first frame, and
-    the spring is at rest there: a q that starts at once does not pull the offset along at once.
+    the spring is at rest there. So a sudden start of q does not move the offset at once.
 
     In a loop it is the periodic motion, s = (I − Mᴺ)⁻¹c, with the flow M of a frame and the state c
     after one round from rest.
