@@ -1,6 +1,6 @@
 """Harmonic shape interpolation: pure numerics, free of files, windows and global state.
 
-But for one thing: it keeps BLAS to one thread (`engine.arrays`), in a script as in the program.
+The one exception: it limits BLAS to one thread (`engine.arrays`), in a script as in the program.
 
 In: pictures, polygons, handles, harmonic maps, as arrays.
 Out: domains, certified maps, in-betweens, series in time, as arrays.
@@ -63,9 +63,9 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> object:
-    """Load the face, and with it the rooms, when a name of theirs is asked for first.
+    """Load the face, and with it the rooms, at the first use of a name from it.
 
-    Who imports `engine.variant` or `engine.errors` alone does not load NumPy.
+    An import of `engine.variant` or `engine.errors` alone does not load NumPy.
     """
     if name.startswith("_"):
         raise AttributeError(name)

@@ -1,8 +1,8 @@
 """Array types shared by the whole engine, the checks at its borders, and ragged arrays.
 
-Whatever works with arrays imports this first: from then on BLAS keeps to one thread. The matrices
-are small, and a second thread on a busy core can make a solver's step a hundred times slower. With
-one thread results repeat bit for bit.
+Every module with arrays imports this one first: BLAS then keeps to one thread. The matrices are
+small, and a second thread on a busy core can make a solver's step a hundred times slower. With one
+thread results repeat bit for bit.
 """
 
 import operator
@@ -45,8 +45,8 @@ Bytes = npt.NDArray[np.uint8]
 def freeze(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
     """Forbid writing to an array, in place, and return it.
 
-    For arrays that nobody else holds: neither the memory nor its order changes. A view is frozen
-    only as far as nobody holds what it looks at.
+    For arrays without another owner: neither the memory nor its order changes. A view protects its
+    base array only if nobody else refers to that base.
     """
     array.setflags(write=False)
     return array
@@ -55,8 +55,8 @@ def freeze(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
 def readonly(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
     """Return a C-contiguous copy of an array that nobody can write to.
 
-    For arrays that come from a caller: the caller's own stays writable, and changes to it do not
-    reach the frozen value. An array that is read-only, contiguous and no view is returned as it is.
+    For arrays of a caller: the caller's array stays writable, and later changes to it do not reach
+    the frozen value. An array that is read-only, contiguous and no view is returned itself.
     """
     if not array.flags.writeable and array.flags.c_contiguous and array.base is None:
         return array
@@ -64,24 +64,24 @@ def readonly(array: npt.NDArray[type_]) -> npt.NDArray[type_]:
 
 
 def ragged_indices(counts: Indices) -> tuple[Indices, Indices]:
-    """Return, for groups of these sizes one after the other, each entry's group and place in it."""
+    """Return the group of each entry, and its place in the group, for groups of these sizes."""
     group = np.repeat(np.arange(len(counts)), counts)
     place = np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
     return group, place
 
 
 def nbytes_of(*things: object, but: Iterable[object] = ()) -> int:
-    """Return the memory of the arrays that things are made of, each counted once, in bytes.
+    """Return the memory of all arrays in the things, each counted once, in bytes.
 
-    Things are arrays, also sparse ones, dataclasses, and tuples of them; what `but` is made of is
-    not counted.
+    Things are arrays, also sparse ones, dataclasses, and tuples of them; arrays in `but` are not
+    counted.
     """
     others = _arrays_in(but)
     return sum(size for array, size in _arrays_in(things).items() if array not in others)
 
 
 def _arrays_in(things: Iterable[object]) -> dict[int, int]:
-    """Return the sizes of arrays in memory, by their ids; those of views are not their own."""
+    """Return the sizes of arrays in memory, by their ids; views have none of their own."""
     sizes, waiting = {}, list(things)
     while waiting:
         thing = waiting.pop()
@@ -128,7 +128,7 @@ def as_number(
 
 
 def require_word(value: object, words: Iterable[str], name: str) -> None:
-    """Raise an `EngineError` unless a value is one of some words."""
+    """Raise an `EngineError` unless a value is one of these words."""
     known = list(words)
     if value not in known:
         raise EngineError(NO_WORD.format(name=name, words=", ".join(map(repr, known)), value=value))
@@ -144,11 +144,11 @@ def as_points(
     values : array_like, shape (n,)
         Points x + iy, real or complex.
     name : str
-        What the points are called in the error.
+        Name of the points in the error.
     at_least : int
-        Smallest number of points that is accepted.
+        Smallest number of points.
     most : float
-        Largest distance from the origin that is.
+        Largest distance from the origin.
 
     Raises
     ------
@@ -173,7 +173,7 @@ def as_points(
 
 
 def as_count(value: object, name: str) -> int:
-    """Return a whole number, or raise `EngineError` if the value is none."""
+    """Return a whole number, or raise `EngineError`."""
     try:
         return operator.index(value)  # type: ignore[arg-type]
     except TypeError:
@@ -189,7 +189,7 @@ def as_reals(values: npt.ArrayLike, name: str) -> Floats:
 
 
 def as_tuple(values: Iterable[item_], name: str) -> tuple[item_, ...]:
-    """Return the entries of a list, or raise `EngineError` if the values are none."""
+    """Return the entries of a list, or raise `EngineError` for other values."""
     try:
         return tuple(values)
     except TypeError:
@@ -204,7 +204,7 @@ def require_kind(value: object, kind: type, name: str) -> None:
 
 
 def _as_array(values: npt.ArrayLike) -> npt.NDArray[Any]:
-    """Return values as an array, of objects where lists are of different lengths."""
+    """Return values as an array, of objects if the lists have different lengths."""
     try:
         return np.asarray(values)
     except ValueError:

@@ -1,4 +1,4 @@
-"""What `import engine` shows, all in one place; the rooms have more."""
+"""All names of `import engine`; the rooms have more."""
 
 from engine.deform import (
     Deformer as Deformer,

@@ -1,10 +1,10 @@
-"""The variants of interpolation by name, what each needs, and what they are compared with."""
+"""The variants of interpolation by name, their needs, and the rival methods."""
 
 from enum import StrEnum
 
 
 class Variant(StrEnum):
-    """How the derivatives of two keyframes are blended; the values are the names in files.
+    """Ways to blend the derivatives of two keyframes; the values are the names in files.
 
     `engine.interpolation.prepare_inbetweens` builds them.
     """
@@ -17,7 +17,7 @@ class Variant(StrEnum):
 
     @property
     def needs_transform(self) -> bool:
-        """Whether it needs the Hilbert transform of the outline."""
+        """Whether the variant needs the Hilbert transform of the outline."""
         return self is Variant.METRIC
 
     @property
@@ -41,10 +41,10 @@ class Baseline(StrEnum):
 
     @property
     def needs_maps(self) -> bool:
-        """Whether its keyframes must be harmonic maps; positions of a mesh do not do."""
+        """Whether its keyframes must be harmonic maps; positions of a mesh do not suffice."""
         return self in {Baseline.HANDLES, Baseline.CONFORMAL}
 
     @property
     def unwraps(self) -> bool:
-        """Whether it blends an angle of each triangle, which has a branch to choose."""
+        """Whether it blends an angle of each triangle, whose branch must be chosen."""
         return self in {Baseline.ARAP, Baseline.MESH_ETA}

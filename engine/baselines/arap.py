@@ -11,14 +11,14 @@ from engine.baselines.poisson import PoissonStep
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ArapInbetweens:
-    """Each triangle's Jacobian is blended by itself, J = R S: the angle of R and S linearly.
+    """Each triangle's Jacobian is blended separately, J = R S: the angle of R and S linearly.
 
-    What comes out belongs to no map, and the nearest one is taken. Nothing bounds what that costs
-    in distortion.
+    The blended Jacobians belong to no map, and the nearest map is taken. This step may add any
+    amount of distortion.
 
-    Departs from their paper: its triangles weigh alike, here by their areas, so that the result
-    does not hang on the mesh; and the angles are consistent unless the keyframes' are principal, as
-    Section 8 of *Bounded Distortion Harmonic Shape Interpolation* has it for its comparisons.
+    Departs from their paper: triangles are weighted by area, not equally, so that the result does
+    not depend on the mesh. The angles are consistent unless the keyframes' are principal, as in the
+    comparisons of Section 8 of *Bounded Distortion Harmonic Shape Interpolation*.
     """
 
     first: MeshKeyframe
@@ -26,7 +26,6 @@ class ArapInbetweens:
     step: PoissonStep
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         first, second, rest = self.first, self.second, 1.0 - time
         rotation = np.exp(1j * (rest * first.angles + time * second.angles))
         similar = rest * np.abs(first.fz) + time * np.abs(second.fz)

@@ -13,16 +13,16 @@ from engine.baselines.mesh_keyframes import MeshKeyframe
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FlatInbetweens:
-    """The pull-back metrics Jᵀ J are blended linearly, and what comes out is made flat.
+    """The pull-back metrics Jᵀ J are blended linearly, and the blend is flattened.
 
-    On a mesh the metric of a triangle is the squared lengths of its edges, so that these are
-    blended. The blend's conformal distortion is below the larger of the keyframes' in every
-    triangle, but it is not flat; the flattening is discretely conformal, and keeps the lengths
-    between neighbours on the border. What it adds to a triangle's conformal distortion goes to 0
-    with the triangle's size; to the isometric distortion it may add anything.
+    On a mesh the metric of a triangle is the squared lengths of its edges, so these are blended.
+    The blend's conformal distortion is below the larger of the keyframes' in every triangle, but
+    the blend is not flat. The flattening is discretely conformal, and keeps the lengths between
+    neighbours on the border. The conformal distortion that it adds to a triangle goes to 0 with the
+    triangle's size; the added isometric distortion has no limit.
 
-    The pose that a metric leaves open is the anchor's: its position and arg f_z around it are
-    linear in time.
+    A metric leaves the rigid motion free. The anchor fixes it: its position and arg f_z around it
+    are linear in time.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class FlatInbetweens:
 
     @classmethod
     def of(cls, first: MeshKeyframe, second: MeshKeyframe, flattening: Flattening) -> Self:
-        """Work out the metrics of both keyframes."""
+        """Compute the metrics of both keyframes."""
         lengths = [edge_lengths(flattening.domain, key.positions) for key in (first, second)]
         squared = freeze(np.square(lengths))
         return cls(first=first, second=second, flattening=flattening, squared=squared)
@@ -47,7 +47,6 @@ class FlatInbetweens:
         return np.asarray(np.sqrt((1.0 - time) * self.squared[0] + time * self.squared[1]))
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         first, second, domain = self.first, self.second, self.flattening.domain
         positions, defect = self.flattening.flatten(self.blended_lengths(time))
         fz, fzbar = domain.derivatives(positions)

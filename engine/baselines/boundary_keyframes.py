@@ -1,8 +1,9 @@
-"""Keyframes that are told by where the boundary goes: harmonic maps, in closed form or on a mesh.
+"""Keyframes from positions of the boundary: harmonic maps, in closed form or on a mesh.
 
-Figure 7 of the paper takes its keyframes from harmonic coordinates, the harmonic functions that are
-linear on each edge of the outline and 1 at one of its vertices (Weber and Gotsman 2010, Section
-10): the map that they make of given places of the vertices is harmonic, and linear on each edge.
+Figure 7 of the paper takes its keyframes from harmonic coordinates. These are the harmonic
+functions that are linear on each edge of the outline and 1 at one of its vertices (Weber and
+Gotsman 2010, Section 10). Their map to given positions of the vertices is harmonic, and linear on
+each edge.
 """
 
 from collections.abc import Sequence
@@ -20,13 +21,13 @@ from engine.errors import EngineError
 from engine.geometry import SIZES, diameter, edge_vectors, require_around, require_simple
 from engine.maps import HarmonicMap, cauchy_coordinates
 
-# Samples of each edge of the outline: for a fit, over its unknowns, and for the look at its error.
+# Samples of each edge of the outline: for a fit, over its unknowns, and for the check of its error.
 LEAST_PER_EDGE = 16
 SAMPLES_PER_UNKNOWN = 3
 CHECKED_PER_EDGE = 61
-GOOD = 1e-4  # error of a fit, over the size, at which the cage is not cut any finer
+GOOD = 1e-4  # error of a fit, over the size, at which the cage is cut no finer
 MOST_CAGE_VERTICES = 200
-NEGLIGIBLE = 1e-11  # singular values of the coordinates, over the largest, that are left out
+NEGLIGIBLE = 1e-11  # singular values of the coordinates, over the largest, that are dropped
 
 
 def harmonic_coordinate_maps(
@@ -38,7 +39,6 @@ def harmonic_coordinate_maps(
     ----------
     outline : complex, shape (p,)
         Simple, counter-clockwise, inside the cage.
-    cage : complex, shape (n,)
     targets : sequence of complex, shape (p,)
         Of the outline's vertices, in each keyframe.
 
@@ -47,17 +47,17 @@ def harmonic_coordinate_maps(
     maps : tuple of HarmonicMap
         Over one cage: the given one, its edges cut up.
     error : float
-        How far they are from the targets on the outline at most, over the diameter of the targets:
-        the maps are fitted in the span of the Cauchy coordinates, by least squares.
+        Largest distance from the targets on the outline, over the diameter of the targets: the maps
+        are fitted in the span of the Cauchy coordinates, by least squares.
 
     Raises
     ------
     EngineError
-        If a polygon is not as said, or there are not as many targets as vertices.
+        If a polygon is invalid, or there are not as many targets as vertices.
 
     Notes
     -----
-    Harmonic coordinates are no promise: such a map may fold, which shows when it is interpolated.
+    Harmonic coordinates do not exclude folds; interpolation reports a map that folds.
     """
     outline = as_points(outline, "outline", at_least=3)
     cage = as_points(cage, "cage", at_least=3)
@@ -91,14 +91,13 @@ def discrete_harmonic(domain: TriangulatedDomain, positions: npt.ArrayLike) -> C
 
     Parameters
     ----------
-    domain : TriangulatedDomain
     positions : complex, shape (n,)
-        Of all vertices; those of inner ones do not matter.
+        Of all vertices; those of inner ones are ignored.
 
     Returns
     -------
     complex128, shape (n,)
-        Inside, the means of the neighbours' with cotangent weights: of all maps that are linear in
+        Inside, the means of the neighbours with cotangent weights: of all maps that are linear in
         each triangle, the one of least Dirichlet energy (Pinkall and Polthier 1993).
     """
     found = as_points(positions, "positions").copy()
@@ -138,7 +137,7 @@ def _fitted(outline: Complexes, cage: Complexes, wanted: Complexes) -> Complexes
 def _largest_error(
     outline: Complexes, cage: Complexes, wanted: Complexes, found: Complexes
 ) -> float:
-    """Return how far fitted maps are from what is wanted, between the samples of the fit too."""
+    """Return the distance of fitted maps from the wanted positions, also between the samples."""
     samples, right = _along(outline, wanted, CHECKED_PER_EDGE, 0.5)
     return float(np.abs(_both(cage, samples) @ found - right).max())
 

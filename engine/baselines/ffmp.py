@@ -19,25 +19,25 @@ from engine.baselines.triangulated_domain import (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FfmpInbetweens:
-    """Blends what takes each triangle's frame to its neighbour's, J_i⁻¹ J_j, and integrates twice.
+    """Blends the transforms between neighbouring triangles' frames, J_i⁻¹ J_j; integrates twice.
 
-    The ratios of neighbouring Jacobians know no rotation of the whole and no affine map, so that
-    there is no branch to choose but at the anchor's triangle, whose own frame is given. They are
-    blended in their polar decomposition; frames are found that fit them best, then positions that
-    fit the frames best.
+    The ratios of neighbouring Jacobians are independent of rotations and affine maps of the whole,
+    so no branch must be chosen except at the anchor's triangle, whose frame is given. The ratios
+    are blended in their polar decomposition. Then frames are fitted to the ratios, and positions to
+    the frames.
 
-    If keyframe i becomes B_i f^i with affine B_i, every in-between becomes an affine map of what it
-    was: both systems are linear in the rows of the Jacobians, and the frame at the anchor is a
-    factor on the left of all others. So nothing bounds the distortion.
+    If keyframe i becomes B_i f^i with affine B_i, every in-between becomes an affine map of its
+    former value. Both systems are linear in the rows of the Jacobians, and the frame at the anchor
+    is a factor on the left of all others. So nothing bounds the distortion.
 
     Departs from their paper: surfaces in space have frames of three vectors, a plane mesh of two;
-    and both ratios at an edge count, J_i⁻¹ J_j and J_j⁻¹ J_i, so that no order of the triangles
-    matters.
+    and both ratios at an edge count, J_i⁻¹ J_j and J_j⁻¹ J_i, so that the order of the triangles
+    does not matter.
 
     Parameters
     ----------
     angles, scales : float64, shape (2, 2 e)
-        Of the ratios at inner edges, to and fro, in each keyframe: those of the similar part.
+        Of the ratios at inner edges, in both directions, in each keyframe: of their similar part.
     stretches : complex128, shape (2, 2 e)
         The rest of their polar decompositions.
     """
@@ -51,7 +51,7 @@ class FfmpInbetweens:
 
     @classmethod
     def of(cls, first: MeshKeyframe, second: MeshKeyframe, step: PoissonStep) -> Self:
-        """Work out the ratios of both keyframes."""
+        """Compute the ratios of both keyframes."""
         start, end = _directed(step.domain)
         ratios = [_ratios(key, start, end) for key in (first, second)]
         similar, other = (np.array(part) for part in zip(*ratios, strict=True))
@@ -66,7 +66,6 @@ class FfmpInbetweens:
         )
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         first, second, weights = self.first, self.second, np.array([1.0 - time, time])
         rotation = np.exp(1j * (weights @ self.angles))
         ratios = rotation * (weights @ self.scales), rotation * (weights @ self.stretches)
@@ -97,7 +96,7 @@ class FfmpInbetweens:
 
 
 def _directed(domain: TriangulatedDomain) -> tuple[Indices, Indices]:
-    """Return the triangles on either side of the inner edges, to and fro, each (2 e,)."""
+    """Return the triangles on either side of the inner edges, in both directions, each (2 e,)."""
     one, other = domain.pairs.T
     return np.concatenate([one, other]), np.concatenate([other, one])
 
@@ -113,7 +112,7 @@ def _ratios(key: MeshKeyframe, start: Indices, end: Indices) -> tuple[Complexes,
 def _fitted(
     matrix: csr_array, root: int, similar: complex, other: complex
 ) -> tuple[Complexes, Complexes]:
-    """Return f_z and f_z̄ (m,) of the frames that fit the ratios best, given the root's."""
+    """Return f_z and f_z̄ (m,) of the frames that fit the ratios best, with the root's given."""
     own, given = [2 * root, 2 * root + 1], np.array([similar + other, 1j * (similar - other)])
     columns = csc_array(matrix)
     free = np.delete(np.arange(matrix.shape[1]), own)

@@ -2,8 +2,8 @@
 
 Two metrics of a mesh are discretely conformal if their edges' lengths differ by a factor for each
 end, e^{(u_i + u_j)/2} (Luo 2004; Springborn, Schröder and Pinkall 2008). The angles around each
-vertex inside sum to 2π where a convex function of u is least; its gradient there is the angle
-defect, its Hessian half the cotangent Laplacian.
+inner vertex sum to 2π at the minimum of a convex function of u; its gradient is the angle defect,
+its Hessian half the cotangent Laplacian.
 """
 
 from dataclasses import dataclass
@@ -17,15 +17,15 @@ from engine.baselines.triangulated_domain import TriangulatedDomain, factorise_s
 from engine.errors import EngineError
 
 MOST_STEPS = 40
-SMALLEST_PART = 2.0**-20  # of a Newton step
-LARGEST_CHANGE = 2.0  # of a logarithm, in a step
-FLOOR = 1e-9  # of the Hessian's diagonal, where all triangles around a vertex are beyond flat
-ENOUGH = 1e-10  # angle defect, in radians, at which the search ends
+SMALLEST_PART = 2.0**-20  # smallest tried part of a Newton step
+LARGEST_CHANGE = 2.0  # of a logarithm, in one step
+FLOOR = 1e-9  # of the Hessian's diagonal, for vertices with only degenerate triangles
+ENOUGH = 1e-10  # angle defect, in radians, at which the iteration ends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Flattening:
-    """Makes metrics of a simply connected mesh flat, with their lengths on the border kept.
+    """Makes metrics of a simply connected mesh flat, with unchanged lengths on the border.
 
     Half-edge k of a triangle leads from its corner k to the next one.
 
@@ -34,14 +34,13 @@ class Flattening:
     inner : intp, shape (i,)
         Vertices that are not on the border.
     place : intp, shape (n,)
-        Of each vertex among those; −1 on the border.
+        Index of each vertex among the inner ones; −1 on the border.
     hinges : intp, shape (m, 2)
-        The half-edge by which each triangle hangs on the one before it on the way through all, and
-        the twin of that.
+        The half-edge that joins each triangle to its parent in the tree of triangles, and its twin.
     reached : intp, shape (n,)
-        A half-edge from or to each vertex, the other end of which is its parent on the ways.
+        A half-edge between each vertex and its parent in the tree of vertices.
     forward : bool, shape (n,)
-        Whether that leads to the vertex.
+        Whether this half-edge leads to the vertex.
     """
 
     domain: TriangulatedDomain
@@ -85,15 +84,15 @@ class Flattening:
         Returns
         -------
         positions : complex128, shape (n,)
-            Of the vertices, the anchor at 0, turned anyhow.
+            Of the vertices, the anchor at 0, in any rotation.
         defect : float
-            The largest angle defect inside that is left, in radians.
+            The largest remaining angle defect inside, in radians.
 
         Notes
         -----
-        Newton's method on a convex function, some 5 steps. Where a length is more than the other
-        two together the function goes on convex, with the angles 0, 0 and π (Springborn et al.
-        2008), so that a metric on the way need not be one.
+        Newton's method on a convex function, some 5 steps. Where one length exceeds the sum of the
+        other two the function continues convexly, with the angles 0, 0 and π (Springborn et al.
+        2008), so an intermediate metric need not obey the triangle inequality.
         """
         corners, inner = self.domain.corners, self.inner
         logarithms = np.zeros(len(self.place))
@@ -110,7 +109,7 @@ class Flattening:
                 tried[inner] += part * direction
                 angles, cotangents = _angles(_scaled(lengths, tried, corners))
                 after = self._defects(angles)
-                # The function is convex: it has fallen if its slope has not risen far above 0.
+                # For a convex function: it has fallen if its slope has not risen far above 0.
                 if float(direction @ after) <= -0.5 * slope:
                     break
                 part /= 2
@@ -128,7 +127,7 @@ class Flattening:
         return np.asarray(2 * np.pi - sums[self.inner])
 
     def _hessian(self, cotangents: Floats) -> csc_array:
-        """Return half the cotangent Laplacian at the inner vertices, given those of the corners."""
+        """Return half the cotangent Laplacian at the inner vertices, from corners' cotangents."""
         start = self.place[self.domain.corners]
         end = np.roll(start, -1, axis=1)
         weights = 0.5 * np.roll(cotangents, 1, axis=1)  # opposite to half-edge k is corner k + 2
@@ -145,7 +144,7 @@ class Flattening:
 
     def _laid_out(self, lengths: Floats, angles: Floats) -> Complexes:
         """Return the positions (n,) of a flat metric, the anchor at 0."""
-        # Directions of the half-edges against the first of their triangle.
+        # Directions of the half-edges relative to the first of their triangle.
         turned = np.pi - angles
         turned[:, 0] = 0.0
         own = np.cumsum(turned, axis=1).ravel()
@@ -173,11 +172,11 @@ def _scaled(lengths: Floats, logarithms: Floats, corners: Indices) -> Floats:
 def _angles(lengths: Floats) -> tuple[Floats, Floats]:
     """Return the angles (m, 3) at the corners of triangles, and their cotangents.
 
-    By the half-angle formula, with what the triangle inequality leaves cut off at 0.
+    By the half-angle formula, with violations of the triangle inequality clipped to 0.
     """
     half = lengths.sum(axis=1, keepdims=True) / 2
     left = np.maximum(half - lengths, 0.0)  # without half-edge k
-    # Opposite to corner k is half-edge k + 1; those at it are k and k + 2.
+    # Opposite to corner k is half-edge k + 1; half-edges k and k + 2 meet at it.
     opposite, after, before = (np.roll(left, shift, axis=1) for shift in (-1, 0, 1))
     sine, cosine = np.sqrt(after * before), np.sqrt(half * opposite)
     angles = 2.0 * np.arctan2(sine, cosine)
@@ -188,7 +187,7 @@ def _angles(lengths: Floats) -> tuple[Floats, Floats]:
 
 
 def _hinges(domain: TriangulatedDomain) -> Indices:
-    """Return by which half-edges triangles hang on their parents; the root's are both its first."""
+    """Return the half-edges that join triangles to their parents; for the root twice its first."""
     twins = np.concatenate([domain.twins, domain.twins[:, ::-1]])
     child, parent = (twins // 3).T
     root = domain.crossings.order[0]

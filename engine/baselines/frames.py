@@ -1,4 +1,4 @@
-"""What every method returns, and what it is asked for."""
+"""Results of all rival methods, and their common interface."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -17,11 +17,11 @@ class MeshFrame:
     fz, fzbar : complex128, shape (m,)
         f_z and f_z̄ of each triangle, of the map that is linear in it.
     poisson_error : float or None
-        What the method's own blend of the Jacobians lacks of being one map's: the root of its mean
+        Distance of the method's own blend of the Jacobians from those of one map: the root mean
         squared difference from `fz` and `fzbar`, over that of the blend itself. 0 is integrable.
     angle_defect : float or None
-        The largest difference from 2π, in radians, of the angles around a vertex inside that is
-        left by a flattening.
+        The largest difference from 2π, in radians, of the angles around an inner vertex after a
+        flattening.
     rho : float or None
         The scaling of η.
     """
@@ -38,4 +38,4 @@ class MeshInbetweens(Protocol):
     """In-betweens of two keyframes by one method."""
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
+        pass

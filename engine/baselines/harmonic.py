@@ -18,11 +18,12 @@ HOLOMORPHIC = 1e-6  # largest k of a map that counts as holomorphic
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HandleInbetweens:
-    """The shape is deformed anew, by handles whose targets move straight from key to key.
+    """The shape is deformed in each frame, by handles with straight paths from key to key.
 
-    Chen and Weber (2015) keep their bounds in each frame, but handles that go straight go where
-    nobody would pull them. The search begins at the keyframe that is nearer in time and stays in
-    its valley: a keyframe comes out as far as it is a minimum of the energy for these handles.
+    Chen and Weber (2015) keep their bounds in each frame, but straight paths of handles are not the
+    paths that a person would drag. The search begins at the keyframe that is nearer in time and
+    stays in its valley. A keyframe is reproduced exactly only if it is a minimum of the energy for
+    its handles.
     """
 
     domain: TriangulatedDomain
@@ -31,7 +32,6 @@ class HandleInbetweens:
     second: HarmonicMap
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         handles = self.deformer.handles
         targets = (1.0 - time) * self.first(handles.points) + time * self.second(handles.points)
         start = self.deformer.resume(self.first if time < 0.5 else self.second)
@@ -45,8 +45,8 @@ class HandleInbetweens:
 class ConformalInbetweens:
     """Conformal maps stay conformal: log f' is blended (Weber and Gotsman 2010).
 
-    Departs from their paper: f' is integrated, not fitted in the span of the Cauchy coordinates,
-    so that the keyframes come out exactly.
+    Departs from their paper: f' is integrated, not fitted in the span of the Cauchy coordinates, so
+    that keyframes are reproduced exactly.
     """
 
     domain: TriangulatedDomain
@@ -56,7 +56,6 @@ class ConformalInbetweens:
     start: int  # the keyframe at time 0
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         return _frame(self.domain, self.prepared.frame(self.start + time).positions)
 
 
@@ -66,12 +65,9 @@ def _frame(domain: TriangulatedDomain, positions: Complexes) -> MeshFrame:
 
 
 def require_holomorphic(maps: Sequence[HarmonicMap], boundary: Boundary) -> None:
-    """Refuse keyframes that are not conformal.
+    """Raise an `EngineError` for keyframes that are not conformal.
 
-    Raises
-    ------
-    EngineError
-        If a map has k > 1e-6 somewhere on the boundary, and hence in the domain.
+    Such a map has k > 1e-6 somewhere on the boundary.
     """
     for number, (fz, fzbar) in enumerate(zip(*derivatives_of(maps, boundary.points), strict=True)):
         k = np.abs(fzbar) / np.abs(fz)

@@ -15,26 +15,26 @@ from engine.maps import distortion
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MeshEtaInbetweens:
-    """log f_z and η are blended linearly in each triangle, and η scaled by one ρ (Figure 11).
+    """log f_z and η are blended linearly in each triangle, and η is scaled by one ρ (Figure 11).
 
-    f_z and f_z̄ then keep the keyframes' bounds in every triangle, but are no map's; the nearest map
-    is taken. Of discrete harmonic keyframes what that costs goes to 0 with the size of the
-    triangles (Section 9.1); of others it need not.
+    f_z and f_z̄ then keep the keyframes' bounds in every triangle, but belong to no map; the
+    nearest map is taken. For discrete harmonic keyframes the added distortion goes to 0 with the
+    size of the triangles (Section 9.1); for others it need not.
 
-    ρ is the least of what the triangles allow, Equations (16) to (18), with the same passage from
-    the worst bounds beside a keyframe as `engine.interpolation.scaling.exact_rho.ExactRho`.
+    ρ is the least of the triangles' limits, Equations (16) to (18). It is blended from the worst
+    bounds beside a keyframe as in `engine.interpolation.scaling.exact_rho.ExactRho`.
     """
 
     first: MeshKeyframe
     second: MeshKeyframe
     step: PoissonStep
     eta: Complexes  # of both keyframes, (2, m)
-    samples: PointSamples  # what ρ depends on, of each triangle
+    samples: PointSamples  # the values of each triangle that determine ρ
     extremes: KeyframeExtremes  # of all triangles
 
     @classmethod
     def of(cls, first: MeshKeyframe, second: MeshKeyframe, step: PoissonStep) -> Self:
-        """Work out η and the bounds of both keyframes."""
+        """Compute η and the bounds of both keyframes."""
         fz, fzbar = np.array([first.fz, second.fz]), np.array([first.fzbar, second.fzbar])
         none = np.empty((0, fz.shape[1]), dtype=np.complex128)
         samples = PointSamples.of(fz, fzbar.conj(), none, none)
@@ -59,7 +59,6 @@ class MeshEtaInbetweens:
         return float(tight ** (1.0 - share) * loose**share)
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         first, second, rest = self.first, self.second, 1.0 - time
         modulus = np.abs(first.fz) ** rest * np.abs(second.fz) ** time
         fz = modulus * np.exp(1j * (rest * first.angles + time * second.angles))

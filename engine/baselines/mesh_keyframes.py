@@ -1,4 +1,4 @@
-"""Keyframes of a triangulated domain: where its vertices are, checked and differentiated."""
+"""Keyframes of a triangulated domain: positions of its vertices, checked and differentiated."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,11 +24,8 @@ class MeshKeyframe:
 
     Parameters
     ----------
-    positions : complex128, shape (n,)
-    fz, fzbar : complex128, shape (m,)
     angles : float64, shape (m,)
         arg f_z of each triangle.
-    anchor_position : complex
     anchor_angle : float
         arg f_z around the anchor.
     """
@@ -42,7 +39,7 @@ class MeshKeyframe:
 
     @property
     def stretch(self) -> Complexes:
-        """S of the polar decomposition R S: |f_z| z + this (m,) times z̄."""
+        """S of the polar decomposition R S: z ↦ |f_z| z + this (m,) times z̄."""
         return np.asarray(self.fzbar * np.exp(-1j * self.angles))
 
 
@@ -57,26 +54,25 @@ def mesh_keyframes(
 
     Parameters
     ----------
-    domain : TriangulatedDomain
     positions : sequence of complex, shape (n,)
         Of the vertices, in each of q keyframes.
     turns : int, shape (q − 1,), optional
         Whole turns between neighbouring keyframes beyond the shorter way.
     principal : bool
-        Whether each triangle's angle is the one between −π and π, whatever its neighbours' are: as
-        Alexa et al. (2000) have it, and the reason why that fails where shapes turn far.
+        Whether each triangle's angle is the one between −π and π, regardless of its neighbours: the
+        choice of Alexa et al. (2000), which fails where shapes rotate far.
 
     Raises
     ------
     EngineError
-        If there are fewer than two keyframes, or one has not as many positions as the domain, or
+        If there are fewer than two keyframes, or a keyframe has the wrong number of positions,
         folds, or winds around a hole.
 
     Notes
     -----
     Otherwise the angles are continued from the anchor across inner edges (Section 7.2 of the paper;
-    Choi and Szymczak 2003), and the anchor's own are as in `root_sheets`. Across an edge there is
-    no doubt: where nothing folds f_z turns an edge to less than π/2 from where the map takes it,
+    Choi and Szymczak 2003), and the anchor's own are as in `root_sheets`. Across an edge the branch
+    is unique: without folds f_z rotates an edge to less than π/2 from its image under the map,
     which is the same for the triangles on both sides. Around a hole the sum may be a whole turn.
     """
     if len(positions) < 2:
@@ -114,7 +110,7 @@ def _continued(domain: TriangulatedDomain, fz: Complexes, anchor: complex) -> Fl
     root = crossings.order[0]
     turns[root] = np.angle(fz[root] / anchor)
     principal = np.angle(fz / anchor)
-    # Only the integer is taken from the sum, so that no rounding adds up on the way.
+    # Only the integer is taken from the sum, so that rounding does not add up along the path.
     sheets = np.round((crossings.sums(turns) - principal) / (2 * np.pi))
     return principal + 2 * np.pi * sheets
 
@@ -122,7 +118,10 @@ def _continued(domain: TriangulatedDomain, fz: Complexes, anchor: complex) -> Fl
 def _require_unwound(
     domain: TriangulatedDomain, fz: Complexes, angles: Floats, number: int
 ) -> None:
-    """Refuse angles that grow by a whole turn on the way around a hole: they have no logarithm."""
+    """Raise an `EngineError` for angles that grow by whole turns around a hole.
+
+    They have no logarithm.
+    """
     one, other = domain.pairs.T
     rest = angles[other] - angles[one] - np.angle(fz[other] * fz[one].conj())
     wound = np.flatnonzero(np.abs(rest) > np.pi)
@@ -148,7 +147,7 @@ def _checked(domain: TriangulatedDomain, values: npt.ArrayLike, number: int) -> 
 def _require_unfolded(
     domain: TriangulatedDomain, positions: Complexes, sigma_b: Floats, number: int
 ) -> None:
-    """Refuse triangles that are turned over, and fans that wind twice around a vertex."""
+    """Raise an `EngineError` for flipped triangles, and fans that wind twice around a vertex."""
     worst = int(sigma_b.argmin())
     if sigma_b[worst] <= 0:
         at = domain.points[domain.corners[worst]].mean()

@@ -17,12 +17,12 @@ from engine.baselines.triangulated_domain import (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoissonStep:
-    """Integrates Jacobians that need not belong together.
+    """Integrates Jacobians of single triangles.
 
-    Per triangle given a and b, it minimises Σ area (|f_z − a|² + |f_z̄ − b|²), half of the squared
-    Frobenius norm of the difference of the Jacobians, over the piecewise linear maps f that leave
-    the anchor where it is wanted (Alexa et al. 2000, Section 3; that it is a Poisson equation is in
-    Xu et al. 2006).
+    Given a and b per triangle, it minimises Σ area (|f_z − a|² + |f_z̄ − b|²), half of the squared
+    Frobenius norm of the difference of the Jacobians, over the piecewise linear maps f with a given
+    position of the anchor (Alexa et al. 2000, Section 3; Xu et al. 2006 show that it is a Poisson
+    equation).
     """
 
     domain: TriangulatedDomain
@@ -39,7 +39,7 @@ class PoissonStep:
         )
 
     def integrate(self, fz: Complexes, fzbar: Complexes, anchor: complex) -> MeshFrame:
-        """Return the map nearest to f_z and f_z̄ (m,), with the anchor at a place."""
+        """Return the map nearest to f_z and f_z̄ (m,), with the anchor at a given position."""
         domain = self.domain
         right = domain.sums_at_vertices(fz, fzbar)
         positions = np.zeros(len(domain.points), dtype=np.complex128)

@@ -33,10 +33,9 @@ class PreparedBaseline:
 
     Parameters
     ----------
-    baseline : Baseline
     domain : TriangulatedDomain
         Its anchor is the vertex whose position and rotation are linear in time.
-    intervals : tuple of MeshInbetweens, length q − 1 or q
+    segments : tuple of MeshInbetweens, length q − 1 or q
         One for each pair of neighbouring keyframes; in a loop one more, from the last to the first.
     """
 
@@ -45,7 +44,7 @@ class PreparedBaseline:
     segments: tuple[MeshInbetweens, ...]
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time from 0 to the number of intervals.
+        """Return the in-between at a time from 0 to the number of segments.
 
         Raises
         ------
@@ -70,17 +69,15 @@ def prepare_baseline(
     bounds: Bounds = Bounds(),
     loop: bool = False,
 ) -> PreparedBaseline:
-    """Prepare the in-betweens of keyframes by a method that the paper compares its own with.
+    """Prepare the in-betweens of keyframes by a rival method.
 
     Parameters
     ----------
-    baseline : Baseline or str
     keyframes : sequence of HarmonicMap, or of complex of shape (n,); length q ≥ 2
-        Maps of the domain, or where the vertices are in each keyframe; a baseline that `needs_maps`
-        must be given maps.
+        Maps of the domain, or positions of the vertices in each keyframe; a baseline that
+        `needs_maps` must be given maps.
     points : complex, shape (n,)
         The vertices of the domain.
-    triangles : int, shape (m, 3)
     outline : complex, shape (p,), optional
         The domain's boundary, inside the cage of the maps, around the vertices: for baselines that
         `needs_maps`.
@@ -89,19 +86,19 @@ def prepare_baseline(
     turns : int, shape (q − 1,), or (q,) in a loop, optional
         Whole turns between neighbouring keyframes beyond the shorter way.
     principal : bool
-        Whether the angles of ARAP and mesh η are those between −π and π of each triangle by itself,
-        without regard to its neighbours: the version that fails.
+        Whether the angles of ARAP and mesh η are those between −π and π of each triangle,
+        regardless of its neighbours: the version that fails.
     handles : complex, shape (h,), optional
-        Points of the domain that are led straight, for the baseline of that name.
+        Points of the domain that move straight, for the baseline of that name.
     bounds : Bounds
-        That the same baseline obeys.
+        For the same baseline.
     loop : bool
         Whether the last keyframe leads on to the first one, which is at time q again.
 
     Raises
     ------
     EngineError
-        If anything of that does not hold, or a keyframe folds.
+        If an argument is invalid, or a keyframe folds.
     """
     baseline = _known_baseline(baseline)
     domain = TriangulatedDomain.of(points, triangles, anchor)
@@ -131,7 +128,7 @@ def prepare_baseline(
 def _on_mesh(
     baseline: Baseline, domain: TriangulatedDomain, keyframes: Sequence[MeshKeyframe]
 ) -> list[MeshInbetweens]:
-    """Prepare a method that knows the keyframes by their triangles only."""
+    """Prepare a method that uses only the keyframes' triangles."""
     pairs = list(pairwise(keyframes))
     if baseline is Baseline.SIG13:
         flattening = Flattening.on(domain)
@@ -189,7 +186,7 @@ def _conformal(
 def _maps_over_one_cage(
     baseline: Baseline, keyframes: Sequence[HarmonicMap | Complexes]
 ) -> list[HarmonicMap]:
-    """Refuse keyframes that are no maps, or not of one cage."""
+    """Raise an `EngineError` for keyframes that are no maps, or have different cages."""
     maps = [each for each in keyframes if isinstance(each, HarmonicMap)]
     if len(maps) < len(keyframes):
         raise EngineError(

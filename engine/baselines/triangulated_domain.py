@@ -1,4 +1,4 @@
-"""A triangulated domain: piecewise linear maps on it, their derivatives, and ways through it."""
+"""A triangulated domain: piecewise linear maps on it, their derivatives, and paths through it."""
 
 from dataclasses import dataclass
 from typing import Self, TypeVar
@@ -17,7 +17,7 @@ from engine.geometry import as_xy
 from engine.paths import MESH_POINTS, SpanningTree, breadth_first_parents, depth_first_numbering
 
 type_ = TypeVar("type_", Complexes, Floats)
-FLAT = 1e-12  # area of a triangle, over the square of its longest edge, that counts as none
+FLAT = 1e-12  # area of a triangle, over the square of its longest edge, that counts as 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -26,7 +26,6 @@ class TriangleTree:
 
     Parameters
     ----------
-    tree : SpanningTree
     order : intp, shape (s,)
         The nodes in the tree's own order; the first is the root.
     parent : intp, shape (s,)
@@ -39,7 +38,7 @@ class TriangleTree:
 
     @classmethod
     def from_edges(cls, count: int, edges: Indices, root: int) -> Self:
-        """Reach all nodes from the root by the fewest edges (e, 2)."""
+        """Connect all nodes to the root by the fewest edges (e, 2)."""
         parent = breadth_first_parents(count, edges, root)
         order = depth_first_numbering(parent, root)
         place = np.empty(count, dtype=np.intp)
@@ -48,7 +47,7 @@ class TriangleTree:
         return cls(tree=tree, order=freeze(order), parent=freeze(parent))
 
     def sums(self, steps: type_) -> type_:
-        """Return for each node (s,) the sum of `steps` (s,) on the way from the root."""
+        """Return for each node (s,) the sum of `steps` (s,) on the path from the root."""
         sums = np.empty_like(steps)
         sums[self.order] = self.tree.sums(steps[self.order])
         return sums
@@ -64,20 +63,19 @@ class TriangulatedDomain:
     ----------
     mesh : Mesh
         n vertices and m triangles, all counter-clockwise.
-    areas : float64, shape (m,)
     gradient : complex128, sparse, shape (m, n)
-        ∂φ_j/∂z of the hat functions: times the positions of the vertices it is f_z of each
-        triangle, and its conjugate times them is f_z̄.
+        ∂φ_j/∂z of the hat functions: its product with the positions of the vertices is f_z of each
+        triangle, and that of its conjugate is f_z̄.
     twins : intp, shape (e, 2)
-        The two half-edges that an inner edge consists of; number 3 t + k leads from corner k of
-        triangle t to its next.
+        The two half-edges of each inner edge; number 3 t + k leads from corner k of triangle t to
+        its next.
     border : bool, shape (n,)
         Whether a vertex is on the border.
     loops : int
-        Of edges that the border consists of: 1, and one more for each hole.
+        Number of loops of the border: 1, and one more for each hole.
     anchor : int
         The vertex whose pose is given.
-    ways : TriangleTree
+    tree : TriangleTree
         Through the vertices along edges, from the anchor.
     crossings : TriangleTree
         Through the triangles across inner edges, from one at the anchor.
@@ -97,11 +95,10 @@ class TriangulatedDomain:
     def of(
         cls, points: npt.ArrayLike, triangles: npt.ArrayLike, anchor: npt.ArrayLike | None = None
     ) -> Self:
-        """Check a mesh and find its ways.
+        """Check a mesh and find its trees.
 
         Parameters
         ----------
-        points : complex, shape (n,)
         triangles : int, shape (m, 3)
             All counter-clockwise, or all clockwise.
         anchor : complex, optional
@@ -110,8 +107,8 @@ class TriangulatedDomain:
         Raises
         ------
         EngineError
-            If a triangle names no point or is flat, some are turned over, a point is in no
-            triangle, an edge is in more than two, or the triangles are not of one piece.
+            If a triangle names no point or is flat, some triangles are flipped, a point is in no
+            triangle, an edge is in more than two, or the triangles are not connected.
         """
         points = as_points(points, "points", at_least=3)
         corners = _oriented(points, _as_corners(triangles, len(points)))
@@ -139,7 +136,6 @@ class TriangulatedDomain:
 
     @property
     def points(self) -> Complexes:
-        """The vertices, complex128 (n,)."""
         return self.mesh.vertices
 
     @property
@@ -178,7 +174,7 @@ class TriangulatedDomain:
 def factorise_symmetric(matrix: csr_array | csc_array) -> SuperLU:
     """Return the factors of a symmetric positive definite matrix.
 
-    The order of elimination is found anew each time, which is a tenth of the cost.
+    The order of elimination is recomputed each time, which is a tenth of the cost.
     """
     return splu(
         csc_array(matrix),
@@ -244,7 +240,7 @@ def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
 
 
 def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
-    """Refuse loose points, and triangles that no edges join to the rest."""
+    """Raise an `EngineError` for points without triangles, and for triangles in several pieces."""
     unused = np.flatnonzero(np.bincount(corners.ravel(), minlength=count) == 0)
     if len(unused):
         raise EngineError(f"Point {unused[0]} is in no triangle; leave it out.")
@@ -267,7 +263,6 @@ def _gradient(points: Complexes, corners: Indices, areas: Floats) -> csr_array:
 
 
 def _farthest(points: Complexes, border: Booleans) -> int:
-    """Return the vertex farthest from those on the border."""
     xy = as_xy(points)
     distances, _ = cKDTree(xy[border]).query(xy)
     return int(np.argmax(distances))

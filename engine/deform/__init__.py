@@ -1,7 +1,7 @@
 """The deformer: handles, energy, barrier and Newton steps (Chen and Weber 2015, 2017).
 
-In: a certified map, handles, and where they are wanted.
-Out: certified maps whose handles are nearer, with status and statistics.
+In: a certified map, handles and their targets.
+Out: certified maps whose handles are nearer to their targets, with status and statistics.
 Imports: `engine.dirichlet`, `engine.maps`, `engine.geometry`.
 """
 

@@ -1,4 +1,4 @@
-"""One step of Newton's method that ends in a certified map."""
+"""One Newton step that ends in a certified map."""
 
 from dataclasses import dataclass
 
@@ -20,27 +20,24 @@ from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds, certify
 FARTHEST = 0.05
 # A step whose map is not certified is halved this many times.
 HALVINGS = 5
-# After a step of which less was taken, walls are near, and the Hessian changes much.
+# A shortened step means that a bound is near and the Hessian changes much.
 FAR_FROM_BARRIER = 0.7
-# Added samples are dropped when they outnumber this part of those of the shape itself.
+# Added samples are dropped when they outnumber this part of the shape's own samples.
 MOST_ADDED = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CertifiedStep:
-    """What was taken of a step.
+    """Outcome of one step.
 
     Parameters
     ----------
-    map : HarmonicMap
-    certificate : Certificate
-    jet : Evaluation
-        Of the map.
-    direction : Direction
+    evaluation : Evaluation
+        Of `map`.
     length : float
         Part of the direction that was taken; 0 where no map along it could be certified.
-    broken : Indices
-        The segments where the first of them broke a bound.
+    broken_segments : Indices
+        Segments where the first trial map broke a bound.
     preconditioner : Preconditioner or None
         For the next step.
     """
@@ -65,14 +62,7 @@ def take_certified_step(
 ) -> CertifiedStep:
     """Step as far along Newton's direction as the map stays certified within `required`.
 
-    Parameters
-    ----------
-    objective : Objective
-    jet, harmonic_map, certificate
-        Of the map at the start.
-    required : LocalBounds
-    preconditioner : Preconditioner or None
-        Of the step before.
+    `preconditioner` comes from the step before.
     """
     direction, preconditioner = preconditioned_direction(objective, jet, preconditioner)
     direction = _moderate(direction, objective.boundary)
@@ -107,8 +97,8 @@ def add_samples(
 ) -> tuple[Boundary, Floats | None]:
     """Return a boundary with samples added in the segments, and the dual variables for it.
 
-    The barrier then sees what the certificate found between the samples. When there are too many,
-    the base boundary without any takes over.
+    The barrier then sees the violations that the certificate found between samples. When there are
+    too many samples, the base boundary replaces them.
     """
     if len(segments) == 0:
         return boundary, readonly(duals)

@@ -1,4 +1,4 @@
-"""A shape with its handles and bounds, which drags and searches are about."""
+"""A shape with handles and bounds, shared by drags and searches."""
 
 from dataclasses import dataclass
 
@@ -12,13 +12,7 @@ from engine.maps import Boundary, HarmonicMap, LocalBounds
 class ConstrainedShape:
     """A shape that is held by handles within bounds.
 
-    Parameters
-    ----------
-    boundary : Boundary
-        Of the shape, as sampled.
-    handles : Handles
-    bounds : Bounds or LocalBounds
-        Limits may differ from sample to sample.
+    `boundary` is the shape as sampled. Limits may differ from sample to sample.
     """
 
     boundary: Boundary
@@ -31,13 +25,12 @@ class ConstrainedShape:
         return HarmonicMap.identity(self.boundary.cage, self.boundary.holes)
 
     def allows(self, state: State) -> bool:
-        """Tell whether a state's map is proven to be within the bounds."""
         proven = state.certificate
         return self.bounds.include(state.limits) or self.bounds.allow(
             k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
     def measure_state(self, state: State, wish: HandleTargets) -> tuple[Objective, Evaluation]:
-        """Return the objective without a barrier, over the shape's own samples, and a map's jet."""
+        """Return the objective without a barrier, over the shape's samples, and the evaluation."""
         objective = Objective(boundary=self.boundary, handles=self.handles, targets=wish)
         return objective, objective.evaluate(*state.map.columns)

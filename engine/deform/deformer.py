@@ -1,8 +1,8 @@
 """A deformation: from certified map to certified map, one Newton step at a time.
 
-The objective is the symmetric Dirichlet energy with stiff handles and a barrier at the bounds
-(Chen and Weber 2015, 2017). While the hand moves a drag follows it (`following`); when it rests,
-the minimum is searched for along several ways (`settling`), and the pose of least energy is kept.
+The objective is the symmetric Dirichlet energy with stiff handles and a barrier at the bounds (Chen
+and Weber 2015, 2017). While the hand moves, drag steps follow the targets (`tracking`). At rest,
+searches from several starting points (`minimisation`) keep the pose of least energy.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from engine.deform.trust_region import FOLLOW, FULL, STEP_RADIUS, proven_around,
 from engine.errors import EngineError
 from engine.maps import Certificate, HarmonicMap, LocalBounds, certify
 
-# One row of a recorded path: so many steps, or until the expected gain is below this.
+# Steps for one row of a recorded path. They end earlier if the expected gain is below this.
 PATH_STEPS = 10
 PATH_REST = 1e-3
 # Steps without progress after which a drag is handed over to the search for the minimum.
@@ -40,8 +40,8 @@ class Deformer(ConstrainedShape):
     """Deforms a shape by handles within bounds.
 
     To add, move or remove handles or to change the bounds, make another deformer over the same
-    boundary and go on with the same state. A new handle does not move anything if its target is
-    where its point is now, see `positions`.
+    boundary and continue with the same state. A new handle moves nothing if its target is the
+    present position of its point, see `positions`.
     """
 
     def start(self, harmonic_map: HarmonicMap | None = None) -> State:
@@ -91,13 +91,10 @@ class Deformer(ConstrainedShape):
         )
 
     def widened_for(self, harmonic_map: HarmonicMap, room: float) -> "Deformer":
-        """Return the deformer, with bounds as much wider as a map needs.
+        """Return the deformer with bounds widened as far as a map needs.
 
-        Parameters
-        ----------
-        harmonic_map : HarmonicMap
-        room : float
-            The part of what is left of distortions that is allowed beyond the map's own.
+        `room` is the part of the remaining slack of the distortions that is added beyond the map's
+        own.
         """
         certificate = certify(harmonic_map, self.boundary, self.bounds)
         if certificate.is_certified:
@@ -107,37 +104,35 @@ class Deformer(ConstrainedShape):
     def _limits_for(
         self, harmonic_map: HarmonicMap, certificate: Certificate, *, room: float = FOLLOW
     ) -> LocalBounds:
-        """Return the bounds, widened as a map needs it: where they differ, each by itself."""
+        """Return the bounds, widened as a map needs.
+
+        Limits that differ along the outline widen one by one.
+        """
         if not np.ndim(self.bounds.k):
             return widen_limits(certificate, self.bounds, room=room)
         proven = proven_around(harmonic_map, certificate, self.boundary)
         return widen_limits(proven, self.bounds, room=room)
 
     def positions(self, state: State) -> Complexes:
-        """Return where the handles are now, complex128 (h,)."""
+        """Return the present positions of the handles, complex128 (h,)."""
         coordinates = self.handles.coordinates
         phi, psi = state.map.columns
         return coordinates @ phi + (coordinates @ psi).conj()
 
     def step(self, state: State, wish: HandleTargets) -> State:
-        """Take one Newton step towards a wish; the new state's map is certified like the old.
+        """Take one Newton step towards the targets; the new map is certified like the old one.
 
-        Call it once for each picture while the hand moves, that is, with changing wishes: the shape
-        follows. Call it on with the same wish, as often as there is time, until the status is final
-        (`Status.is_final`): the shape comes to rest in a minimum, and its energy only falls. From
-        then on the same wish returns the same state.
-
-        Parameters
-        ----------
-        state : State
-        wish : HandleTargets
-            From `Handles.wish`.
+        Call it once for each picture while the targets move: the shape follows. Call it again with
+        the same targets, as often as there is time, until the status is final (`Status.is_final`).
+        The shape then comes to rest in a minimum, and its energy only falls. From then on the same
+        targets return the same state.
 
         Notes
         -----
-        The same states and wishes give the same maps, bit for bit on one machine. Cost: 24 s n² for
-        s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors. Far
-        from walls both serve some steps, and each of those costs 32 m n for m samples a round.
+        The same states and targets give the same maps, bit for bit on one machine. Cost: 24 s n²
+        for s samples in the Hessian, n the number of cage vertices; then 22 n³ for its factors. Far
+        from the bounds both serve several steps, and each such step costs 32 m n for m samples a
+        round.
         """
         self._require_own(wish)
         if len(wish.positions) == 0 and self.allows(state):
@@ -153,10 +148,10 @@ class Deformer(ConstrainedShape):
         return advance_searches(self, state, state.search)
 
     def release(self, state: State, left: HandleTargets) -> State:
-        """Return the state after all hands let go and the handles have the targets `left`.
+        """Return the state after the drag ends and the handles have the targets `left`.
 
-        A minimum stays final if `left` is the wish that `Wish.let_go` returns: the gradient is the
-        same. From any other state further steps search on.
+        A minimum stays final if `left` comes from `HandleTargets.released`: the gradient is the
+        same. From any other state further steps continue the search.
         """
         wish, is_minimum = state.targets, state.status in (Status.CONVERGED, Status.AT_LIMITS)
         if is_minimum and wish is not None:
@@ -166,7 +161,6 @@ class Deformer(ConstrainedShape):
         return replace(state, status=Status.MOVING, search=None, outcome=None, starting_points=())
 
     def _require_own(self, wish: HandleTargets) -> None:
-        """Refuse targets of other handles."""
         require_kind(wish, HandleTargets, "targets")
         if len(wish.positions) != len(self.handles.points):
             raise EngineError(
@@ -174,7 +168,7 @@ class Deformer(ConstrainedShape):
             )
 
     def _is_same_request(self, state: State, wish: HandleTargets) -> bool:
-        """Tell whether the last step was towards this wish, with these handles and bounds."""
+        """Whether the last step had these targets, handles and bounds."""
         return (
             state.handles is self.handles
             and wish.is_same(state.targets)
@@ -183,7 +177,7 @@ class Deformer(ConstrainedShape):
         )
 
     def _has_tracked(self, state: State) -> bool:
-        """Tell whether a drag has come as far as it gets by itself."""
+        """Whether drag steps alone bring the handles no nearer."""
         last = state.statistics
         return (
             last is not None
@@ -203,17 +197,17 @@ class Deformer(ConstrainedShape):
         at_most: int = 600,
         throw: bool = True,
     ) -> tuple[State, int]:
-        """Find the pose of least energy for a wish; return the number of steps too.
+        """Find the pose of least energy for the targets; return the number of steps too.
 
-        It is searched for along these ways; that from the present map alone stays in its valley. At
-        most `at_most` steps are taken. The energy is never above that of the present map, once that
-        is within the bounds.
+        Each entry of `ways` starts one search. A search from the present map alone stays in its
+        valley. At most `at_most` steps are taken. Once the present map is within the bounds, the
+        result has no more energy than it.
 
         Raises
         ------
         EngineError
-            If the shape did not come to rest within the bounds. With `throw=False` the state is
-            returned as it is then, certified for its `limits`, and `status` is the reason.
+            If the shape did not come to rest within the bounds. With `throw=False` the last state
+            is returned, certified for its `limits`, and `status` is the reason.
         """
         self._require_own(wish)
         state, count = self._settled(state, wish, ways, as_count(at_most, "at_most"))
@@ -239,7 +233,7 @@ class Deformer(ConstrainedShape):
         return state, count
 
     def track_path_row(self, state: State, wish: HandleTargets) -> tuple[State, int]:
-        """Take the few steps that one row of a recorded path gets; return their number too."""
+        """Take up to `PATH_STEPS` steps towards one row of a recorded path; return their number."""
         self._require_own(wish)
         for count in range(1, PATH_STEPS + 1):
             state = take_drag_step(self, state, wish)

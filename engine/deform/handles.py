@@ -1,4 +1,4 @@
-"""Points of the shape that a person holds, and what holding them costs."""
+"""Handles: points of the shape with targets, and the energy of their target errors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,13 +17,13 @@ from engine.maps import Boundary
 STIFFNESS = 1e4
 # A prescribed rotation is as stiff as two handles this far (of L) on either side of the point.
 LEVER = 0.02
-# Handles nearer than this (of L) are at one place, and cannot be wanted so much farther apart.
+# Handles nearer than this (of L) count as one place: their targets may differ no more.
 COINCIDENT = 1e-6
 APART = 1e-4
 FARTHEST = 1e12  # of L: squares of targets beyond it overflow sooner or later
 # Vertices of all cages: the time of a step grows with their cube.
 MOST_VERTICES = 400
-# How far outside the outline, of L, a point may be by rounding.
+# A point may be this far (of L) outside the outline, by rounding.
 OUTSIDE = 1e-9
 MOST_HANDLES = 1_000
 TARGET_COUNT = "{count} handles need as many targets, not {given}."
@@ -39,18 +39,16 @@ MOST_CAGE = (
 
 
 class HandleTargets(NamedTuple):
-    """Where the handles should be.
+    """Targets of the handles.
 
     Parameters
     ----------
     positions : complex128, shape (h,)
     rotations : float64, shape (h,)
         Angle in radians of the closest rotation, arg f_z, at each handle; NaN where it is free.
-        Angles that differ by whole turns are the same wish.
-    hands : BoundedPulls or None
-        Those that pull at some of the handles; all others are held.
-    links : DistanceConstraints or None
-        Those that keep handles in reach of each other.
+        Angles that differ by whole turns are the same target.
+    pulls : BoundedPulls or None
+        Handles without a pull are held without a limit of force.
     """
 
     positions: Complexes
@@ -59,7 +57,6 @@ class HandleTargets(NamedTuple):
     distance_constraints: DistanceConstraints | None = None
 
     def is_same(self, other: "HandleTargets | None") -> bool:
-        """Tell whether another wish asks for the same."""
         if other is None or other is self:
             return other is self
         ours, theirs = (
@@ -72,18 +69,17 @@ class HandleTargets(NamedTuple):
         )
 
     def target_errors(self, positions: Complexes) -> Complexes:
-        """Return what handles at some positions lack (h,), but for what hands give in by."""
+        """Return the target errors (h,) of handles at these positions, less the slack of pulls."""
         errors: Complexes = positions - self.positions
         if self.pulls is not None:
             errors = errors - self.pulls.spread_to_handles(self.pulls.slack(errors))
         return errors
 
     def released(self, positions: Complexes, stiffness: Floats) -> "HandleTargets":
-        """Return the wish of hands that let go where they have come to, and of no links.
+        """Return the targets after release, without distance constraints.
 
-        Each handle (h,), so firmly held, is then wanted a hair beyond its place, in the direction
-        of its pull: the same pose, where the hands have brought it to rest, is that of least
-        energy.
+        Each target (h,) lies a little beyond the handle's position, in the direction of its pull.
+        At rest the same pose is then the one of least energy.
         """
         if self.pulls is None:
             return self
@@ -104,20 +100,20 @@ class Handles:
     Parameters
     ----------
     points : complex128, shape (h,)
-        Where the handles sit in the shape at rest.
+        In the shape at rest.
     stiffness : float64, shape (h,)
         λ of each: the energy is Σ λ |f(point) − target|². The quadratic mean of the shape's
-        stiffness around it is a factor: near stiff parts, whose forces it bears, it misses no more.
+        stiffness around the handle is a factor, so that handles near stiff parts err no more.
     around : float64, shape (h,)
-        The mean of that stiffness, a factor of the forces of hands.
-    arm : float
-        Length that turns a rotation into a distance: an angle δ costs 2 λ (arm · δ)².
+        This mean stiffness. It is also a factor of the forces of bounded pulls.
+    lever : float
+        Length that turns a rotation into a distance: an angle δ costs 2 λ (lever · δ)².
     coordinates, derivatives : complex128, shape (h, n)
-        Of the functions of the span, C_j and C_j', at the points.
+        C_j and C_j' of the span's functions at the points.
     basis_coordinates, basis_derivatives : complex128, shape (h, r)
-        The same of the functions of the boundary's basis.
+        The same for the boundary's basis.
     hessian : float64, shape (u, u)
-        Of the energy of the positions, in the order of `Objective`.
+        Hessian of the energy of the positions, in the order of `Objective`.
     coincident : tuple of (int, int)
         Pairs of handles at one point.
     """
@@ -141,7 +137,6 @@ class Handles:
 
         Parameters
         ----------
-        boundary : Boundary
         points : complex128, shape (h,)
             In the closed domain; none at all is allowed.
         weights : array_like of float, shape (h,), optional
@@ -191,22 +186,14 @@ class Handles:
         hands: Sequence[BoundedPull] = (),
         links: Sequence[DistanceConstraint] = (),
     ) -> HandleTargets:
-        """Check what is asked of the handles.
-
-        Parameters
-        ----------
-        positions : complex128, shape (h,)
-        rotations : array_like of float, shape (h,), optional
-        hands : sequence of BoundedPull
-            Those that pull at some of the handles, with bounded force.
-        links : sequence of DistanceConstraint
-            Between handles that keep their distance.
+        """Check the targets, bounded pulls and distance constraints of the handles.
 
         Raises
         ------
         EngineError
-            If there are not as many targets as handles, one is not finite or absurdly far away, two
-            handles at one point are to be at different places, or hands or links are of others.
+            If the number of targets is not the number of handles; if a target is not finite or
+            absurdly far away; if two handles at one point get different targets; or if a pull or
+            constraint names a handle that does not exist.
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
@@ -280,12 +267,12 @@ def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> F
 
 
 def position_gram_matrix(boundary: Boundary, rows: Complexes) -> Floats:
-    """Return the Gram matrix (u, u), in the order of `Objective`, of how places are moved.
+    """Return the Gram matrix (u, u) of displacements of points, in the order of `Objective`.
 
     Parameters
     ----------
     rows : complex128, shape (p, r)
-        The functions of the boundary's basis at the points, times a factor of each.
+        The functions of the boundary's basis at the points, times a factor of each point.
     """
     root = rows.copy()
     r, count = root.shape[1], len(boundary.holes)
@@ -300,9 +287,9 @@ def position_gram_matrix(boundary: Boundary, rows: Complexes) -> Floats:
 
 
 def hold_constants(boundary: Boundary, hessian: Floats) -> None:
-    """Add to a Hessian (u, u) what holds the constants on the cages of holes."""
+    """Add a stiffness of the constants on the cages of holes to a Hessian (u, u)."""
     r = boundary.basis.shape[1]
     for constant in range(1, 1 + len(boundary.holes)):
-        # On the cage of a hole it is nothing, and would be free.
+        # On the cage of a hole a constant changes no map, and would be free.
         for first in (2 * constant, 2 * (constant + r - 1)):
             hessian[[first, first + 1], [first, first + 1]] += STIFFNESS

@@ -1,12 +1,12 @@
-"""How the searches for the minimum follow each other once the hand rests.
+"""The order of the searches for the minimum once the targets rest.
 
-First from the present map, which is often near it; then, where bounds hold it back, from the shape
-at rest, since a map that has met bounds early hardly leaves them. Where that leaves much energy, it
-starts once more turned by a quarter, to either side, against the rotation that aligns it: handles
-that do not agree on a rotation leave a choice between valleys. Last come walls that widen, from the
-best turn.
+The first search starts from the present map, which is often near the minimum. Where bounds hold it
+back, the next starts from the shape at rest, since a map that met bounds early hardly leaves them.
+If much energy remains, two more start a quarter turn to either side of the aligning rotation.
+Handles without a common rotation leave a choice between valleys. The last search widens the bounds
+step by step (homotopy), from the best rotation.
 
-The first search is shown as it goes. Of all others the best is shown, once, at the end.
+The first search is shown as it runs. Of all others only the best result is shown, at the end.
 """
 
 from dataclasses import replace
@@ -35,20 +35,20 @@ from engine.deform.trust_region import (
 )
 from engine.maps import certify
 
-# Steps of all ways together; of the first one from the present map, which is near rest or caught by
-# bounds; and of the one from the shape at rest as long as others are left.
+# Steps of all searches together; of the first search from the present map, which is near rest or
+# caught by bounds; and of the search from the shape at rest while other searches remain.
 MOST_IN_ALL = 250
 MOST_STEPS_HERE = 60
 MOST_STEPS_REST = 90
-# What is shown may be this part below a proven minimum: it may be nearer to the bounds than
+# The shown map may be this part below a proven minimum: it may be nearer to the bounds than
 # searches go.
 ROUGHLY = 1e-3
-# Handles that are wanted this far (of L) from where they are at rest may be in a tangle: when a
-# rotation of them all leads less than this part of the way. Measured: random drags of .15 L are no
-# tangles, most handles that change places or meet in a point are.
+# Targets this far (of L) from the handles at rest may be tangled, when a common rotation leads less
+# than this part of the way. Measured: random drags of .15 L are no tangles, most handles that
+# change places or meet in a point are.
 FAR = 0.15
 TANGLED = 0.8
-# A shape may be wound up when it has more energy than this, 2 at rest, and no common motion brings
+# A shape may be wound up when it has more energy than this (2 at rest), and no common motion brings
 # the handles nearer to their targets than this (of L, root mean square).
 WOUND = 3.0
 MISFIT = 0.12
@@ -57,9 +57,9 @@ MISFIT = 0.12
 def begin_searches(
     shape: ConstrainedShape, state: State, wish: HandleTargets, ways: tuple[StartingPoint, ...]
 ) -> State:
-    """Return the state at the beginning of the searches along these ways."""
     if wish.pulls is not None:
-        # From where the hands are is found what all ways find, in half the steps.
+        # From the handles' present positions one search finds the same minimum as all, in half the
+        # steps.
         ways = (StartingPoint.HERE,)
     elif StartingPoint.REST in ways and state.map.is_same(shape.rest_map):
         ways = tuple(way for way in ways if way is not StartingPoint.HERE)
@@ -81,7 +81,6 @@ def begin_searches(
 
 
 def advance_searches(shape: ConstrainedShape, state: State, search: Search) -> State:
-    """Take one step of a search; at its end begin the next one, or conclude."""
     objective, jet = shape.measure_state(state, search.targets)
     search, before = advance_search(search), state.outcome
     if before is None and search.energy < objective.energy(jet):
@@ -105,7 +104,7 @@ def advance_searches(shape: ConstrainedShape, state: State, search: Search) -> S
 
 
 def _search(shape: ConstrainedShape, state: State, wish: HandleTargets) -> Search:
-    """Return the search along the next way, at its beginning."""
+    """Return the search from the next starting point, at its beginning."""
     way, outcome = state.starting_points[0], state.outcome
     first, turn, most = state.map, way.rotation, MOST_STEPS
     if way is not StartingPoint.HERE:
@@ -142,7 +141,6 @@ def _search(shape: ConstrainedShape, state: State, wish: HandleTargets) -> Searc
 def _further_starting_points(
     shape: ConstrainedShape, state: State, outcome: Search
 ) -> tuple[StartingPoint, ...]:
-    """Return the ways that are left to search."""
     if state.search_steps >= MOST_IN_ALL:
         return ()
     others = tuple(way for way in state.starting_points[1:] if _may_pay(shape, way, outcome))
@@ -156,7 +154,7 @@ def _further_starting_points(
 
 
 def _may_pay(shape: ConstrainedShape, way: StartingPoint, outcome: Search) -> bool:
-    """Tell whether a search along a way may find less than the best one so far."""
+    """Whether a search from this starting point may find less energy than the best so far."""
     if way is StartingPoint.REST:
         return not (outcome.has_converged and not outcome.optimality.active)
     targets, size = outcome.targets.positions, shape.boundary.size
@@ -164,15 +162,15 @@ def _may_pay(shape: ConstrainedShape, way: StartingPoint, outcome: Search) -> bo
     if way.is_rotated:
         energy = outcome.energy / shape.boundary.mean_stiffness
         return energy > WOUND and common.misfit > MISFIT * size
-    # Handles that are wanted far away, past each other: there are many valleys, and those that wide
-    # and widening bounds lead to may differ.
+    # Targets far away, past each other, mean many valleys: wide bounds and widening bounds may lead
+    # to different ones.
     farthest = float(np.abs(targets - shape.handles.points).max(initial=0.0))
     walls = BarrierBounds.at(shape.bounds, shape.boundary)
     return farthest > FAR * size and exceed_first_level(walls) and common.correlation < TANGLED
 
 
 def _concluded(state: State, objective: Objective, search: Search, outcome: Search) -> State:
-    """Return the state at rest, with the best pose that was found."""
+    """Return the state at rest, with the best pose of all searches."""
     jet = objective.evaluate(*state.map.columns)
     if outcome.energy < objective.energy(jet):
         state = _showing(state, outcome)
@@ -191,7 +189,7 @@ def _showing(state: State, search: Search) -> State:
 def _statistics(
     objective: Objective, jet: Evaluation, search: Search, outcome: Search
 ) -> Statistics:
-    """Return what a step of a search did, and what is known of the outcome."""
+    """Return the statistics of one search step and of the best outcome so far."""
     return Statistics(
         energy=float(objective.boundary.lengths @ jet.density),
         objective=objective.energy(jet),

@@ -1,13 +1,13 @@
-"""Hands that pull at handles with bounded force, and links that keep these in reach.
+"""Bounded pulls on handles, and distance constraints between handles.
 
-A handle is held by λ |e|², e its distance from its target, which pulls without limit: one that is
-wanted far beyond its reach would move all others. A hand pulls with at most a force F. With ē the
-mean distance of its handles, Λ the sum of their λ and e₀ = F / (2 Λ), the part Λ |ē|² of their
-energy becomes 2 Λ e₀ |ē| − Λ e₀² beyond e₀ (Huber 1964), which is the least of
-Λ |ē − s|² + 2 Λ e₀ |s| over all s: the hand gives in by s, and its handles keep their formation.
+A handle is held by λ |e|², e its distance from its target. This force has no limit: a target far
+beyond reach would move all other handles. A bounded pull has at most the force F. With ē the mean
+error of its handles, Λ the sum of their λ and e₀ = F / (2 Λ), the part Λ |ē|² of their energy
+becomes 2 Λ e₀ |ē| − Λ e₀² beyond e₀ (Huber 1964). This is the minimum of Λ |ē − s|² + 2 Λ e₀ |s|
+over all s: the pull has the slack s, and its handles keep their formation.
 
-A link between two handles costs κ (r − c)² where their distance r is beyond the range that it may
-have, whose nearer end is c: what a hand pulls too far is drawn straight, and stops.
+A distance constraint costs κ (r − c)² where the distance r of two handles leaves its range, whose
+nearer end is c. A pull beyond reach straightens the chain and stops.
 """
 
 from collections.abc import Collection, Sequence
@@ -18,8 +18,8 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, readonly
 from engine.errors import EngineError
 
-# A hand pulls at most so strongly, per L. An arm needs 1 to 2 to straighten to its limits; measured
-# on 18 pulls within reach, none is lost with 10, and three are with 5.
+# Largest force of a pull, per L. An arm needs 1 to 2 to straighten to its limits. Measured on 18
+# pulls within reach: none is lost with 10, three are with 5.
 MAX_PULL_FORCE = 10.0
 FORCE_NOT_POSITIVE = "A hand must pull with a positive force, not {pull:g}."
 CONSTRAINT_ENDS = "A link between handles {first} and {second} is none."
@@ -28,14 +28,9 @@ PULL_HANDLES = "A hand pulls at handles {handles} of {count}."
 
 
 class BoundedPull(NamedTuple):
-    """What pulls at some handles together.
+    """A pull on the mean of some handles.
 
-    Parameters
-    ----------
-    handles : collection of int
-        Which they are.
-    pull : float
-        Its largest force, per L.
+    `max_force` is its largest force, per L.
     """
 
     handles: Collection[int]
@@ -43,15 +38,15 @@ class BoundedPull(NamedTuple):
 
 
 class BoundedPulls(NamedTuple):
-    """Some hands, and at which handles they pull.
+    """Several bounded pulls.
 
     Parameters
     ----------
-    shares : float64, shape (q, h)
-        Of the handles in the mean of those that each hand pulls; 0 for all others.
+    weights : float64, shape (q, h)
+        Weight of each handle in the mean that a pull acts on; rows sum to 1.
     stiffness : float64, shape (q,)
         Λ of each.
-    gives : float64, shape (q,)
+    huber_thresholds : float64, shape (q,)
         e₀ of each.
     """
 
@@ -63,16 +58,16 @@ class BoundedPulls(NamedTuple):
     def of(
         cls, hands: Sequence[BoundedPull], stiffness: Floats, around: Floats, size: float
     ) -> "BoundedPulls | None":
-        """Return what hands are to handles of this stiffness (h,), on a shape of this size.
+        """Prepare pulls on handles of this stiffness (h,), on a shape of this size.
 
-        One of infinite force holds, as does none at all. How stiff the shape is `around` handles
-        (h,) is a factor of the force.
+        A pull with infinite force is dropped: its handles are ordinary handles. None if no pull is
+        left. The stiffness of the shape `around` handles (h,) is a factor of the force.
 
         Raises
         ------
         EngineError
-            If a force is not positive, a hand pulls at nothing, or at a handle that is not there or
-            in another hand.
+            If a force is not positive, a pull has no handles, names a handle that does not exist,
+            or shares a handle with another pull.
         """
         hands = [hand for hand in hands if hand.max_force != np.inf]
         if not hands:
@@ -100,21 +95,24 @@ class BoundedPulls(NamedTuple):
 
     @property
     def has_all_handles(self) -> bool:
-        """Whether no handle is held but by a hand: nothing then resists but the shape."""
+        """Whether every handle belongs to a pull: only the shape then resists."""
         return bool((self.weights > 0).any(axis=0).all())
 
     def slack(self, errors: Complexes) -> Complexes:
-        """Return by how much each hand gives in (q,), for what its handles lack (h,)."""
+        """Slack of each bounded pull (q,), from the errors of the handles (h,).
+
+        The target moves back by the slack, so that the force stays below the limit.
+        """
         means = self.weights @ errors
         distances = np.maximum(np.abs(means), self.huber_thresholds)
         given: Complexes = (1.0 - self.huber_thresholds / distances) * means
         return given
 
     def slack_directions(self, errors: Complexes) -> tuple[Complexes, Floats]:
-        """Return the direction in which each hand gives in, and its share across that, (q,) each.
+        """Return the direction of each pull's slack, and its share across the direction, (q,) each.
 
-        Along its pull a hand that gives in does so by all that its handles move, across it by this
-        share; the direction is 0 where it does not give in.
+        Along the direction, slack grows by the whole change of the error; across it, by this share.
+        The direction is 0 where the slack is 0.
         """
         given = self.slack(errors)
         sizes = np.abs(given)
@@ -122,17 +120,16 @@ class BoundedPulls(NamedTuple):
         return directions, sizes / (sizes + self.huber_thresholds)
 
     def spread_to_handles(self, of_hands: Complexes) -> Complexes:
-        """Return for each handle (h,) what is so of its hand (q,); 0 for those that are held."""
+        """Return the value of its pull for each handle (h,); 0 for handles without a pull."""
         spread: Complexes = of_hands @ (self.weights > 0)
         return spread
 
     def slack_energy(self, given: Complexes) -> float:
-        """Return the energy of giving in."""
         return float((2.0 * self.stiffness * self.huber_thresholds) @ np.abs(given))
 
 
 class DistanceConstraint(NamedTuple):
-    """Two handles, by their numbers, and the range of distances that they keep."""
+    """Two handles, by their numbers, and the allowed range of their distance."""
 
     first: int
     second: int
@@ -141,13 +138,12 @@ class DistanceConstraint(NamedTuple):
 
 
 class DistanceConstraints(NamedTuple):
-    """Some links.
+    """Several distance constraints.
 
     Parameters
     ----------
     ends : intp, shape (2, l)
-        The handles of each.
-    shortest, longest : float64, shape (l,)
+        The two handles of each constraint.
     stiffness : float64, shape (l,)
         κ of each.
     """
@@ -161,12 +157,12 @@ class DistanceConstraints(NamedTuple):
     def of(
         cls, links: Sequence[DistanceConstraint], stiffness: Floats
     ) -> "DistanceConstraints | None":
-        """Return links between handles of which each by itself is so firm (h,).
+        """Prepare constraints between handles of this stiffness (h,).
 
         Raises
         ------
         EngineError
-            If a link is not between two handles that are there, or has no range of distances.
+            If a constraint names a handle that does not exist, or has no range of distances.
         """
         if not links:
             return None
@@ -184,30 +180,30 @@ class DistanceConstraints(NamedTuple):
         )
 
     def _measure(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
-        """Return direction, length, and length beyond the range of each link (l,)."""
+        """Return direction, length, and length beyond the range of each constraint (l,)."""
         between = positions[self.ends[0]] - positions[self.ends[1]]
         lengths = np.maximum(np.abs(between), np.finfo(np.float64).tiny)
         beyond = lengths - np.clip(lengths, self.shortest, self.longest)
         return between / lengths, lengths, beyond
 
     def energy(self, positions: Complexes) -> float:
-        """Return what links cost with the handles (h,) at some places."""
+        """Return the energy of the constraints with the handles (h,) at these positions."""
         return float(self.stiffness @ self._measure(positions)[2] ** 2)
 
     def gradient(self, positions: Complexes) -> Complexes:
-        """Return the gradient of that (h,)."""
+        """Return the gradient of the energy (h,)."""
         directions, _, beyond = self._measure(positions)
         return self._at_handles(2.0 * self.stiffness * beyond * directions, len(positions))
 
     def hessian_product(self, positions: Complexes, changes: Complexes) -> Complexes:
-        """Return the product (h,) of its projected Hessian with changes of the places."""
+        """Return the product (h,) of the energy's projected Hessian with changes of positions."""
         directions, along, across = self.stiffness_by_direction(positions)
         between = directions.conj() * (changes[self.ends[0]] - changes[self.ends[1]])
         given = directions * (along * between.real + 1j * across * between.imag)
         return self._at_handles(given, len(positions))
 
     def stiffness_by_direction(self, positions: Complexes) -> tuple[Complexes, Floats, Floats]:
-        """Return the direction of each link, and its stiffness along that and across it, (l,)."""
+        """Return each constraint's direction, and its stiffness along and across it, (l,)."""
         directions, lengths, beyond = self._measure(positions)
         twice = 2.0 * self.stiffness
         return directions, twice * (beyond != 0), twice * np.maximum(beyond / lengths, 0.0)

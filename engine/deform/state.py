@@ -1,4 +1,4 @@
-"""Where a deformation is, and what the steps to it did."""
+"""State of a deformation, its status, and statistics of the last step."""
 
 from dataclasses import dataclass, field
 from enum import Enum
@@ -12,7 +12,7 @@ from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds
 
 
 class Status(Enum):
-    """How far a deformation has come."""
+    """Progress of a deformation."""
 
     MOVING = "moving"
     """On its way: more steps lead on."""
@@ -31,38 +31,38 @@ class Status(Enum):
 
     @property
     def is_final(self) -> bool:
-        """Whether more steps with the same wish change nothing."""
+        """Whether more steps with the same targets change nothing."""
         return self not in (Status.MOVING, Status.TIGHTENING)
 
     @property
     def is_solved(self) -> bool:
-        """Whether the map is what was asked for: at rest within the bounds."""
+        """Whether the map is at rest within the bounds."""
         return self in (Status.CONVERGED, Status.AT_LIMITS, Status.FREE)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Statistics:
-    """What the last step did.
+    """Statistics of the last step.
 
     Parameters
     ----------
     energy : float
         Arc-length mean of the symmetric Dirichlet density; 2 at rest.
     objective : float
-        The energy and that of the handles, at the whole wish: what is minimised.
-    handle_error : float
+        Energy of the shape and of the handles, at their full targets: the minimised function.
+    target_error : float
         Root mean square distance of the handles from their targets, over L.
     decrement : float
         Gain that Newton's model expected of the whole step.
     length : float
         Part of the step that was taken.
-    leashed : bool
-        Whether the leash held handles back.
+    has_hit_radius : bool
+        Whether the trust region held handles back.
     optimality : float
         Expected gain and complementarity of the bounds over the objective: 0 at a minimum, infinite
-        where it is not known.
+        where it is unknown.
     active : tuple of ActiveBound
-        The bounds that hold the shape back, and where.
+        Bounds that hold the shape back.
     """
 
     energy: float
@@ -77,43 +77,39 @@ class Statistics:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class State:
-    """A certified map in a deformation, with what the next step needs.
+    """A certified map in a deformation, with the data that the next step needs.
 
-    It does not depend on the handles: it can go on with others, and with other bounds.
+    It does not depend on the handles: a deformer with other handles or other bounds can continue
+    it.
 
     Parameters
     ----------
-    map : HarmonicMap
     certificate : Certificate
         Of the map, for its limits.
     limits : LocalBounds
-        What the map is held to: the bounds, or looser ones on the way into tightened bounds.
-    status : Status
+        The bounds, or looser limits on the way into tightened bounds.
     statistics : Statistics or None
         None before the first step.
     boundary : Boundary
         With the samples that were added.
-    schedule : BarrierSchedule
     duals : float64, shape (3, m), or None
         Of the barrier.
-    wish : HandleTargets or None
-        Of the last step.
-    handles : Handles or None
-        Of the last step.
+    targets, handles
+        Of the last step, or None.
     preconditioner : Preconditioner or None
         For the next step.
-    jet : Evaluation or None
+    evaluation : Evaluation or None
         Of the map, as the last step measured it for its boundary and handles.
     search : Search or None
-        For the minimum, once the drag has come as far as it gets.
-    ways : tuple of StartingPoint
-        Of this search and of those that are still to come.
+        For the minimum, once drag steps bring the handles no nearer.
+    starting_points : tuple of StartingPoint
+        Of this search and of the searches that remain.
     outcome : Search or None
-        The best of the searches that are over.
+        The best of the finished searches.
     steps : int
-        Newton steps of the search that found the map; 0 on the way of a drag.
-    tried : int
-        Those of the searches that are over.
+        Newton steps of the search that found the map; 0 during a drag.
+    search_steps : int
+        Newton steps of the finished searches.
     """
 
     map: HarmonicMap

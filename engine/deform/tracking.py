@@ -1,10 +1,10 @@
-"""One step of a drag, which follows the hand.
+"""One step of a drag, which follows moving targets.
 
-- Each handle is pulled by a leash, towards a point a little ahead of where it is. The leash is
-  shortened when the bounds cut steps short and lengthened again when they do not: the trust region.
+- Each handle is pulled towards a point a little ahead of it, within a trust region. The radius
+  shrinks when the bounds cut steps short and grows again when they do not.
 - The barrier's weight rises and falls with the same signs, and its Hessian is primal–dual.
-- A step is cut until its map is certified with a part of the slack left, and where the certificate
-  found a bound broken between two samples, a sample is added: the barrier then sees it.
+- A step is cut until its map is certified with a part of the slack left. Where the certificate
+  found a bound broken between two samples, a sample is added, so that the barrier sees it.
 """
 
 from dataclasses import replace
@@ -30,17 +30,17 @@ from engine.deform.trust_region import (
 )
 from engine.maps import LocalBounds
 
-# On the way into tightened bounds the barrier weighs at least this much, and the handles are this
-# much softer.
+# On the way into tightened bounds the barrier's weight is at least this much, and the handles are
+# this much softer.
 LEAST_TIGHTENING = 0.1
 SOFTNESS = 0.003
-# A hand that gives in stops at bounds by itself, with full steps, after which the weight would fall
-# and the shape stick to them: the barrier weighs at least this much.
+# A pull with slack stops at bounds by itself, with full steps. The weight would then fall and the
+# shape stick to the bounds, so the barrier's weight is at least this much.
 LEAST_WITH_SLACK = 0.03
 
 
 def take_drag_step(shape: ConstrainedShape, state: State, wish: HandleTargets) -> State:
-    """Take one step of a drag towards a wish, or of the way into tightened bounds."""
+    """Take one step of a drag towards the targets, or of the way into tightened bounds."""
     step = _prepare(shape, state, wish)
     taken = take_certified_step(
         step.objective,
@@ -90,10 +90,10 @@ def take_drag_step(shape: ConstrainedShape, state: State, wish: HandleTargets) -
 
 
 class _Step(NamedTuple):
-    """A step as it is prepared.
+    """A prepared step.
 
-    `free` is the objective of the whole wish, without a barrier; `required` is what the certificate
-    of the step's map is tested for.
+    `free` is the objective with the full targets and without a barrier. `required` are the bounds
+    that the certificate of the step's map must keep.
     """
 
     evaluation: Evaluation
@@ -107,7 +107,7 @@ class _Step(NamedTuple):
     is_tightening: bool
 
     def next_duals(self, taken: CertifiedStep) -> Floats:
-        """Return the dual variables after the whole step, be it taken or not."""
+        """Return the dual variables after the whole step, whether or not it was taken."""
         whole = taken.length == 1.0
         ahead = (
             taken.evaluation if whole else self.evaluation.advanced(1.0, taken.direction.evaluation)
@@ -117,7 +117,7 @@ class _Step(NamedTuple):
 
 
 def _prepare(shape: ConstrainedShape, state: State, wish: HandleTargets) -> _Step:
-    """Choose what the next step minimises, and what it must keep."""
+    """Choose the objective of the next step, and the bounds that it must keep."""
     free = Objective(boundary=state.boundary, handles=shape.handles, targets=wish)
     known = state.evaluation if state.handles is shape.handles else None
     jet = known or free.evaluate(*state.map.columns)
@@ -128,7 +128,7 @@ def _prepare(shape: ConstrainedShape, state: State, wish: HandleTargets) -> _Ste
     schedule = state.schedule if same else state.schedule.for_new_targets()
     tightening = limits is not shape.bounds
     if tightening:
-        # Held softly where it is, the shape gives in to its energy; later handles pull again.
+        # Held softly in place, the shape follows its own energy; later the handles pull again.
         handles, leashed = shape.handles.softened(SOFTNESS), False
         wish = HandleTargets(jet.positions, np.full(len(jet.positions), np.nan))
         schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))
@@ -137,7 +137,7 @@ def _prepare(shape: ConstrainedShape, state: State, wish: HandleTargets) -> _Ste
         if wish.pulls is not None:
             schedule = replace(schedule, weight=max(schedule.weight, LEAST_WITH_SLACK))
         wish, leashed = cut_to_radius(handles, shape.boundary.size, schedule.step_radius, jet, wish)
-    # On the way into the bounds the walls move with the map, and dual variables would lag.
+    # On the way into the bounds the barrier moves with the map, and dual variables would lag.
     barrier = Barrier(
         bounds=walls, weight=schedule.weight, duals=None if tightening else state.duals
     )
@@ -155,7 +155,7 @@ def _prepare(shape: ConstrainedShape, state: State, wish: HandleTargets) -> _Ste
 
 
 def _excess(bounds: LocalBounds, taken: CertifiedStep) -> float:
-    """Return by how much a map is outside its bounds; more than any distance of handles."""
+    """Return how far a map is outside its bounds, scaled above any distance of handles."""
     allowed, reached = (
         stack_limits(bounds),
         stack_distortions(taken.evaluation.a, taken.evaluation.b),

@@ -1,4 +1,4 @@
-"""What steers a drag: how far a step looks ahead, how the walls push, and where they stand."""
+"""Control of a drag: trust-region radius, barrier weight, and position of the barrier."""
 
 from cmath import phase, rect
 from collections.abc import Sequence
@@ -14,12 +14,11 @@ from engine.deform.handles import Handles, HandleTargets
 from engine.deform.model import MARGIN, BarrierBounds, Evaluation
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds, segment_enclosures
 
-# The leash: a handle is pulled towards a point at most this far (of L) ahead of it, and turned by
-# at most this angle; farther away the quadratic model says nothing. Both times the part of the
-# leash that is paid out.
+# Trust region: a handle is pulled towards a point at most this far (of L) ahead of it, and turned
+# by at most this angle. Farther away the quadratic model is useless. Both times the present radius.
 STEP_RADIUS = 0.02
 TURN_RADIUS = 0.2
-# Least part of the leash that is paid out.
+# Least relative radius.
 SMALLEST_RADIUS = 0.1
 # Handles whose correlation with their targets is weaker have no common rotation.
 CORRELATED = 0.5
@@ -35,38 +34,37 @@ LOWER = 0.5
 # Lengths of steps that the bounds have cut short, and that they have not.
 SHORT = 0.3
 FULL = 0.7
-# A drag gets on when its shortfall (handles from their targets, over L) is this much less than
-# ever.
+# A drag makes progress when its target error (over L) falls this much below its least value so far.
 PROGRESS = 1e-3
 # After so many steps without progress the drag is at rest.
 IDLE_AT_REST = 50
-# Walls stand beyond every sample by this much, or this part of sigma_a: a map may be at its limits
-# to the last digit, and the barrier's Hessian has a root only where there is slack.
+# The barrier stands beyond every sample by this much, or this part of sigma_a. A map may be at its
+# limits to the last digit, and the barrier's Hessian has a root only where there is slack.
 LEAST_SLACK = 1e-10
-# A step leaves at least this part of the slack between the walls and the map.
+# A step leaves at least this part of the slack between the barrier and the map.
 KEPT = 0.1
 # While a map is outside its bounds the limits follow it at this relative distance.
 FOLLOW = 0.005
 # Of k, σ_a and σ_b.
 WORST = (np.maximum, np.maximum, np.minimum)
-# Maps are held this far (of the way to the identity) inside their bounds: then whoever certifies
-# them anew, from other samples or on another machine, finds them within.
+# Maps stay this far (of the way to the identity) inside their bounds. A later certificate, from
+# other samples or on another machine, then finds them within.
 ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BarrierSchedule:
-    """Barrier weight and length of the leash, raised and lowered by what became of the steps.
+    """Barrier weight and relative trust-region radius, adapted to the outcome of the steps.
 
     Parameters
     ----------
     weight : float
-        Of the barrier: raised when a step was cut short, lowered when it was not.
-    leash : float
-        Part of the leash that is paid out, the other way round: the trust region.
-    best : float
-        Smallest shortfall since the wish changed.
-    idle : int
+        Of the barrier: raised after a step that was cut short, lowered after a full one.
+    step_radius : float
+        Relative radius: lowered after a step that was cut short, raised after a full one.
+    smallest_error : float
+        Smallest target error since the targets changed.
+    idle_steps : int
         Steps without progress.
     """
 
@@ -76,7 +74,7 @@ class BarrierSchedule:
     idle_steps: int = 0
 
     def for_new_targets(self) -> Self:
-        """Return the schedule with nothing reached yet."""
+        """Return the schedule with progress reset."""
         return replace(self, smallest_error=inf, idle_steps=0)
 
     def after_step(self, *, length: float, shortfall: float, moving: bool) -> Self:
@@ -87,7 +85,7 @@ class BarrierSchedule:
         length : float
             Part of the step that was taken.
         shortfall : float
-            How far the drag is from its wish.
+            Target error of the drag, over L.
         moving : bool
             Whether the handles are still far from their targets.
         """
@@ -109,16 +107,16 @@ class BarrierSchedule:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether more steps would most likely lead nowhere."""
+        """Whether more steps would most likely gain nothing."""
         return self.idle_steps >= IDLE_AT_REST
 
 
 def cut_to_radius(
     handles: Handles, size: float, leash: float, jet: Evaluation, wish: HandleTargets
 ) -> tuple[HandleTargets, bool]:
-    """Return the wish cut to a part of the leash, and whether that cut anything.
+    """Return the targets cut to a part of the trust region, and whether the cut changed any.
 
-    What all handles want to turn together, they turn: straight ways to a wish that is mainly a
+    The common rotation of all handles is applied first: straight ways to a target that is mainly a
     rotation would squeeze the shape.
     """
     distance, most = STEP_RADIUS * size * leash, TURN_RADIUS * leash
@@ -140,9 +138,9 @@ def cut_to_radius(
 def align_rigidly(
     handles: Handles, wish: HandleTargets, at_rest: HarmonicMap, turn: float = 0.0
 ) -> HarmonicMap:
-    """Return the rigid motion that brings the shape at rest nearest to its wish.
+    """Return the rigid motion that brings the shape at rest nearest to the targets.
 
-    It is turned further by an angle around where the centre of the handles is wanted.
+    It is turned by a further angle `turn` around the centre of the targets.
     """
     common = fit_rigid_motion(handles, handles.points, wish.positions)
     factor = complex(np.exp(1j * (common.angle + turn)))
@@ -171,14 +169,12 @@ class RigidFit(NamedTuple):
 
     Parameters
     ----------
-    centre, wanted : complex
-        The centres of points and targets.
     angle : float
         Between both; 0 where the correlation is weak.
     correlation : float
         How much of the way to the targets a rotation leads, 0 to 1.
     misfit : float
-        How far from the targets the best one leaves the points, root mean square.
+        Root mean square distance from the targets after the best motion.
     """
 
     centre: complex
@@ -189,7 +185,7 @@ class RigidFit(NamedTuple):
 
 
 def fit_rigid_motion(handles: Handles, positions: Complexes, targets: Complexes) -> RigidFit:
-    """Return the motion that all handles have in common, each as important as it is stiff."""
+    """Return the common rigid motion of all handles, weighted by stiffness."""
     weights = handles.stiffness / handles.stiffness.sum()
     centre, wanted = complex(weights @ positions), complex(weights @ targets)
     from_centre, from_wanted = positions - centre, targets - wanted
@@ -209,7 +205,10 @@ def fit_rigid_motion(handles: Handles, positions: Complexes, targets: Complexes)
 def widen_limits(
     proven: Certificate | LocalBounds, bounds: LocalBounds, *, room: float = FOLLOW
 ) -> LocalBounds:
-    """Return the bounds, widened as far as what is proven needs, and by a part of what is left."""
+    """Return the bounds, widened to the proven distortions.
+
+    The part `room` of the remaining slack is added.
+    """
     return LocalBounds(
         k=np.maximum(bounds.k, proven.k + room * (1 - proven.k)),
         sigma_a=np.maximum(bounds.sigma_a, proven.sigma_a * (1 + room)),
@@ -220,7 +219,7 @@ def widen_limits(
 def proven_around(
     harmonic_map: HarmonicMap, certificate: Certificate, boundary: Boundary
 ) -> LocalBounds:
-    """Return what is proven around each sample of a map; without bisection, but for the worst."""
+    """Return proven bounds around each sample of a map; without bisection, except for the worst."""
     of_segments = segment_enclosures(harmonic_map, boundary)
     k, sigma_a, sigma_b = (np.empty_like(each) for each in of_segments)
     for at, its, worst in zip((k, sigma_a, sigma_b), of_segments, WORST, strict=True):
@@ -236,14 +235,14 @@ def proven_around(
 def tighten_limits(
     bounds: LocalBounds, before: LocalBounds, boundary: Boundary, reached: Floats
 ) -> LocalBounds:
-    """Return the bounds, or limits that close in on a map that is outside of them.
+    """Return the bounds, or limits that close in on a map that is outside the bounds.
 
-    It has `reached` these `distortions` (3, m).
+    `reached` are the map's distortions (3, m).
     """
     outside = reached >= stack_limits(bounds.at(boundary))
     if not outside.any():
         return bounds
-    # Where nothing is outside, nothing bounds the worst of it from below.
+    # Where no sample is outside, no value bounds the worst from below.
     worst_k, worst_a, negative_b = np.where(outside, reached, -np.inf).max(axis=1).tolist()
     near = LocalBounds(
         k=1 - (1 - FOLLOW) * (1 - worst_k),
@@ -260,17 +259,17 @@ def tighten_limits(
 def place_barrier_bounds(
     limits: LocalBounds, boundary: Boundary, reached: Floats, certificate: Certificate
 ) -> tuple[BarrierBounds, LocalBounds]:
-    """Return the walls of the samples, and the bounds that the next map must keep everywhere.
+    """Return the barrier bounds of the samples, and the bounds of the whole next map.
 
-    The map has `reached` these `distortions` (3, m).
+    `reached` are the map's distortions (3, m).
     """
     at, least = stack_limits(limits.at(boundary)), np.full((3, 1), LEAST_SLACK)
     inner = stack_limits(limits.towards_identity(MARGIN).at(boundary))
     least[1:] *= reached[1].max()
-    # A map may start between the walls and the limits.
+    # A map may start between the barrier and the limits.
     walls = np.maximum(inner, reached + np.maximum((at - reached) / 4, least))
     beyond = walls - at
-    # Between its samples the present map may have less slack than a step is to leave.
+    # Between its samples the present map may have less slack than a step must leave.
     required = beyond - KEPT * (walls - reached), beyond
     widened = (_shifted(limits, each.max(axis=1).tolist()) for each in required)
     proven, found = proven_at(certificate, reached), limits
@@ -283,7 +282,7 @@ def place_barrier_bounds(
 
 
 def _shifted(limits: LocalBounds, beyond: Sequence[float]) -> LocalBounds:
-    """Return limits that are wider by so much, where all three are no larger than."""
+    """Return limits that are wider by these amounts, in rows of `stack_limits`."""
     more, longer, shorter = beyond
     return LocalBounds(
         k=limits.k + more, sigma_a=limits.sigma_a + longer, sigma_b=limits.sigma_b - shorter
@@ -291,9 +290,10 @@ def _shifted(limits: LocalBounds, beyond: Sequence[float]) -> LocalBounds:
 
 
 def proven_at(certificate: Certificate, reached: Floats) -> Floats:
-    """Return about what is proven around samples that have reached some distortions, (3, m) each.
+    """Estimate the proven distortions around samples from the samples' distortions, (3, m) each.
 
-    That is as much beyond it as the worst that is proven is beyond the worst sample.
+    The worst proven value exceeds the worst sample by some amount; each sample gets the same
+    amount.
     """
     worst = reached.max(axis=1, keepdims=True)
     proven: Floats = stack_limits(certificate) + (reached - worst)
@@ -301,11 +301,11 @@ def proven_at(certificate: Certificate, reached: Floats) -> Floats:
 
 
 def stack_limits(limits: Certificate | LocalBounds) -> Floats:
-    """Return k, σ_a and −σ_b, of which none may be larger, as rows (3, 1) or (3, m)."""
+    """Return k, σ_a and −σ_b, all upper limits, as rows (3, 1) or (3, m)."""
     rows = np.array([limits.k, limits.sigma_a, np.negative(limits.sigma_b)], np.float64)
     return rows.reshape(3, -1)
 
 
 def stack_distortions(a: Floats, b: Floats) -> Floats:
-    """Return the same rows (3, m) of |f_z| and |f_z̄| (m,)."""
+    """Return the rows (3, m) k, σ_a, −σ_b of |f_z| and |f_z̄| (m,)."""
     return np.array([b / a, a + b, b - a])

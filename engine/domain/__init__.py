@@ -1,8 +1,8 @@
 """From pixels or a polygon to a meshed domain (Section 7; Chen and Weber 2015).
 
-In: a picture, uint8 (h, w, 4), and what tells its subject from the rest; or polygons.
-Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels, y up; the texture
-    that is painted on it, where handles are useful, and where the joints of a body may be.
+In: a picture, uint8 (h, w, 4), and settings of the cut-out; or polygons.
+Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels, y up; its texture,
+suggested handles, and suggested joints of a body.
 Imports: `engine.geometry`.
 """
 

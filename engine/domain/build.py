@@ -26,10 +26,10 @@ from engine.geometry import (
 
 FEWEST_TRIANGLES = 1_000
 MOST_TRIANGLES = 2_000_000
-# Edges of a polygon are cut until they are no longer, over the diagonal of the outline and over the
-# length of the loop: with the cage's offset they give maps that bend well.
+# Edges of a polygon are halved until they are no longer than this, over the diagonal of the outline
+# and over the length of the loop. With the cage's offset they give maps that bend well.
 LONGEST_EDGE, FEWEST_EDGES = 0.05, 16
-# A picture that is never deformed is as good as any inside a cage so much larger.
+# Size of the cage around a rectangle; any cage serves a picture that is never deformed.
 FRAME = 1.1
 NO_DETAIL = "There is no detail {detail!r}; there are {details}."
 NO_PICTURE = "A picture is an array of uint8 of shape (h, w, 4), not {dtype} of shape {shape}."
@@ -41,13 +41,9 @@ class MeshedDomain(Domain):
 
     Parameters
     ----------
-    outline, cage, holes
-        As in `Domain`.
-    mesh : Mesh
-        A triangulation of the domain.
     closed : complex128, shape (m,), optional
-        Where the vertices of the `loops`, one loop after the other, are painted: those on both
-        sides of a slit meet in its middle. None where there is no slit.
+        Painted places of the vertices of the `loops`, one loop after the other: the vertices on
+        both sides of a slit meet in its middle. None without slits.
     """
 
     mesh: Mesh
@@ -55,7 +51,7 @@ class MeshedDomain(Domain):
 
     @classmethod
     def of(cls, domain: Domain, triangles: int, closed: Complexes | None = None) -> Self:
-        """Triangulate a domain with about so many triangles."""
+        """Triangulate a domain with about this many triangles."""
         return cls(
             domain.outline,
             domain.cage,
@@ -65,15 +61,14 @@ class MeshedDomain(Domain):
         )
 
     def moved(self, by: complex) -> Self:
-        """Return the domain elsewhere in the plane."""
         mesh = Mesh(vertices=self.mesh.vertices + by, triangles=self.mesh.triangles)
         closed = None if self.closed is None else self.closed + by
         return replace(Domain.moved(self, by), mesh=mesh, closed=closed)
 
     def nearest(self, points: Complexes) -> Complexes:
-        """Return points (p,) of the domain: those outside are exchanged for the nearest middles.
+        """Replace points (p,) outside the domain by the nearest centres of triangles.
 
-        Those are the middles of triangles, and each is given once.
+        No centre is used twice.
         """
         places = points.copy()
         middles = self.mesh.vertices[self.mesh.triangles].mean(axis=1)
@@ -100,11 +95,11 @@ def build_domain(
     rgba : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
     triangles : int
-        How many triangles to aim at, 1,000 to 2,000,000.
+        Approximate number of triangles, 1,000 to 2,000,000.
     detail : Detail
         How closely the outline follows the subject.
     cut_out : CutOut, optional
-        What tells the subject from the rest of the picture; None is `CutOut()`.
+        How the subject is separated from the background; None is `CutOut()`.
 
     Returns
     -------
@@ -142,7 +137,7 @@ def domain_of_polygon(
 ) -> MeshedDomain:
     """Build the domain inside a polygon and outside of its holes.
 
-    Long edges are cut, and the cages are laid beside the polygons as those of pictures are.
+    Long edges are halved. The cages are offset from the polygons as for pictures.
 
     Parameters
     ----------
@@ -151,12 +146,12 @@ def domain_of_polygon(
     holes : sequence of array_like of complex, shape (q,)
         Simple polygons inside the outline and apart, in either direction.
     triangles : int
-        How many triangles to aim at, 1,000 to 2,000,000.
+        Approximate number of triangles, 1,000 to 2,000,000.
 
     Raises
     ------
     EngineError
-        If `triangles` is out of range, a polygon is not as said, or the polygons come too close to
+        If `triangles` is out of range, a polygon is not simple, or the polygons come too close to
         themselves or each other for cages.
     """
     _require_triangles(triangles)
@@ -178,7 +173,7 @@ def domain_of_polygon(
 
 
 def _with_short_edges(ring: Complexes, longest: float) -> Complexes:
-    """Return a polygon with edges in halves, quarters and so on, none longer than that."""
+    """Return a polygon with edges halved until none is longer than `longest`."""
     longest = min(longest, float(np.abs(edge_vectors(ring)).sum()) / FEWEST_EDGES)
     pieces = Pieces.whole(ring, np.roll(ring, -1))
     return bisect_segments(pieces, lambda each: np.asarray(each.lengths <= longest)).starts
@@ -193,7 +188,7 @@ def _require_triangles(count: int) -> None:
 
 
 def rectangle_domain(width: float, height: float) -> MeshedDomain:
-    """Return the domain that is all of a picture of this size, in two triangles."""
+    """Return the domain of a whole picture of this size, in two triangles."""
     width = as_number(width, "The width of a picture", above=0)
     height = as_number(height, "The height of a picture", above=0)
     corners = np.array([0, width, width + 1j * height, 1j * height])
@@ -213,10 +208,10 @@ def mesh_inside(domain: Domain, *, triangles: int) -> Mesh:
 
 
 def texture(rgba: Bytes, subject: Subject) -> Bytes:
-    """Return the picture (h, w, 4) of a subject as it is painted on its domain's mesh.
+    """Return the picture (h, w, 4) of a subject as its domain's mesh shows it.
 
-    That is the picture itself, with its own transparency; but what was taken out of it is
-    transparent, and edges are free of its colour.
+    The picture keeps its own transparency. The removed background is transparent, and edges are
+    free of its colour.
     """
     return matte_picture(rgba, subject.mask) if subject.cut else rgba
 
@@ -224,7 +219,8 @@ def texture(rgba: Bytes, subject: Subject) -> Bytes:
 def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:
     """Return u (right) and v (up) of each point, (v, 2); [0, 1] spans the picture.
 
-    Points outside the picture go on linearly past 0 and 1, where the renderer shows transparency.
+    Points outside the picture continue linearly past 0 and 1, where the renderer shows
+    transparency.
     """
     width, height = image_size
     return np.column_stack([points.real / width, points.imag / height])

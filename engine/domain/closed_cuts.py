@@ -1,7 +1,7 @@
-"""How slits are closed where a domain is painted: their sides meet, in every pose.
+"""Closed slits: where a domain is painted, the two sides of a slit meet, in every pose.
 
-A mesh ends at the outline, and a slit would show as a line. So the vertices on its sides are
-painted where the map of a triangle beside them takes the places at which the two sides meet.
+A mesh ends at the outline, so a slit would show as a line. Instead, the vertices on its sides are
+painted at the places where the sides meet, mapped by a neighbouring triangle.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.domain.build import MeshedDomain
 from engine.geometry import ON_OUTLINE, diameter, loop_ends
 
-FARTHEST = 8.0  # sizes of a triangle beyond it, that it tells of
+FARTHEST = 8.0  # sizes of a triangle beyond it, as far as it is extrapolated
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -24,12 +24,12 @@ class ClosedCuts:
     Parameters
     ----------
     vertices : intp, shape (s,)
-        Which they are.
+        Their indices.
     corners : int32, shape (s, 3)
         A triangle of the mesh at each.
     weights : float64, shape (s, 3)
-        Barycentric coordinates in it of where the vertex is painted: outside, so that one of them
-        is negative.
+        Barycentric coordinates of the painted place in this triangle. The place is outside, so that
+        one coordinate is negative.
     """
 
     vertices: Indices
@@ -37,14 +37,14 @@ class ClosedCuts:
     weights: Floats
 
     def close_cuts(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return what depends linearly on the place of each vertex, (v, …), with slits closed."""
+        """Return values (v, …) that are linear in the vertices' places, with slits closed."""
         result = values.copy()
         result[self.vertices] = np.einsum("sc,sc...->s...", self.weights, values[self.corners])
         return result
 
 
 def find_closed_cuts(domain: MeshedDomain) -> ClosedCuts | None:
-    """Return how a domain's mesh is painted; None where it has no slit."""
+    """Return the closed slits of a domain's mesh; None without slits."""
     if domain.closed is None:
         return None
     corners = np.concatenate(domain.loops)
@@ -58,7 +58,7 @@ def find_closed_cuts(domain: MeshedDomain) -> ClosedCuts | None:
 def _on_sides(
     domain: MeshedDomain, corners: Complexes, shifts: Complexes
 ) -> tuple[Indices, Complexes]:
-    """Return the vertices between the corners of slits, and by how much they are moved."""
+    """Return the vertices between the corners of slits, and their displacements."""
     ends = loop_ends(domain.loops)
     shifts_at_ends = loop_ends(
         np.split(shifts, np.cumsum([len(loop) for loop in domain.loops])[:-1])
@@ -66,7 +66,7 @@ def _on_sides(
     sides = np.flatnonzero((shifts != 0) | (shifts_at_ends != 0))
     tolerance = ON_OUTLINE * diameter(domain.outline)
     vertices = domain.mesh.vertices
-    # In order of x, so that only few have to be looked at for each side.
+    # Sorted by x, so that each side is compared with few vertices only.
     by_x = len(corners) + np.argsort(vertices.real[len(corners) :])
     x = vertices.real[by_x]
     found, moves = [np.empty(0, dtype=np.intp)], [np.empty(0, dtype=np.complex128)]
@@ -84,18 +84,19 @@ def _on_sides(
 
 
 def _beside(domain: MeshedDomain, moved: Indices, places: Complexes) -> ClosedCuts:
-    """Return the seam that paints vertices at other places, each by a triangle beside it."""
+    """Return the closed slits for vertices at these places, each mapped by a triangle beside it."""
     triangles, vertices = domain.mesh.triangles, domain.mesh.vertices
     number = np.full(len(vertices), -1)
     number[moved] = np.arange(len(moved))
     rows, columns = np.nonzero(number[triangles] >= 0)
     index, around = number[triangles[rows, columns]], triangles[rows]
     weights = _weights(vertices[around], places[index])
-    # Of the triangles at a vertex the one that has to reach the least beyond itself.
+    # Of the triangles at a vertex, choose the one with the least extrapolation.
     order = np.lexsort((-weights.min(axis=1), index))
     chosen = order[np.flatnonzero(np.diff(index[order], prepend=-1))]
     corners, weights = around[chosen], weights[chosen]
-    # Meshes have corners where triangles are far smaller than a slit: a larger one nearby is taken.
+    # Meshes have corners with triangles far smaller than a slit: there use a larger triangle
+    # nearby.
     tiny = np.flatnonzero(weights.min(axis=1) < -FARTHEST)
     middles = vertices[triangles].mean(axis=1) if len(tiny) else vertices
     areas = domain.mesh.areas() if len(tiny) else np.empty(0)

@@ -1,4 +1,4 @@
-"""Whether a domain is one: true of what `build_domain` makes, and to be asked of what is read."""
+"""Validity of a domain: always true for `build_domain`, to be checked for files."""
 
 import numpy as np
 
@@ -17,15 +17,17 @@ from engine.geometry import (
     signed_area,
 )
 
-# Built meshes have as many triangles as are aimed at, but for a few percent.
+# Built meshes have the requested number of triangles up to a few percent.
 MOST_MESH_TRIANGLES = 2 * MOST_TRIANGLES
-# Farther out than any picture goes that lies on a canvas, with the cage around it; squares still
-# have digits to spare. The corners of pictures are within half of that.
+# Farthest coordinate. Pictures on a canvas, with their cages, lie within it, their corners within
+# half of it; squares still have digits to spare.
 OUTERMOST = 2e7
-# Of the diameter: how near a vertex of the cage may come. Samples of the outline are graded towards
-# it, so that this bounds their number; a built cage keeps 300 times that distance.
+# Of the diameter: least distance of a cage vertex from the outline. Samples of the outline are
+# graded towards the vertex, so the distance bounds their number. A built cage keeps 300 times this
+# distance.
 NEAREST = 1e-6
-# Of the diameter: how far from its vertices the outline is painted; a built one is within .0022.
+# Of the diameter: largest distance of the painted outline from its vertices; built ones stay in
+# .0022.
 FARTHEST_CLOSED = 0.01
 # Of the outline's area.
 SAME_AREA = 1e-9
@@ -40,14 +42,14 @@ TOO_FAR = "The {name} lies farther from the origin than {farthest:,.0f} pixels."
 
 
 def require_domain(domain: MeshedDomain) -> None:
-    """Raise `EngineError` unless outline, cage and mesh belong together as a `MeshedDomain` says.
+    """Raise `EngineError` unless outline, cage and mesh belong together.
 
     Notes
     -----
-    The triangles all run counter-clockwise, so that they cover each point as often as the mesh's
-    own border runs around it. That border lies on the outline, so that it does so equally often
-    around all points inside, around none outside, and around none in a hole, which is asked of its
-    centre; and their areas make up the domain's, so that it is once. Together: the triangles tile
+    The triangles all run counter-clockwise, so they cover each point as often as the mesh's own
+    border winds around it. That border lies on the outline, so its winding number is equal at all
+    inner points and 0 outside. The test at a hole's centre shows that it is 0 in the hole. The
+    triangles' areas sum to the domain's, so the number is 1 inside. Together: the triangles tile
     the inside, without gap or overlap.
 
     Cost: a sort of the mesh's edges, 30 ms for 100,000 triangles.
@@ -58,7 +60,7 @@ def require_domain(domain: MeshedDomain) -> None:
         if count > LARGEST_OUTLINE:
             raise EngineError(VERTEX_COUNT.format(name=name, most=LARGEST_OUTLINE, count=count))
     _require_near(domain.mesh.vertices, "mesh")
-    # Far from the origin small shapes would have no digits left for what lies between vertices.
+    # Far from the origin small shapes would have no digits left between vertices.
     domain = domain.moved(-complex(domain.outline[0]))
     require_simple(domain.outline, "outline")
     require_cages_in_holes(domain.holes, domain.outline)
@@ -107,7 +109,7 @@ def _require_tiling(domain: MeshedDomain) -> None:
 
 
 def _border(triangles: Integers) -> tuple[Integers, Integers]:
-    """Return from where to where (b,) the directed edges lead that have no opposite one."""
+    """Return start and end (b,) of the directed edges without an opposite edge."""
     _, numbers, _ = sides_of(triangles)
     ends = np.roll(triangles, -1, axis=1)
     if np.bincount((2 * numbers + (triangles < ends)).ravel()).max() > 1:

@@ -1,7 +1,7 @@
 """Plane geometry of segments, closed polygons and domains, for every room above.
 
 In: polygons by their vertices, segments by their ends, and points.
-Out: samples, pieces, triangles, distances, areas, and whether something is inside.
+Out: samples, pieces, triangles, distances, areas, and tests of being inside.
 Imports: `engine.arrays`, `engine.errors`.
 """
 

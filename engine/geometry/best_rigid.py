@@ -1,4 +1,4 @@
-"""The rigid motion that brings points nearest to where they are wanted."""
+"""The rigid motion that brings points nearest to their targets."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from engine.errors import EngineError
 from engine.geometry.rigid import IDENTITY_MOTION, RigidMotion
 
 NEGATIVE_WEIGHTS = "weights must be finite and not negative, not {weights}."
-TOWARDS_REST = 1e-6  # how strongly all points together pull towards no motion
+TOWARDS_REST = 1e-6  # pull of all points together towards the identity
 
 
 def fit_rigid(
@@ -15,16 +15,16 @@ def fit_rigid(
 ) -> RigidMotion:
     """Return argmin over R of Σ w |R p − p − o|² + (ε / h) Σ |R p − p|².
 
-    In closed form, and as smooth as what is given; the identity where all offsets are 0.
+    In closed form and smooth in its arguments; the identity where all offsets are 0.
 
     Parameters
     ----------
     places, offsets : complex128, shape (h,)
-        p, and by how much each is wanted elsewhere.
+        p, and o from there to the target.
     weights : float64, shape (h,)
         Not negative.
     pivot : complex, optional
-        A point that stays.
+        A fixed point.
     """
     places, offsets = as_points(places, "places"), as_points(offsets, "offsets")
     weights = as_reals(weights, "weights")

@@ -1,4 +1,4 @@
-"""The plane domain of maps, as every room above takes it."""
+"""The plane domain of maps, as all rooms above use it."""
 
 from dataclasses import dataclass, replace
 from typing import Self
@@ -12,7 +12,7 @@ from engine.geometry.polygon import contains
 class Domain:
     """A polygon less its holes, with the cages of the Cauchy coordinates.
 
-    Whether outline, cage and holes belong together is checked by `engine.maps.Boundary.sample`.
+    `engine.maps.Boundary.sample` checks that outline, cage and holes belong together.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class Domain:
     Raises
     ------
     EngineError
-        If the polygons are not at least three finite complex numbers, or a hole is no `Hole`.
+        If a polygon has fewer than three finite complex numbers, or a hole is no `Hole`.
     """
 
     outline: Complexes
@@ -56,6 +56,5 @@ class Domain:
         return contains(self.outline, points, holes=self.loops[1:])
 
     def moved(self, by: complex) -> Self:
-        """Return the domain elsewhere in the plane."""
         holes = tuple(hole.moved(by) for hole in self.holes)
         return replace(self, outline=self.outline + by, cage=self.cage + by, holes=holes)

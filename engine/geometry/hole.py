@@ -41,13 +41,13 @@ class Hole:
         object.__setattr__(self, "centre", complex(centre))
 
     def moved(self, shift: complex, scale: float = 1.0) -> "Hole":
-        """Return the hole enlarged about the origin, and then shifted."""
+        """Return the hole scaled about the origin, and then shifted."""
         outline, cage = shift + scale * self.outline, shift + scale * self.cage
         return Hole(outline=outline, cage=cage, centre=shift + scale * self.centre)
 
 
 def require_cages_in_holes(holes: Sequence[Hole], outline: Complexes) -> None:
-    """Raise `EngineError` unless the holes lie apart inside the outline, and a cage in each."""
+    """Raise `EngineError` unless the holes lie apart inside the outline, each with a cage in it."""
     require_holes([hole.outline for hole in holes], outline)
     for number, hole in enumerate(holes):
         name = f"cage of hole {number}"

@@ -13,11 +13,10 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.errors import EngineError
 from engine.geometry.segments import Pieces, bisect_segments, distance_to_segments
 
-# Distance, over the size of a shape, at which a point counts as on its outline: so far may rounding
-# move it off.
+# Distance, over the size of a shape, at which a point counts as on its outline, for rounding.
 ON_OUTLINE = 1e-9
-SIZES = (1e-60, 1e60)  # of polygons; the fourth powers of smaller and larger ones are no numbers
-FARTHEST = 1e9  # from the origin, over a polygon's size: beyond, its shape is lost in rounding
+SIZES = (1e-60, 1e60)  # of polygons; the fourth powers of other sizes overflow or vanish
+FARTHEST = 1e9  # from the origin, over a polygon's size: beyond, rounding destroys its shape
 SHORTEST_EDGE = 1e-12  # of a cage, over the outline's size: the coordinates divide by it
 FARTHEST_CAGE = 1e6  # from the outline, over its size: beyond, the coordinates are all the same
 OUTSIDE_OUTLINE = (
@@ -42,12 +41,12 @@ def edge_vectors(polygon: Complexes) -> Complexes:
 
 
 def loop_ends(loops: Sequence[Complexes]) -> Complexes:
-    """Return where the edges of several polygons end (n,), one polygon after the other."""
+    """Return the ends (n,) of the edges of several polygons, one polygon after the other."""
     return np.concatenate([np.roll(loop, -1) for loop in loops])
 
 
 def next_on_loop(starts: Indices, count: int) -> Indices:
-    """Return the next one of each of `count` items on closed loops that begin at `starts`."""
+    """Return the successor of each of `count` items on closed loops that begin at `starts`."""
     following: Indices = np.arange(1, count + 1)
     following[np.append(starts[1:], count) - 1] = starts
     return following
@@ -61,15 +60,15 @@ def signed_area(polygon: Complexes) -> float:
 
 
 def box_diagonal(polygon: Complexes) -> float:
-    """Return the diagonal of the bounding box, by which pictures are measured."""
+    """Return the diagonal of the bounding box, the size of pictures."""
     return float(np.hypot(np.ptp(polygon.real), np.ptp(polygon.imag)))
 
 
 def diameter(polygon: Complexes) -> float:
     """Return L, the largest distance between two vertices: the length scale of all tolerances.
 
-    Unlike the box, it does not change where the polygon is turned. Rotating calipers on the convex
-    hull: each edge is measured against the vertices farthest from its line.
+    Unlike the box, it does not change under rotation. Rotating calipers on the convex hull: each
+    edge is measured against the vertices farthest from its line.
     """
     # By a power of two, so that nothing is rounded: hulls of 1e200 are lost in squares.
     spokes = polygon - polygon[0]
@@ -86,7 +85,7 @@ def diameter(polygon: Complexes) -> float:
 
 
 def corners_of(polygon: Complexes) -> Complexes:
-    """Return the vertices at which a polygon turns, without those on the way of straight edges."""
+    """Return the vertices at which a polygon turns, without those inside straight edges."""
     before, after = polygon - np.roll(polygon, 1), edge_vectors(polygon)
     off = np.abs((before.conj() * after).imag)  # times the chord's length, from the chord
     turns = off > ON_OUTLINE * diameter(polygon) * np.abs(before + after)
@@ -99,7 +98,7 @@ def as_xy(points: Complexes) -> Floats:
 
 
 def is_simple(polygon: Complexes) -> bool:
-    """Tell whether no two edges touch except neighbours at their common vertex."""
+    """Whether no two edges touch except neighbours at their common vertex."""
     return len(polygon) >= 3 and bool(shapely.LinearRing(as_xy(polygon)).is_simple)
 
 
@@ -130,19 +129,18 @@ def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
 
 
 def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes] = ()) -> bool:
-    """Tell whether the inside of one polygon lies in that of another, clear of its boundary."""
+    """Whether the inside of one polygon lies in that of another, clear of its boundary."""
     return bool(shapely.contains_properly(shapely_region(polygon, holes), shapely_region(inner)))
 
 
 def shapely_region(polygon: Complexes, holes: Sequence[Complexes] = ()) -> shapely.Polygon:
-    """Return the inside of a polygon, without that of its holes, as Shapely has it."""
     return shapely.Polygon(as_xy(polygon), [as_xy(hole) for hole in holes])
 
 
 def distance_to_boundary(
     polygon: Complexes, points: Complexes, holes: Sequence[Complexes] = ()
 ) -> Floats:
-    """Return the distance (p,) of each point from the closed polyline, or from that of a hole."""
+    """Return the distance (p,) of each point from the boundary of a polygon and its holes."""
     rings = shapely.MultiLineString([shapely.LinearRing(as_xy(loop)) for loop in (polygon, *holes)])
     shapely.prepare(rings)
     distances: Floats = shapely.distance(rings, shapely.points(as_xy(points)))
@@ -150,7 +148,7 @@ def distance_to_boundary(
 
 
 def deepest_point(polygon: Complexes, holes: Sequence[Complexes] = ()) -> complex:
-    """Return the point inside that is farthest from the boundary, to 1e-4 of the diameter."""
+    """Return the inner point farthest from the boundary, to 1e-4 of the diameter."""
     radius = shapely.maximum_inscribed_circle(
         shapely_region(polygon, holes), tolerance=1e-4 * diameter(polygon)
     )
@@ -165,9 +163,9 @@ def contains(
     holes: Sequence[Complexes] = (),
     tolerance: float = 0.0,
 ) -> Booleans:
-    """Tell for each point (p,) whether it lies in the closed region or within `tolerance` of it.
+    """Return for each point (p,) whether it lies in the closed region or within `tolerance` of it.
 
-    The inside of the `holes`, polygons too, does not belong to the region.
+    The region excludes the inside of the `holes`, which are polygons.
     """
     area = shapely_region(polygon, holes)
     shapely.prepare(area)
@@ -186,7 +184,7 @@ def require_inside(
     holes: Sequence[Complexes] = (),
     tolerance: float = 0.0,
 ) -> None:
-    """Raise `EngineError` unless `contains` is true of all points (p,), each called `name`."""
+    """Raise `EngineError` unless the region contains all points (p,), each called `name`."""
     outside = np.flatnonzero(~contains(outline, points, holes=holes, tolerance=tolerance))
     if len(outside):
         number = f" {outside[0]}" if len(points) > 1 else ""
@@ -200,7 +198,7 @@ def require_inside(
 def require_around(cage: Complexes, outline: Complexes) -> None:
     """Raise `EngineError` unless a cage winds once around the outline, with room between them.
 
-    Only that: published cages are known that cross themselves elsewhere.
+    Crossings elsewhere are allowed: some published cages have them.
     """
     size = diameter(outline)
     if np.abs(edge_vectors(cage)).min() <= SHORTEST_EDGE * size:
@@ -214,7 +212,7 @@ def require_around(cage: Complexes, outline: Complexes) -> None:
 
 
 def winding_number(polygon: Complexes, point: complex) -> int:
-    """Return how often a polygon runs counter-clockwise around a point that is not on it."""
+    """Return how often a polygon runs counter-clockwise around a point off the polygon."""
     spokes = polygon - point
     return round(float(np.angle(np.roll(spokes, -1) / spokes).sum() / (2 * np.pi)))
 
@@ -222,8 +220,9 @@ def winding_number(polygon: Complexes, point: complex) -> int:
 def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) -> Indices:
     """Return the constrained Delaunay triangulation of a simple polygon without its holes.
 
-    They are simple polygons inside and apart. The triangles, intp (t, 3), run counter-clockwise;
-    their vertices are those of the polygon and then of the holes, without further ones.
+    The holes are simple polygons inside and apart. The triangles, intp (t, 3), run
+    counter-clockwise. Their vertices are those of the polygon and then of the holes; no vertices
+    are added.
 
     Raises
     ------

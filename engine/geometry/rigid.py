@@ -12,22 +12,20 @@ class RigidMotion(NamedTuple):
     shift: complex = 0j
 
     def apply(self, places: Complexes) -> Complexes:
-        """Return where places come to."""
         if self == IDENTITY_MOTION:
             return places
         return self.factor * places + self.shift
 
     def apply_inverse(self, place: complex) -> complex:
-        """Return which place comes to a place."""
+        """Return the preimage of a place."""
         return (place - self.shift) * self.factor.conjugate()
 
     def compose(self, other: "RigidMotion") -> "RigidMotion":
-        """Return the motion that is the other one and then this one."""
+        """Return the motion that applies `other` first."""
         return RigidMotion(self.factor * other.factor, self.factor * other.shift + self.shift)
 
     @property
     def inverse(self) -> "RigidMotion":
-        """The motion that undoes it."""
         return RigidMotion(self.factor.conjugate(), -self.factor.conjugate() * self.shift)
 
 
@@ -38,11 +36,10 @@ class Similarity(NamedTuple):
     shift: complex = 0j
 
     def apply(self, places: Complexes) -> Complexes:
-        """Return where places come to."""
         return self.factor * places + self.shift
 
     def apply_inverse(self, place: complex) -> complex:
-        """Return which place comes to a place."""
+        """Return the preimage of a place."""
         return (place - self.shift) / self.factor
 
 

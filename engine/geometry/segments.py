@@ -1,4 +1,4 @@
-"""Straight segments: their distances from points, and pieces of them that are halved over again."""
+"""Straight segments: distances from points, and pieces by repeated halving."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,16 +13,16 @@ from engine.arrays import Booleans, Complexes, Floats, Indices
 class Pieces:
     """Dyadic pieces of segments, in order of the segments and along each of them.
 
-    Build them with `Pieces.whole`, and cut them with `halved` or `bisect`.
+    Build them with `Pieces.whole`, and cut them with `halved` or `bisect_segments`.
 
     Parameters
     ----------
     origin, span : complex128, shape (s,)
-        Where each segment starts, and the vector from there to its end.
+        Start of each segment, and the vector to its end.
     segment : intp, shape (c,)
-        The segment that each piece belongs to.
+        The segment of each piece.
     place, width : float64, shape (c,)
-        Where the piece starts and how long it is, as shares of its segment: exact numbers.
+        Start and length of the piece, as shares of its segment: exact numbers.
     """
 
     origin: Complexes
@@ -44,31 +44,28 @@ class Pieces:
         )
 
     def __len__(self) -> int:
-        """Return the number of pieces."""
         return len(self.segment)
 
     @property
     def starts(self) -> Complexes:
-        """Where the pieces start (c,)."""
+        """Starts of the pieces (c,)."""
         return self.origin[self.segment] + self.place * self.span[self.segment]
 
     @property
     def ends(self) -> Complexes:
-        """Where the pieces end (c,); of two neighbours the one's end is the other's start."""
+        """Ends of the pieces (c,); the end of a piece is exactly the start of its neighbour."""
         return self.origin[self.segment] + (self.place + self.width) * self.span[self.segment]
 
     @property
     def lengths(self) -> Floats:
-        """How long the pieces are (c,)."""
         return self.width * np.abs(self.span[self.segment])
 
     def select(self, chosen: Booleans) -> "Pieces":
-        """Return the pieces that are marked in `chosen` (c,)."""
         segment, place, width = self.segment[chosen], self.place[chosen], self.width[chosen]
         return replace(self, segment=segment, place=place, width=width)
 
     def halved(self, chosen: Booleans) -> "Pieces":
-        """Return the pieces with two halves instead of each that is marked in `chosen` (c,)."""
+        """Return the pieces with two halves in place of each piece marked in `chosen` (c,)."""
         parent = np.repeat(np.arange(len(self)), 1 + chosen)
         second = np.diff(parent, prepend=-1) == 0
         width = np.where(chosen, self.width / 2, self.width)[parent]
@@ -79,8 +76,7 @@ class Pieces:
 def bisect_segments(pieces: Pieces, is_fine: Callable[[Pieces], Booleans]) -> Pieces:
     """Halve pieces until each of them is fine.
 
-    `is_fine` tells for each of some pieces (c,) whether it may stay as it is; every piece is asked
-    about once.
+    `is_fine` decides for pieces (c,); it is asked about every piece once.
     """
     new = np.ones(len(pieces), dtype=np.bool_)
     while True:

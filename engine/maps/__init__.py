@@ -1,4 +1,4 @@
-"""Harmonic maps over a cage, how far they distort, and the proof of it.
+"""Harmonic maps over a cage, their distortion, and its proof.
 
 In: a cage, holes, coefficients of Φ and Ψ, points, bounds.
 Out: values and derivatives, k, σ_a, σ_b, τ, and certificates.

@@ -1,4 +1,4 @@
-"""Samples of the outline on which a map over the cage is measured and bounded."""
+"""Samples of the outline at which a map over the cage is measured and bounded."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -30,13 +30,12 @@ SEGMENT_PER_SIZE = 1 / 200
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Boundary:
-    """The boundary of a domain, sampled as densely as the derivatives of maps ask for.
+    """The boundary of a domain, sampled as densely as the derivatives of maps need.
 
     Build it with `Boundary.sample`; it depends on the shape only and serves all maps on it.
 
     Parameters
     ----------
-    domain : Domain
     span : Span
         The functions of maps: cage and holes.
     size : float
@@ -47,25 +46,24 @@ class Boundary:
     starts : intp, shape (1 + holes,)
         The first sample of each loop.
     weights : float64, shape (m,)
-        Of the samples in the energy: the arc length that belongs to each, with sum 1, times the
-        stiffness there, and 0 for those that were added. Sums do not change by refinement.
-    shares : float64, shape (m,)
-        Of the samples in sums of barriers: their weights, and for those that were added the mean
-        weight. A bound that presses at one of these few points then keeps as much slack as others.
+        Weights in the energy: the arc length of each sample, with sum 1, times the stiffness there,
+        and 0 for added samples. Refinement does not change sums.
+    barrier_weights : float64, shape (m,)
+        Weights in sums of barriers: `weights`, and for added samples the mean weight. A bound that
+        presses at one of these few points then keeps as much slack as others.
     stiffness : float64, shape (m,)
         At the samples, 1 unless the boundary is `stiffened`.
     half_lengths : float64, shape (m,)
         Of the segments.
     derivatives : complex128, shape (m, n)
-        Of the n functions of the span, C_j' and 1 / (z − c_j), at the samples.
-    bending_kernel : float64, shape (m, n)
-        Times how much each singularity bends a function (`Span.bending`), it bounds |Φ'''| on the
-        segment.
+        C_j' and 1 / (z − c_j) of the n functions of the span, at the samples.
+    third_derivative_kernel : float64, shape (m, n)
+        Times `Span.singularity_strengths` it bounds |Φ'''| on the segment.
     vertex_coordinates : complex128, shape (p, n)
-        The functions themselves at the vertices of all loops.
+        The functions' values at the vertices of all loops.
     basis : complex128, shape (n, r)
         The coefficients, one function a column, of `Span.orthonormal_basis` on the own samples; all
-        but the constants with the mean 0 at the vertices.
+        but the constants have the mean 0 at the vertices.
     basis_derivatives : complex128, shape (m, r)
         Of the functions of the basis.
     """
@@ -115,11 +113,11 @@ class Boundary:
         derivatives = readonly(span.derivatives(points))
         vertex_coordinates = readonly(span.coordinates(np.concatenate(loops)))
         basis = span.orthonormal_basis(derivatives, lengths, size)
-        # With the mean 0 a handle is about as stiff against one function as against another.
+        # With the mean 0 a handle is about equally stiff against all functions.
         others = basis[:, len(span.cages) :]
         others[: len(cage)] -= vertex_coordinates.mean(axis=0) @ others
         return cls(
-            domain=Domain(outline, cage, holes),  # without the mesh that a caller's may have
+            domain=Domain(outline, cage, holes),  # without the caller's mesh
             span=span,
             size=size,
             points=readonly(points),
@@ -147,7 +145,6 @@ class Boundary:
 
     @property
     def holes(self) -> tuple[Hole, ...]:
-        """Those of the domain."""
         return self.domain.holes
 
     @property
@@ -162,7 +159,7 @@ class Boundary:
 
     @cached_property
     def original_samples(self) -> tuple[Indices, list[int]]:
-        """The samples that were not added, and where those of each loop begin and end in them."""
+        """The samples that were not added, and the begin and end of each loop among them."""
         own = np.flatnonzero(self.weights)
         return own, np.searchsorted(own, [*self.starts, len(self.points)]).tolist()
 
@@ -174,11 +171,11 @@ class Boundary:
 
     @property
     def mean_stiffness(self) -> float:
-        """That of the boundary, by its length."""
+        """Mean of the stiffness over the boundary's length."""
         return float(self.weights.sum() / self.lengths.sum())
 
     def stiffened(self, stiffness: npt.ArrayLike) -> Self:
-        """Return the boundary, as it was sampled, with its energy's weights times a stiffness.
+        """Return the boundary with the same samples and its energy's weights times a stiffness.
 
         Parameters
         ----------
@@ -189,7 +186,7 @@ class Boundary:
         Raises
         ------
         EngineError
-            If it is not so many such numbers.
+            If the stiffness has another number of values, or values out of range.
         """
         loops = self.loops
         at_vertices = require_stiffness(stiffness, sum(map(len, loops)))
@@ -199,7 +196,7 @@ class Boundary:
         return self.stiffened_at_samples(at_samples)
 
     def stiffened_at_samples(self, stiffness: Floats) -> Self:
-        """Return the same with the stiffness at each sample, float64 (m,)."""
+        """Return the boundary with this stiffness at each sample, float64 (m,)."""
         return replace(
             self, weights=freeze(self.barrier_weights * stiffness), stiffness=readonly(stiffness)
         )
@@ -207,8 +204,8 @@ class Boundary:
     def stiffness_around(self, points: Complexes) -> tuple[Floats, Floats]:
         """Return the mean and the quadratic mean of the stiffness around points, (h,) each.
 
-        A sample counts by its length over the square of its distance: along a straight side that is
-        its harmonic measure, by which s would be continued into the domain.
+        A sample counts by its length over the square of its distance. Along a straight side this is
+        the harmonic measure, the weight of the harmonic extension of s into the domain.
         """
         if np.all(self.stiffness == 1.0):
             return np.ones(len(points)), np.ones(len(points))
@@ -250,7 +247,7 @@ class Boundary:
 
 
 def _arc_lengths(half_lengths: Floats, starts: Indices) -> Floats:
-    """Return the arc length from the middle of the segment before each sample to that after it."""
+    """Return the arc length around each sample, between the middles of its two segments."""
     lengths: Floats = half_lengths.copy()
     lengths[next_on_loop(starts, len(lengths))] += half_lengths
     lengths /= lengths.sum()

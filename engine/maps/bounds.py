@@ -1,4 +1,4 @@
-"""The distortion that a person allows, and what a map is held to."""
+"""Bounds on the distortion: those of the person, and local ones of the solver."""
 
 from dataclasses import dataclass
 from math import isfinite
@@ -17,9 +17,9 @@ IMPOSSIBLE_BOUND = "The bound on {name} must be {allowed}, not {value:g}."
 class LocalBounds:
     """Limits that hold at every point of a shape: k ≤ `k`, σ_a ≤ `sigma_a`, σ_b ≥ `sigma_b`.
 
-    Any numbers, or arrays (s,) of one for each of a shape's own samples: a segment between two of
-    them is held to the wider of both. What a person allows are `Bounds`; the solver also holds maps
-    to limits that the identity does not keep, as on the way of an enlarged map into tighter bounds.
+    Any numbers, or arrays (s,) with one limit for each of a shape's own samples. A segment between
+    two samples is held to the wider limits of both. A person sets `Bounds`. The solver also uses
+    limits that the identity breaks, for example while an enlarged map moves into tighter bounds.
     """
 
     k: float | Floats
@@ -27,7 +27,7 @@ class LocalBounds:
     sigma_b: float | Floats
 
     def allow(self, *, k: float | Floats, sigma_a: float | Floats, sigma_b: float | Floats) -> bool:
-        """Tell whether distortions up to these values are within the limits; NaN never is."""
+        """Whether distortions up to these values are within the limits; never for NaN."""
         return bool(
             np.all(k <= self.k)
             and np.all(sigma_a <= self.sigma_a)
@@ -35,11 +35,11 @@ class LocalBounds:
         )
 
     def include(self, limits: "LocalBounds") -> bool:
-        """Tell whether what keeps to other limits keeps to these."""
+        """Whether maps within the other limits are within these."""
         return self.allow(k=limits.k, sigma_a=limits.sigma_a, sigma_b=limits.sigma_b)
 
     def at(self, boundary: Boundary) -> "LocalBounds":
-        """Return the limits at all samples of a boundary, those that were added included."""
+        """Return the limits at all samples of a boundary, added samples included."""
         if not any(map(np.ndim, (self.k, self.sigma_a, self.sigma_b))):
             return self
         own, ends = boundary.original_samples
@@ -58,9 +58,9 @@ class LocalBounds:
     def scaled_by_stiffness(self, boundary: Boundary) -> "LocalBounds":
         """Return the limits of a shape, tighter where it is stiff.
 
-        Where its stiffness s is above 1, ln σ_a, ln σ_b and k are those of the shape over √s. Each
-        segment is held to what its stiffer end allows, which all of it then keeps: a sample takes
-        the tightest limits of its neighbours.
+        Where the stiffness s is above 1, ln σ_a, ln σ_b and k are the shape's values over √s. Each
+        segment is held to the limits of its stiffer end: a sample takes the tightest limits of its
+        neighbours.
         """
         own, ends = boundary.original_samples
         stiffness = np.maximum(boundary.stiffness[own], 1.0)
@@ -73,7 +73,7 @@ class LocalBounds:
         return self.scaled_by(stiffest)
 
     def scaled_by(self, stiffness: Floats) -> "LocalBounds":
-        """Return the limits of parts of such a stiffness (s,), at least 1."""
+        """Return the limits of parts with this stiffness (s,), at least 1."""
         root = np.sqrt(stiffness)
         return LocalBounds(
             k=self.k / root,
@@ -82,7 +82,7 @@ class LocalBounds:
         )
 
     def towards_identity(self, fraction: float) -> "LocalBounds":
-        """Return the limits moved by a fraction of what lies between them and the identity."""
+        """Return the limits moved by a fraction of their distance from the identity."""
         rest = 1.0 - fraction
         return LocalBounds(
             k=rest * self.k,

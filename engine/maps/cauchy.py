@@ -11,8 +11,8 @@ difference s_j = (φ_{j+1} − φ_j) / (z_{j+1} − z_j), so that
     2πi Φ''(z) = Σ (s_j − s_{j−1}) / B_j.
 
 Points lie strictly inside the cage. On the cage Φ' is log-singular at the vertices; outside it the
-formulas give the values of another function, 0 for constants. That is what cages in holes are for,
-which run clockwise (`engine.maps.span`).
+formulas give the values of another function, 0 for constants. Cages in holes use these functions;
+they run clockwise (`engine.maps.span`).
 """
 
 from collections.abc import Iterator
@@ -90,25 +90,24 @@ def evaluate(
 
     Parameters
     ----------
-    cage : complex128, shape (n,)
     coefficients : complex128, shape (n, q)
         One column for each holomorphic function.
     points : complex128, shape (m,)
         Points strictly inside the cage.
     orders : tuple of int
-        Which derivatives are wanted, each 0, 1 or 2.
+        Orders of the derivatives, each 0, 1 or 2.
 
     Returns
     -------
     list of complex128, shape (m, q)
-        One array for each entry of `orders`; NaN at points around which the cage does not wind
-        once, or, clockwise in a hole, does wind, if order 0 or 1 is among them.
+        One array for each entry of `orders`. If 0 or 1 is among them, NaN at points outside a
+        counter-clockwise cage, or inside a clockwise one in a hole.
 
     Notes
     -----
-    One logarithm per point and edge serves all functions and both orders 0 and 1; the points are
+    One logarithm per point and edge serves all functions and both orders 0 and 1. The points are
     taken in blocks that stay in cache, so that memory does not grow with m·n. Accurate to rounding
-    at distances from the cage that are not small against its edges.
+    at distances from the cage that are not small compared with its edges.
     """
     differences = divided_differences(cage, coefficients)
     # z is measured from the middle of the cage: far from the origin Σ ℓ_j (φ_j − s_j z_j) and
@@ -166,7 +165,7 @@ def _logarithms(x: Floats, y: Floats, squared: Floats) -> tuple[Floats, Floats]:
 
 
 def _following(values: Floats) -> Floats:
-    """Return what belongs to the next vertex; as `np.roll` does, but faster."""
+    """Return the values of the next vertex; like `np.roll`, but faster."""
     following = np.empty_like(values)
     following[:, :-1], following[:, -1] = values[:, 1:], values[:, 0]
     return following

@@ -15,9 +15,10 @@ on the segment and turns by exactly Δ, so that the sum of all Δ is 2π times t
 If that is 0, F has no zero in the domain, and the extremes of k, σ_a and σ_b are on the outline
 (Theorem 4 of Chen and Weber 2015). Segments whose bounds are not good enough are bisected.
 
-Around holes both hold for the whole boundary, and |Φ'''| also has 2 |a_j| / d³ of each logarithm.
-The winding has to be 0 along every loop by itself: a map like 1/z turns a ring inside out without a
-fold, but comes from the identity by no deformation, and has no single-valued log f_z.
+Around holes both statements hold for the whole boundary, and |Φ'''| also has 2 |a_j| / d³ of each
+logarithm. The winding has to be 0 along each loop separately. A map like 1/z turns a ring inside
+out without a fold, but no deformation leads to it from the identity. Its log f_z is not
+single-valued.
 """
 
 from dataclasses import dataclass, replace
@@ -33,14 +34,14 @@ from engine.maps.bounds import LocalBounds
 from engine.maps.harmonic_map import HarmonicMap
 from engine.maps.span import Span
 
-# Segments are bisected until the reported extremes are this close to attained ones.
+# Segments are bisected until the reported extremes are this close to attained values.
 TIGHTNESS = 0.002
-# A segment that is not settled when it is this many times shorter never will be: its map folds, or
+# A segment that is still open when it is this many times shorter stays open: its map folds, or
 # touches a bound to the last digit.
 FINEST = 1 << 14
-# A map for which more are bisected than this is far from any certificate.
+# A map that needs more bisections than this is far from any certificate.
 MOST_BISECTED = 20_000
-# Fewer, counted with the functions of the span, are cut into four at once: their number costs less
+# Fewer segments, counted with the functions of the span, are cut into four at once: that costs less
 # than another round.
 FEW = 4096
 OTHER_SPAN = "The map is over another cage than the outline's samples."
@@ -50,7 +51,7 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Certificate:
-    """What is proven about a map, in the closed domain.
+    """Proven bounds on a map's distortion, in the closed domain.
 
     Parameters
     ----------
@@ -60,10 +61,10 @@ class Certificate:
     winding : int or None
         Winding number of f_z along the boundary, the number of its zeros inside; None if f_z
         vanishes, or nearly, on the boundary, or if it winds around holes.
-    certified : bool
-        The map is locally injective and keeps to the limits that it was tested for.
+    is_certified : bool
+        The map is locally injective and keeps its limits.
     limits : LocalBounds or None
-        Those limits; None of the identity, which keeps all bounds.
+        The limits of the test; None for the identity, which keeps all bounds.
     """
 
     k: float
@@ -80,13 +81,13 @@ def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: LocalBounds) 
     Raises
     ------
     EngineError
-        If the map is over another cage.
+        If the map has another cage.
 
     Notes
     -----
-    Cost: O(m n) for m samples, and n logarithms for each bisected segment. A map within the limits
-    by less than the rounding is not certified, nor one whose derivatives overflow; nothing else
-    that holds is refused unless a limit is touched within 2⁻¹⁴ of a segment.
+    Cost: O(m n) for m samples, and n logarithms for each bisected segment. A map is not certified
+    if its slack is below the rounding, or its derivatives overflow, or it touches a limit within
+    2⁻¹⁴ of a segment. All other maps within the limits are certified.
     """
     require_kind(harmonic_map, HarmonicMap, "the map")
     certificate, _, _ = certify_segments(harmonic_map, boundary, limits)
@@ -96,22 +97,22 @@ def certify(harmonic_map: HarmonicMap, boundary: Boundary, limits: LocalBounds) 
 def certify_segments(
     harmonic_map: HarmonicMap, boundary: Boundary, limits: LocalBounds
 ) -> tuple[Certificate, Indices, "Enclosures"]:
-    """Certify a map like `certify`, and tell what is so of its segments.
+    """Certify a map like `certify`, and report on its segments.
 
-    Returns the certificate, the segments on which a limit is broken or could not be proven, and
-    what `segment_enclosures` has of all of them.
+    Returns the certificate, the segments on which a limit is broken or could not be proven, and the
+    `segment_enclosures` of all segments.
 
     Raises
     ------
     EngineError
-        If the map is over another cage.
+        If the map has another cage.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         return _bisect(boundary, _measure(harmonic_map, boundary), limits)
 
 
 class Enclosures(NamedTuple):
-    """What is proven about each segment between two samples, float64 (m,) each."""
+    """Proven bounds on each segment between two samples, float64 (m,) each."""
 
     k: Floats
     sigma_a: Floats
@@ -119,12 +120,12 @@ class Enclosures(NamedTuple):
 
 
 def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosures:
-    """Bound the distortion on each segment as it is, without bisection.
+    """Bound the distortion on each segment, without bisection.
 
     Raises
     ------
     EngineError
-        If the map is over another cage.
+        If the map has another cage.
     """
     segments = _measure(harmonic_map, boundary)
     (k, sigma_a, negative_sigma_b), _, _ = _enclose(segments)
@@ -132,7 +133,7 @@ def segment_enclosures(harmonic_map: HarmonicMap, boundary: Boundary) -> Enclosu
 
 
 def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> "_Segments":
-    """Return what is known of the map at the samples and between them."""
+    """Return the map's values at the samples and its error bounds between them."""
     span = boundary.span
     if not harmonic_map.span.equals(span):
         raise EngineError(OTHER_SPAN)
@@ -152,7 +153,7 @@ def _measure(harmonic_map: HarmonicMap, boundary: Boundary) -> "_Segments":
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Segments:
-    """Those of a map.
+    """Segments of a map.
 
     `nodes` are z, F and G at both ends, complex128 (3, 2, s); `errors` ε_f and ε_g, float64 (2, s).
     """
@@ -170,7 +171,7 @@ class _Segments:
         return ends
 
     def divided(self, which: Booleans, /) -> tuple["_Segments", int]:
-        """Return the parts of the chosen segments; the bound on |Φ'''| holds on in each."""
+        """Return the parts of the chosen segments; the parts keep the segment's bound on |Φ'''|."""
         ends, origins = self.nodes[:, :, which], self.origins[which]
         parts = 4 if len(origins) * len(self.span) < FEW else 2
         share = (np.arange(1, parts) / parts)[:, None]
@@ -191,7 +192,7 @@ class _Segments:
 def _bisect(
     boundary: Boundary, segments: "_Segments", limits: LocalBounds
 ) -> tuple[Certificate, Indices, Enclosures]:
-    # Where it is the same for all samples one column will do, at less cost.
+    # If the limits are equal for all samples one column suffices, at less cost.
     at = limits.at(boundary)
     limit = np.atleast_2d(np.array([at.k, at.sigma_a, np.negative(at.sigma_b)]).T).T
     if limit.shape[1] > 1:
@@ -207,11 +208,11 @@ def _bisect(
         its = limit[:, segments.origins] if limit.shape[1] > 1 else limit
         attained = _largest(attained, distortions)
         kept &= (distortions <= its).all(axis=1)
-        # How good enclosures must be. As long as a limit is kept at all points seen, they must try
-        # to keep it too.
+        # Required tightness of enclosures. As long as all points seen keep a limit, bisection goes
+        # on until the enclosures keep it too.
         goal = (attained + TIGHTNESS * np.array([1.0, attained[1], attained[1]]))[:, None]
         goal = np.where(kept[:, None], np.minimum(goal, its), goal)
-        # All said positively: what is not a number is neither tight nor within.
+        # Written as positive conditions, so that NaN is neither tight nor within.
         tight = clear & (worst <= goal).all(axis=0)
         within = clear & (worst <= its).all(axis=0)
         loose = ~tight
@@ -235,19 +236,19 @@ def _bisect(
 
 
 def _largest(before: Floats, distortions: Floats) -> Floats:
-    """Return the largest (3,) of those met before and of further ones (3, s); of NaN, infinity."""
+    """Return the largest (3,) of earlier distortions and further ones (3, s); infinity for NaN."""
     largest: Floats = np.maximum(before, distortions.max(axis=1, initial=-inf))
     largest[np.isnan(largest)] = inf
     return largest
 
 
 def _distortions(a: Floats, b: Floats) -> Floats:
-    """Return k, σ_a and −σ_b (3, m) of |f_z| and |f_z̄| (m,), where bounds say: no larger."""
+    """Return k, σ_a and −σ_b (3, m), all bounded above, of |f_z| and |f_z̄| (m,)."""
     return np.array([ratio(b, a), a + b, b - a])
 
 
 def _enclose(segments: "_Segments") -> tuple[Floats, Booleans, Floats]:
-    """Return the enclosures (3, s), where F is proven not to vanish, and its angles of turn Δ."""
+    """Return the enclosures (3, s), where F is proven not to vanish, and its rotation angles Δ."""
     (start, end), _ = segments.ends
     a, b = np.abs(segments.ends)
     delta = np.angle(end * start.conj())
@@ -263,7 +264,7 @@ def _conclude(proven: Floats, turns: Floats, limits: LocalBounds, *, keeps: bool
     if np.isfinite(turns).all():
         windings = np.round(turns / (2 * pi)).astype(int)
         winding = int(windings.sum())
-        # Without zeros inside, but around holes, f_z still has no single-valued logarithm.
+        # Without zeros inside, but with winding around holes, f_z has no single-valued logarithm.
         if winding == 0 and windings.any():
             winding = None
     # Zeros of F inside make k infinite there; without k < 1 on the outline σ_b obeys no minimum

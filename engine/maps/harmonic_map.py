@@ -31,19 +31,17 @@ class HarmonicMap:
     cage : complex128, shape (n,)
         Vertices in counter-clockwise order.
     phi, psi : complex128, shape (N,)
-        Coefficients of Φ and Ψ: those of the cage first, then those of the cage in each hole.
-        (phi + c, psi − conj(c)), with c constant on the cage, is the same map for every c, and
-        constants on the cage of a hole are nothing: compare maps at points, never by their
-        coefficients.
-    holes : tuple of Hole
+        Coefficients of Φ and Ψ: those of the cage first, then those of the cage in each hole. (phi
+        + c, psi − conj(c)), with c constant on the cage, is the same map for every c, and constants
+        on the cage of a hole change no map. So compare maps at points, never by their coefficients.
     logs : complex128, shape (holes,)
-        a_j: twice that times ln|z − c_j| is a part of the map.
+        a_j: the map has the terms 2 a_j ln|z − c_j|.
 
     Raises
     ------
     EngineError
-        If there are not as many coefficients as vertices and holes, or they hold anything but
-        finite numbers.
+        If the numbers of coefficients, vertices and holes do not match, or a coefficient is not a
+        finite number.
     """
 
     cage: Complexes
@@ -69,7 +67,6 @@ class HarmonicMap:
 
     @classmethod
     def identity(cls, cage: Complexes, holes: tuple[Hole, ...] = ()) -> Self:
-        """Return the map that leaves every point where it is."""
         return cls.similarity(cage, holes)
 
     @classmethod
@@ -85,24 +82,24 @@ class HarmonicMap:
 
     @property
     def span(self) -> Span:
-        """The functions that the map is made of."""
+        """The functions whose combinations are Φ and Ψ."""
         return Span(cage=self.cage, holes=self.holes)
 
     @property
     def coefficients(self) -> Complexes:
-        """Those of Φ and Ψ in the span, logarithms included, complex128 (n, 2)."""
+        """The coefficients of Φ and Ψ in the span, logarithms included, complex128 (n, 2)."""
         return np.column_stack(self.columns)
 
     @property
     def columns(self) -> tuple[Complexes, Complexes]:
-        """Those of Φ and those of Ψ, logarithms included, complex128 (n,) each."""
+        """The coefficients of Φ and of Ψ, logarithms included, complex128 (n,) each."""
         if not self.holes:
             return self.phi, self.psi
         logs = self.logs
         return np.concatenate([self.phi, logs]), np.concatenate([self.psi, logs.conj()])
 
     def changed(self, phi: Complexes, psi: Complexes) -> Self:
-        """Return the map with something added to its `columns`.
+        """Return the map with changes added to its `columns`.
 
         `psi` ends in the conjugates of the last entries of `phi`.
         """
@@ -111,7 +108,6 @@ class HarmonicMap:
         return replace(self, phi=self.phi + phi[:count], psi=self.psi + psi[:count], logs=logs)
 
     def is_same(self, other: "HarmonicMap") -> bool:
-        """Tell whether both have the same coefficients."""
         return all(map(np.array_equal, self.columns, other.columns))
 
     def __call__(self, points: npt.ArrayLike) -> Complexes:
@@ -131,7 +127,7 @@ class HarmonicMap:
         return first[:, 0], first[:, 1].conj()
 
     def moved(self, factor: complex, shift: complex) -> Self:
-        """Return factor · f + shift, as distorted as f where the factor's modulus is 1."""
+        """Return factor · f + shift; a factor of modulus 1 keeps the distortion."""
         factor = complex(factor)
         phi = factor * self.phi
         # The coordinates of the outer cage sum to 1: a constant is the same at all its vertices.

@@ -1,14 +1,14 @@
 """The functions whose combinations are the maps of a domain, with holes or without.
 
 Φ and Ψ are combinations of the Cauchy coordinates of all cages: the one around the domain, and one
-in each hole, which runs clockwise. Seen from the domain the latter give 0 for constants and decay
-towards infinity; together they span the single-valued holomorphic functions of the domain. For
-each hole there is one function more, the logarithm of log-harmonic terms,
+in each hole, which runs clockwise. In the domain the coordinates of a hole's cage give 0 for
+constants and decay towards infinity; together they span the single-valued holomorphic functions of
+the domain. Each hole adds one function, the logarithm of log-harmonic terms,
 
     f = Φ + conj(Ψ) + Σ_j 2 a_j ln|z − c_j|,    c_j in hole j,
 
-a_j / (z − c_j) in f_z and conj(a_j) / (z − c_j) in conj(f_z̄): that is why Φ and Ψ with the columns
-ln|z − c_j| for values, and 1 / (z − c_j) for derivatives, have a_j and conj(a_j) as coefficients.
+with a_j / (z − c_j) in f_z and conj(a_j) / (z − c_j) in conj(f_z̄). So Φ and Ψ get the columns ln|z
+− c_j| for values and 1 / (z − c_j) for derivatives, with the coefficients a_j and conj(a_j).
 """
 
 from dataclasses import dataclass
@@ -19,22 +19,15 @@ from engine.arrays import Complexes, Floats
 from engine.geometry import Hole, distance_to_segments
 from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives, difference_jumps, evaluate
 
-# Combinations whose mean square of the derivatives is less than this part of the mean of all are
-# left out: steps along them show next to nothing at samples, and bend most between them. Cages
-# whose vertices are nearer to each other than to the outline have many.
+# Combinations whose mean square derivative is less than this part of the mean of all are left out.
+# Steps along them hardly change the samples, and bend most between them. Cages whose vertices are
+# nearer to each other than to the outline have many such combinations.
 DEGENERATE = 1e-5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Span:
-    """The n functions that maps are made of: coordinates of all N cage vertices, then logarithms.
-
-    Parameters
-    ----------
-    cage : complex128
-        Around the domain, counter-clockwise.
-    holes : tuple of Hole
-    """
+    """The n functions of maps: coordinates of all N cage vertices, then logarithms."""
 
     cage: Complexes
     holes: tuple[Hole, ...] = ()
@@ -46,7 +39,7 @@ class Span:
 
     @property
     def vertices(self) -> Complexes:
-        """Those of all cages, one cage after the other, complex128 (N,)."""
+        """The vertices of all cages, one cage after the other, complex128 (N,)."""
         return np.concatenate(self.cages)
 
     @property
@@ -56,16 +49,15 @@ class Span:
 
     @property
     def slices(self) -> tuple[slice, ...]:
-        """Which coefficients belong to which cage."""
+        """The slice of the coefficients of each cage."""
         ends = np.cumsum([len(cage) for cage in self.cages]).tolist()
         return tuple(map(slice, [0, *ends[:-1]], ends))
 
     def __len__(self) -> int:
-        """Return the number of functions, n."""
         return sum(map(len, self.cages)) + len(self.holes)
 
     def equals(self, other: "Span") -> bool:
-        """Tell whether the coefficients of both mean the same maps."""
+        """Whether equal coefficients in both spans mean equal maps."""
         return (
             len(self.holes) == len(other.holes)
             and all(map(np.array_equal, self.cages, other.cages))
@@ -79,7 +71,7 @@ class Span:
     def without_constant(self, coefficients: Complexes) -> Complexes:
         """Return the coefficients (n, ...) of the same function less a constant.
 
-        Derivatives do not change by it, and of a far shape they lose no digits.
+        The derivatives stay the same, and for a shape far from the origin they lose no digits.
         """
         if not self.holes:
             return np.asarray(coefficients - coefficients[0])
@@ -88,12 +80,10 @@ class Span:
         return changed
 
     def coordinates(self, points: Complexes) -> Complexes:
-        """Return the functions' values at points, complex128 (p, n)."""
         columns = [cauchy_coordinates(cage, points) for cage in self.cages]
         return _joined([*columns, self._logarithms(points).astype(np.complex128)])
 
     def derivatives(self, points: Complexes) -> Complexes:
-        """Return the functions' derivatives at points, complex128 (p, n)."""
         columns = [cauchy_derivatives(cage, points) for cage in self.cages]
         return _joined([*columns, 1.0 / (points[:, None] - self.centres)])
 
@@ -121,20 +111,20 @@ class Span:
     def orthonormal_basis(self, derivatives: Complexes, weights: Floats, size: float) -> Complexes:
         """Return combinations of the functions whose derivatives are orthonormal at samples.
 
-        But for logarithms, which are scaled, each by itself. First come constants, one of each
-        cage, which the others are free of around holes; last the logarithms.
+        Logarithms are only scaled. First come the constants, one of each cage; around holes the
+        other combinations contain no constants. Last come the logarithms.
 
         Parameters
         ----------
         derivatives, weights : complex128, shape (m, n), and float64, shape (m,)
             Of the functions at the samples, and of the samples.
         size : float
-            The constants.
+            Value of the constants.
 
         Returns
         -------
         complex128, shape (n, r)
-            One combination a column, of which those that are next to nothing are left out.
+            One combination a column, without combinations whose derivatives almost vanish.
         """
         starts = [part.start for part in self.slices]
         logs = np.arange(len(self) - len(self.holes), len(self))
@@ -155,9 +145,9 @@ class Span:
         return basis
 
     def singularity_strengths(self, coefficients: Complexes) -> Floats:
-        """Return by how much each singularity bends combinations (n, q) of the functions, (n, q).
+        """Return the strength of each singularity in combinations (n, q) of the functions, (n, q).
 
-        That is the jump of Δφ/Δz at a cage vertex, and the coefficient of a logarithm.
+        It is the jump of Δφ/Δz at a cage vertex, and the coefficient of a logarithm.
         """
         jumps = [
             np.abs(difference_jumps(cage, coefficients[part]))
@@ -166,9 +156,10 @@ class Span:
         return np.concatenate([*jumps, np.abs(coefficients[len(self) - len(self.holes) :])])
 
     def third_derivative_kernel(self, starts: Complexes, ends: Complexes) -> Floats:
-        """Return the matrix (s, n) from `bending` to a bound on |Φ'''| along segments (s,).
+        """Return the matrix (s, n) that bounds |Φ'''| on segments (s,) from singularity strengths.
 
-        1 / (2π d²) for a cage vertex at the distance d from the segment, 2 / d³ for a logarithm.
+        Its entries are 1 / (2π d²) for a cage vertex at the distance d from the segment, 2 / d³ for
+        a logarithm.
         """
         to_vertices = distance_to_segments(self.vertices, starts, ends).T
         kernel: Floats = 1.0 / (2 * np.pi * to_vertices**2)

@@ -1,9 +1,9 @@
-"""How stiff a drawing is: a factor of the energy's weights along its boundary.
+"""Stiffness of a drawing: a factor of the energy's weights along its boundary.
 
 The stiffness s is given at the vertices of the outline and of the holes' outlines, and is
 logarithmically linear along the edges between them. The energy is a sum over samples of the
-boundary, of which s multiplies the weights. A harmonic map that is rigid on an open set is rigid
-everywhere: what is stiff gives way little, but never not at all.
+boundary, with weights times s. A harmonic map that is rigid on an open set is rigid everywhere:
+stiff parts deform little, but never remain exactly rigid.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from engine.arrays import Complexes, Floats
 from engine.errors import EngineError
 
 SOFTEST, STIFFEST = 1 / 30, 100.0
-# By which numbers may miss the ends of the range, for rounding.
+# Tolerance for rounding at the ends of the range.
 ROUNDING = 1e-9
 STIFFNESS_RANGE = (
     "stiffness must be from 1/30 to {stiffest:g}, and is {value:g} at vertex {vertex}; 1 is the "
@@ -33,7 +33,7 @@ def require_stiffness(stiffness: npt.ArrayLike, count: int) -> Floats:
     Raises
     ------
     EngineError
-        If they are not so many, or not numbers from 1/30 to 100.
+        If there is another number of values, or a value is not a number from 1/30 to 100.
     """
     values = np.asarray(stiffness)
     if values.shape != (count,) or values.dtype.kind not in "biuf":
@@ -59,7 +59,6 @@ def stiffness_along_loops(
     ----------
     stiffness : float64, shape (p,)
         At the vertices of the loops, one loop after the other.
-    loops : sequence of complex128
     points : sequence of complex128
         On each loop in its order, from its first vertex on, with every vertex among them.
     """
@@ -73,7 +72,7 @@ def stiffness_along_loops(
 
 
 def _places(loop: Complexes) -> Floats:
-    """Return how far along a loop its points are from the first one."""
+    """Return the arc length of each point of a loop from the first one."""
     places: Floats = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(loop)))])
     return places
 

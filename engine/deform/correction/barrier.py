@@ -1,14 +1,14 @@
 """Limits of the distortion as a barrier, at the samples of the boundary.
 
-With a = |F| e^{Re h} and b = |G e^{σh} + q K e^h| they are on ln σ_a = ln (a + b), −ln σ_b =
-−ln (a − b) and k = b / a. With d what is left of a limit, each sample adds
+With a = |F| e^{Re h} and b = |G e^{σh} + q K e^h| the limits are on ln σ_a = ln (a + b), −ln σ_b =
+−ln (a − b) and k = b / a. With the slack d of a limit, each sample adds
 
     weight · its share of the boundary · (d / width − 1 − ln (d / width))    where d < width,
 
-which has no jump in its slope: what keeps farther from the limits is not changed. Limits that are
-exceeded at first are wide enough for that, and close in behind what comes inside; then the weight
-falls from step to step, and the width with it. How firm the barrier is taken to be follows from the
-pushes that the steps before found (primal-dual; Wächter and Biegler 2006).
+whose slope is continuous: samples farther from the limits do not change. Limits that are exceeded
+at the start are widened, and close in as the samples come inside. Then the weight falls from step
+to step, and the width with it. The curvature of the barrier follows from the dual variables of
+earlier steps (primal-dual; Wächter and Biegler 2006).
 """
 
 from dataclasses import dataclass, field, replace
@@ -21,22 +21,22 @@ from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
 
 FOLDED = 10.0  # −ln σ_b where a map begins to fold
-ROUND = 1e-12  # the least b that is divided by
-LEAST = 1e-12  # of what is left
-# The weight at first, how it falls, and at last; and the width at last.
+ROUND = 1e-12  # least b in a denominator
+LEAST = 1e-12  # slack
+# The first weight, its factor from step to step, the last weight, and the last width.
 FIRST, FALL, LAST, WIDTH = 1.0, 0.3, 0.01, 0.05
-# Of what is left of limits that are too wide: by how much they close in; and of the width: with how
-# little they stay where they are.
+# Part of the slack by which widened limits close in; and the slack, over the width, below which
+# they stay.
 TAKEN, SLIGHT = 0.9, 1e-3
-NEAR = 100.0  # times what the barrier itself pushes with: what pushes may be off it
-FLAT = 1e-9  # of the largest curvature of a sample: what counts for nothing
+NEAR = 100.0  # times the barrier's own force: largest deviation of a dual variable
+FLAT = 1e-9  # of the largest curvature of a sample: counts as 0
 
 
 class BarrierState(NamedTuple):
-    """What is left of the limits at all samples (p,) of a corrected frame, and what it is of."""
+    """Slacks, duals and derivatives of a corrected frame at all samples (p,)."""
 
     slacks: Floats  # (3, p)
-    duals: Floats  # (3, p), without what the width takes off
+    duals: Floats  # (3, p), without the part that the width subtracts
     a: Floats
     g: Complexes
     by_h: Complexes  # derivative of the corrected G by h
@@ -48,7 +48,7 @@ def _none() -> Floats:
 
 
 class BarrierModel(NamedTuple):
-    """The barrier around a frame: its slope (2N,), and rows (w, 2N) whose squares curve it."""
+    """The barrier at a frame: gradient (2N,), and rows (w, 2N) whose Gram matrix is its Hessian."""
 
     gradient: Floats
     hessian_rows: Floats
@@ -60,15 +60,14 @@ class LimitBarrier:
 
     Parameters
     ----------
-    corrector : PointCorrector
     base : BaseFrame
         At the samples.
     limits : float64, shape (3,)
         Of ln σ_a, −ln σ_b and k.
     weight, last : float
-        Of the whole boundary, now and at last.
+        Of the whole boundary, now and at the end.
     beyond : float64, shape (3,)
-        By how much limits are still too wide.
+        How much the limits are still widened.
     """
 
     corrector: PointCorrector
@@ -82,7 +81,7 @@ class LimitBarrier:
     def around(
         cls, corrector: PointCorrector, base: BaseFrame, limits: Floats, scale: float, x: Floats
     ) -> Self:
-        """Return a barrier for corrections of some scale that starts around unknowns x."""
+        """Return a barrier for corrections of this scale that starts around unknowns x."""
         width = scale * WIDTH
         beyond = np.maximum(extremes(corrector, base, x) - limits + width, 0.0)
         first, last = (LAST * (w / WIDTH) ** 2 for w in (max(width, beyond.max()), width))
@@ -90,16 +89,16 @@ class LimitBarrier:
 
     @property
     def width(self) -> float:
-        """What is left of a limit where the barrier begins."""
+        """Slack at which the barrier begins."""
         return WIDTH * float(np.sqrt(self.weight / LAST))
 
     @property
     def is_lowest(self) -> bool:
-        """Whether it is not lowered any more."""
+        """Whether the weight is the last one."""
         return self.weight <= self.last and not self.beyond.any()
 
     def with_lower_weight(self, at: BarrierState) -> tuple["LimitBarrier", BarrierState]:
-        """Return the barrier of the next step, and what it leaves of its limits."""
+        """Return the barrier of the next step, and the slacks of its limits."""
         if not self.beyond.any():
             return replace(self, weight=max(FALL * self.weight, self.last)), at
         taken = np.minimum(self.beyond, TAKEN * at.slacks.min(axis=1))
@@ -109,7 +108,7 @@ class LimitBarrier:
         return walls, at._replace(slacks=left)
 
     def state(self, x: Floats, last: BarrierState | None = None) -> BarrierState:
-        """Work a corrected frame out, after a step from a last one."""
+        """Evaluate a corrected frame, after a step from `last`."""
         values = self.corrector.variables.at_samples
         conformal, own, factor = self.base.apply_correction(values, x)
         mixed = factor * values.q_of(x)
@@ -123,7 +122,7 @@ class LimitBarrier:
         return BarrierState(left, pushes, a, g, self.base.sign * own + mixed, factor)
 
     def energy(self, at: BarrierState) -> float:
-        """Return the barrier; infinite where a limit is not kept."""
+        """Return the barrier; infinite where a limit is broken."""
         if at.slacks.min() <= 0:
             return np.inf
         part = np.minimum(at.slacks / self.width, 1.0)
@@ -131,7 +130,7 @@ class LimitBarrier:
         return self.weight * float(each.sum())
 
     def model(self, at: BarrierState) -> BarrierModel:
-        """Return the slope and the convex part of the curvature of the barrier."""
+        """Return the gradient and the convex part of the Hessian of the barrier."""
         values = self.corrector.variables.at_samples
         near = np.flatnonzero(at.slacks.min(axis=0) < self.width)
         left = np.minimum(at.slacks[:, near], self.width)

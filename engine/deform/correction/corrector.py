@@ -1,4 +1,4 @@
-"""All that corrections share that depends on the domain, its anchor and the points alone."""
+"""Data of corrections that depends only on the domain, its anchor and the points."""
 
 from dataclasses import dataclass
 
@@ -15,13 +15,7 @@ from engine.maps import Boundary
 class PointCorrector:
     """Corrections of frames of one domain with targets for some of its points.
 
-    Parameters
-    ----------
-    boundary : Boundary
-    points : complex128, shape (m,)
-        In the domain at rest.
-    paths : PointPaths
-    variables : Variables
+    `points` are in the domain at rest, (m,).
     """
 
     boundary: Boundary
@@ -36,7 +30,7 @@ class PointCorrector:
 
 
 def build_corrector(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
-    """Prepare corrections with targets for points (m,); the anchor is where integrals begin.
+    """Prepare corrections with targets for points (m,); integrals begin at the anchor.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Where the points of a corrected frame are, and how that changes with the unknowns.
+"""Positions of the points of a corrected frame, and their derivatives by the unknowns.
 
 With F = f_z and G = conj(f_z̄) of a frame, h and q holomorphic, the corrected frame has
 
@@ -19,14 +19,14 @@ from engine.deform.correction.variables import BasisValues
 
 
 class BaseFrame(NamedTuple):
-    """A frame that is corrected, at the nodes of a corrector's paths or the boundary's samples.
+    """A frame to correct, at the nodes of a corrector's paths or the boundary's samples.
 
     Parameters
     ----------
     fz, g : complex128, shape (s,)
         F and G.
     by : complex128, shape (s,)
-        K, what q is multiplied by.
+        K, the factor of q.
     sign : {-1, 1}
         σ.
     """
@@ -39,13 +39,9 @@ class BaseFrame(NamedTuple):
     def apply_correction(
         self, values: BasisValues, x: Floats
     ) -> tuple[Complexes, Complexes, Complexes]:
-        """Return F e^h, G e^{σh} and K e^h of unknowns (2N,); beside them, q multiplies the last.
+        """Return F e^h, G e^{σh} and the factor K e^h of q, for unknowns x (2N,).
 
-        Parameters
-        ----------
-        values : BasisValues
-            Of the unknowns' functions where the frame is given.
-        x : float64, shape (2N,)
+        `values` are the unknowns' functions at the points of the frame.
         """
         grown = np.exp(values.h_of(x))
         own = self.g * (grown if self.sign > 0 else 1.0 / grown)
@@ -58,8 +54,6 @@ class CorrectedFrame:
 
     Parameters
     ----------
-    corrector : PointCorrector
-    base : BaseFrame
     x : float64, shape (2N,)
     conformal, own, mixed, factor : complex128, shape (s,)
         F e^h, G e^{σh}, q K e^h and K e^h.
@@ -75,7 +69,6 @@ class CorrectedFrame:
 
     @classmethod
     def of(cls, corrector: PointCorrector, base: BaseFrame, x: Floats) -> Self:
-        """Correct a frame."""
         values = corrector.variables.at_nodes
         conformal, own, factor = base.apply_correction(values, x)
         return cls(corrector, base, x, conformal, own, values.q_of(x) * factor, factor)
@@ -86,7 +79,7 @@ class CorrectedFrame:
         return np.asarray(both[0] + both[1].conj())
 
     def constraint_rows(self) -> Floats:
-        """Return the derivatives of these by the unknowns: real parts, then imaginary ones."""
+        """Return the derivatives of `places` by the unknowns: real parts, then imaginary ones."""
         values, integrals = self.corrector.variables.at_nodes, self.corrector.paths.integrals
         by_h = integrals(values.h, self.conformal)
         by_h += integrals(values.h, self.base.sign * self.own + self.mixed).conj()

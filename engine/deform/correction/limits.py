@@ -11,8 +11,8 @@ from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
 from engine.maps import Bounds
 
-INSIDE = 0.002  # of the limits: how far inside a correction ends, as between samples it is more
-BEYOND = 0.0005  # of the base's own distortion, where that exceeds a limit: what may be added to it
+INSIDE = 0.002  # of the limits: a correction ends so far inside, for larger values between samples
+BEYOND = 0.0005  # of the base's own distortion beyond a limit: how much the correction may add
 HALVINGS = 20
 TINY = 1e-300
 
@@ -23,11 +23,10 @@ def log_limits(sigma_a: float, sigma_b: float, k: float) -> Floats:
 
 
 def frame_limits(bounds: Bounds, *known: Floats, inside: float = INSIDE) -> Floats:
-    """Return the largest ln σ_a, −ln σ_b and k that bounds allow, or known frames have, (3,).
+    """Return the largest ln σ_a, −ln σ_b and k that the bounds or the known frames have, (3,).
 
     Parameters
     ----------
-    bounds : Bounds
     *known : float64, shape (3,)
         Extremes of frames.
     inside : float
@@ -48,18 +47,16 @@ def solve_within(
 ) -> PointSolution:
     """Find the correction of one frame within bounds, from zero.
 
-    Where the smallest correction comes near a limit, a barrier keeps it inside, and targets out of
-    reach are approached with their largest forces. A base beyond a limit stays within its own
+    Where the smallest correction comes near a limit, a barrier keeps it inside, and unreachable
+    targets are approached with their largest forces. A base beyond a limit stays within its own
     distortion.
 
     Parameters
     ----------
-    corrector : PointCorrector
     nodes, samples : BaseFrame
         The frame at the nodes of the corrector's paths, and at the samples of the boundary.
     targets : PointTargets
         Without a largest force, a target is met even where that breaks a limit.
-    bounds : Bounds
     inside : float
         How far inside the bounds the samples end.
     """
@@ -68,7 +65,7 @@ def solve_within(
     limits = frame_limits(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
-    # From zero, where all that stays is where it is wanted: so it remains on the way.
+    # At zero, points that need no correction are at their targets, and stay there.
     start = replace(found, x=0.0 * found.x, shift=0j)
     walls = LimitBarrier(corrector, samples, limits)
     near = solve_correction(corrector, nodes, targets, start, walls, throw=False)
@@ -95,16 +92,8 @@ def max_feasible_share(
 ) -> float:
     """Return the largest s of [0, 1], about, with which s h and s q keep limits at the samples.
 
-    A base that exceeds a limit itself may exceed it a little more.
-
-    Parameters
-    ----------
-    corrector : PointCorrector
-    base : BaseFrame
-        At the samples of the boundary.
-    x : float64, shape (2N,)
-    limits : float64, shape (3,)
-        Of ln σ_a, −ln σ_b and k.
+    A base that exceeds a limit may exceed it a little more. `base` is at the samples of the
+    boundary; `limits` are of ln σ_a, −ln σ_b and k, (3,).
     """
     known = np.maximum(limits, extremes(corrector, base, 0.0 * x) + INSIDE)
 

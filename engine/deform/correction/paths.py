@@ -13,18 +13,18 @@ from engine.maps import Boundary
 from engine.paths import Loops, leave_region, scattered_network
 
 GAUSS = 5  # nodes of a piece
-# Longest piece, over the distance of its nearest place to a singularity, and the least distance
-# that is looked at, over the domain's diameter: values then err by some 1e-6 of it.
+# Longest piece over its distance to the nearest singularity, and the least distance that counts,
+# over the domain's diameter. The error is then some 1e-6 of the diameter.
 PIECE_PER_DISTANCE, LEAST_DISTANCE = 1.5, 2e-3
-LOOKED_AT = 9  # places of a leg that tell how many pieces it takes
-SPANS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # corners from which to which legs are tried
-LARGEST_PRICE = 1e6  # of a leg that is inside
-SHARED = 0.05  # of its price: what a leg costs that leads to another point already
+LOOKED_AT = 9  # places of a leg at which its pieces are counted
+SPANS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96)  # corners that a tried leg may skip
+LARGEST_PRICE = 1e6  # of a leg inside the domain
+SHARED = 0.05  # part of its price for a leg that already leads to another point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PointPaths:
-    """Quadrature nodes on ways from an anchor to points, and on loops around holes.
+    """Quadrature nodes on paths from an anchor to points, and on loops around holes.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class PointPaths:
     starts : intp, shape (l,)
         The first node of each leg.
     passes : float64, shape (m + holes, l)
-        1 where the way to a point, or the loop around a hole, has the leg.
+        1 where the path to a point, or the loop around a hole, has the leg.
     """
 
     nodes: Complexes
@@ -43,7 +43,7 @@ class PointPaths:
 
     @classmethod
     def of(cls, boundary: Boundary, anchor: complex, points: Complexes) -> Self:
-        """Lay ways of few pieces inside a domain."""
+        """Lay paths of few pieces inside a domain."""
         outline, *holes = boundary.loops
         singular = np.concatenate([boundary.span.vertices, *boundary.loops])
         near = cKDTree(as_xy(singular))
@@ -72,19 +72,19 @@ class PointPaths:
 
     @classmethod
     def around(cls, loops: Loops) -> Self:
-        """Take loops around holes alone, without points."""
+        """Take only loops around holes, without points."""
         count = len(loops.starts)
         return cls(
             nodes=loops.nodes, steps=loops.differentials, starts=loops.starts, passes=np.eye(count)
         )
 
     def integrals(self, values: Complexes, factors: Complexes | float = 1.0) -> Complexes:
-        """Integrate values (..., s) times factors along the ways and loops, (..., m + holes)."""
+        """Integrate values (..., s) times factors along the paths and loops, (..., m + holes)."""
         legs = np.add.reduceat(values * (factors * self.steps), self.starts, axis=-1)
         return np.asarray(legs @ self.passes.T)
 
     def spread(self, pulls: Complexes) -> Complexes:
-        """Return dz times the sum of the pulls (m + holes,) whose ways pass each node, (s,)."""
+        """Return dz times the sum of the pulls (m + holes,) whose paths pass each node, (s,)."""
         counts = np.diff(self.starts, append=len(self.nodes))
         return np.asarray(np.repeat(pulls @ self.passes, counts) * self.steps)
 
@@ -93,7 +93,7 @@ PathLeg = tuple[complex, complex]
 
 
 def _are_fine(pieces: Pieces, near: cKDTree, size: float) -> Booleans:
-    """Tell which pieces are short beside their distance to the singularities."""
+    """Whether pieces are short compared with their distance to the singularities."""
     starts, ends = pieces.starts, pieces.ends
     places = np.stack([starts, (starts + ends) / 2, ends])
     room = _distances(places, near).min(axis=0)
@@ -108,7 +108,7 @@ def _distances(places: Complexes, near: cKDTree) -> Floats:
 def _ways(
     boundary: Boundary, anchor: complex, points: Complexes, near: cKDTree
 ) -> list[list[PathLeg]]:
-    """Return the legs of a way to each point: the cheapest chain of corners of a known way."""
+    """Return the legs of a path to each point: the cheapest chain of corners of a known path."""
     outline, *holes = boundary.loops
     network = scattered_network(outline, points, np.array([anchor]), holes=holes)
     chains = []
@@ -128,7 +128,7 @@ def _ways(
     used: set[PathLeg] = set()
     parts = np.split(prices, np.cumsum([len(legs) for legs in tried])[:-1])
     for chain, legs, own in zip(chains, tried, parts, strict=True):
-        # Legs of the known way are inside, whatever rounding says.
+        # Legs of the known path are inside, regardless of rounding.
         known = np.where(legs[:, 1] - legs[:, 0] == 1, np.minimum(own, LARGEST_PRICE), own)
         ways.append(_cheapest(chain.tolist(), legs, known, used))
         used.update(ways[-1])
@@ -136,7 +136,7 @@ def _ways(
 
 
 def _legs_tried(count: int) -> Indices:
-    """Return from which to which of the corners of a chain legs are tried, (t, 2), in order."""
+    """Return the pairs of corners of a chain between which legs are tried, (t, 2), in order."""
     first, last = np.triu_indices(count, 1)
     tried = np.isin(last - first, SPANS) | (first == 0) | (last == count - 1)
     order = np.lexsort((first[tried], last[tried]))
@@ -144,7 +144,7 @@ def _legs_tried(count: int) -> Indices:
 
 
 def _prices(starts: Complexes, ends: Complexes, near: cKDTree, size: float) -> Floats:
-    """Return about how many pieces legs take: their lengths over the distances along them."""
+    """Estimate the pieces of legs: their lengths over the distances along them."""
     shares = (np.arange(LOOKED_AT) + 0.5) / LOOKED_AT
     places = starts[:, None] + (ends - starts)[:, None] * shares
     room = _distances(places, near)
@@ -156,7 +156,6 @@ def _prices(starts: Complexes, ends: Complexes, near: cKDTree, size: float) -> F
 def _cheapest(
     chain: list[complex], tried: Indices, prices: Floats, used: set[PathLeg]
 ) -> list[PathLeg]:
-    """Return the legs of the cheapest way along a chain."""
     best, came = [0.0] + [np.inf] * (len(chain) - 1), [0] * len(chain)
     for (i, j), price in zip(tried.tolist(), prices.tolist(), strict=True):
         cost = best[i] + price * (SHARED if (chain[i], chain[j]) in used else 1.0)

@@ -1,14 +1,14 @@
-"""The smallest correction with which points are where they are wanted.
+"""The smallest correction that brings points to their targets.
 
     minimise ½ |x|²  where  w_i (place_i(x) + t − wanted_i) = 0,
 
 t a translation, 0 where the anchor stays; periods around holes are closed by further rows. A point
-of weight w < 1 gives in by (1 − w) / w times its pull, so that it lets go as w falls to 0. Each
-step solves the model in which the rows J are linear, exactly, in the few dimensions of the points:
+of weight w < 1 has the compliance (1 − w) / w, so that its pull vanishes as w falls to 0. Each step
+solves the model in which the rows J are linear, exactly, in the few dimensions of the points:
 
     (J Jᵀ + C) μ + T t = −(r − J x),    Tᵀ μ = 0,    δ = Jᵀ μ − x,
 
-and then what the rows' own curvature changes of it, by conjugate gradients.
+and then the correction by the rows' own curvature, by conjugate gradients.
 """
 
 from dataclasses import dataclass
@@ -23,42 +23,43 @@ from engine.deform.correction.frame import BaseFrame, CorrectedFrame, Curvature
 from engine.deform.correction.step_model import Rows, StepModel
 from engine.errors import EngineError
 
-SMALL = 1e-6  # a step in h: where the iteration ends
-MET = 1e-9  # of the diameter: points that are where they are wanted
-LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # step in h
+SMALL = 1e-6  # step in h: where the iteration ends
+MET = 1e-9  # of the diameter: target error of points that have arrived
+LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # longest step in h
 MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
-# The barrier is lowered after a step of which so much was taken, and that is no longer.
+# The barrier is lowered after a step of which so much was taken, if the step is no longer than
+# this.
 ENOUGH, CLOSE = 0.5, 0.15
-NEARER = 0.7  # of the gap: what a step back to the points leaves of it, at most
-CALM = 1e-4  # a step in h: where the iteration ends within walls
-GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: what a part of a step leaves of it, at most
-LEVER = 0.25  # of the diameter: the distance at which a turn is as firm as a point
+NEARER = 0.7  # of the gap: the largest remainder after a step back to the points
+CALM = 1e-4  # step in h: where the iteration ends with a barrier
+GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: the largest remainder after a part of a step
+LEVER = 0.25  # of the diameter: the distance at which a rotation is as firm as a point
 TINY = 1e-300
 UNFINISHED = (
     "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
     "target. Give targets nearer to the base, or take the correction as it is (throw=False)."
 )
 BAD_TARGETS = "The {name} of targets for {count} points cannot be {values}."
-FIRMEST = 1.5  # times the largest pull: what the merit takes for each point off its target
+FIRMEST = 1.5  # times the largest pull: the merit's weight of each target error
 
 
 class PointTargets(NamedTuple):
-    """Where points are wanted.
+    """Targets of points.
 
     Parameters
     ----------
-    moves : complex128, shape (m,)
-        From where the base has them.
+    offsets : complex128, shape (m,)
+        From the base's positions to the targets.
     weights : float64, shape (m,)
         From 0, free, to 1, held.
     is_anchored : bool
         Whether the anchor stays where it is.
-    forces : float64, shape (m,), optional
-        With how much each is pulled at most; without, whatever it takes.
-    turns : float64, shape (m,), optional
-        By how much the shape is turned there, in radians; NaN where it turns as it likes.
-    give : float64, shape (m,), optional
-        By how much points give in, over their pulls, beside what their weights say.
+    max_forces : float64, shape (m,), optional
+        Largest pull on each point; without, pulls are unlimited.
+    rotations : float64, shape (m,), optional
+        Prescribed rotation of the shape at each point, in radians; NaN where it is free.
+    compliances : float64, shape (m,), optional
+        Target error over pull, added to the compliance of the weights.
     """
 
     offsets: Complexes
@@ -78,14 +79,12 @@ class PointSolution:
     x : float64, shape (2N,)
         In `Variables`.
     shift : complex
-        By which all points are moved, too.
-    misses : float64, shape (m,)
-        How far points are from where they are wanted.
-    steps : int
-    is_held_back : bool
-        Whether it came near a limit, and walls took part.
+        Translation of all points.
+    target_errors : float64, shape (m,)
+    is_limited : bool
+        Whether it came near a limit, so that the barrier took part.
     is_finished : bool
-        Whether the steps came to an end; points out of reach may be off their targets then, too.
+        Whether the iteration converged; unreachable points may then still have target errors.
     """
 
     x: Floats
@@ -109,20 +108,18 @@ def solve_correction(
 
     Parameters
     ----------
-    corrector : PointCorrector
     base : BaseFrame
         At the nodes of the corrector's paths.
-    targets : PointTargets
     start : PointSolution, optional
-        Of a frame that is much the same.
+        Of a similar frame.
     walls : LimitBarrier, optional
-        What the correction is to keep.
+        Limits that the correction keeps.
 
     Raises
     ------
     EngineError
-        If targets are not of as many points as the corrector has, not finite or out of range, or
-        the correction is not finished. With `throw=False` it is returned as it is then.
+        If the targets do not match the corrector's points, are not finite or out of range, or the
+        iteration does not converge. With `throw=False` the last correction is returned.
     """
     _require_targets(targets, len(corrector.points))
     problem = _Problem(corrector, base, targets, walls)
@@ -141,7 +138,6 @@ def solve_correction(
 
 
 def _require_targets(targets: PointTargets, count: int) -> None:
-    """Raise an `EngineError` unless targets are some that points can have."""
     as_points(targets.offsets, "The moves of targets")
     for name, values, fits in (
         ("moves", targets.offsets, True),
@@ -155,7 +151,7 @@ def _require_targets(targets: PointTargets, count: int) -> None:
 
 
 class _State(NamedTuple):
-    """A corrected frame, and what the rows of its points and turns lack, (r,)."""
+    """A corrected frame, and the residuals of its points and rotations, (r,)."""
 
     frame: CorrectedFrame
     shift: complex
@@ -180,7 +176,7 @@ class _Problem:
         self.count = count = len(targets.offsets)
         places = CorrectedFrame.of(corrector, base, corrector.variables.nothing).places()
         self.of_points = np.concatenate([np.ones(count), np.zeros(holes)])
-        # Points are moved from the base's places; periods are closed.
+        # Targets are offsets from the base's positions; periods are closed.
         self.wanted = places * self.of_points
         self.wanted[:count] += targets.offsets
         turns = np.zeros(0) if targets.rotations is None else targets.rotations
@@ -209,11 +205,11 @@ class _Problem:
         both = np.vstack([both, np.zeros((len(self.turned), 2))])
         is_free = not targets.is_anchored and bool(targets.weights.any())
         self.translations = both if is_free else both[:, :0]
-        # What is met at any price.
+        # Rows without compliance and without a largest force.
         self.held = (self.loose == 0) & (self.give == 0) & np.isinf(self.forces)[self.group]
 
     def state(self, x: Floats, shift: complex, last: BarrierState | None = None) -> _State:
-        """Work out what the points lack."""
+        """Evaluate the residuals."""
         frame = CorrectedFrame.of(self.corrector, self.base, x)
         lack = self.roots * (frame.places() + shift * self.of_points - self.wanted)
         turned = self.corrector.variables.at_points.h_of(x).imag[self.turned] - self.turns
@@ -221,7 +217,7 @@ class _Problem:
         return _State(frame, shift, np.concatenate([lack.real, lack.imag, turned]), walls)
 
     def constraint_rows(self, at: _State) -> Rows:
-        """Return what is wanted around a state."""
+        """Return the linearized rows around a state."""
         h, q = (each[:, self.turned].T for each in self.corrector.variables.at_points)
         turning = np.hstack([h.imag, 0.0 * q.real])
         points = np.tile(self.roots, 2)[:, None] * at.frame.constraint_rows()
@@ -253,7 +249,7 @@ class _Problem:
                 more, along = model.curvature_corrected(
                     self._bending(at, model.pulls).__call__, change
                 )
-                # What changes a step by more than itself is not to be trusted.
+                # The curvature may change a step by at most the step itself.
                 part = min(1.0, length / max(self._length(more), TINY))
                 change, shift = change + part * more, shift + part * along
             firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
@@ -265,7 +261,7 @@ class _Problem:
                 if merit <= now * (1 + 1e-12):
                     break
                 share /= 2
-            # What only parts of steps bring on is out of reach.
+            # Part of a step never reaches these targets.
             if np.isinf(merit):
                 break
             is_stuck = share < 1.0 and merit > self.gains * now
@@ -287,7 +283,7 @@ class _Problem:
         )
 
     def _bending(self, at: _State, pulls: Floats) -> Curvature:
-        """Return how the rows are curved that are pulled at."""
+        """Return the curvature of the rows with pulls."""
         known = len(self.roots)
         return at.frame.curvature(-self.roots * (pulls[:known] + 1j * pulls[known : 2 * known]))
 
@@ -297,7 +293,7 @@ class _Problem:
     def _tried(
         self, at: _State, model: StepModel, change: Floats, shift: complex, share: float
     ) -> _State:
-        """Return the state after a step, with points back on where the model has them."""
+        """Return the state after a step, with points back at the model's positions."""
         tried = self.state(at.frame.x + change, at.shift + shift, at.barrier)
         aim = (1 - share) * at.residual
         if tried.barrier is not None and tried.barrier.slacks.min() <= 0:
@@ -315,7 +311,7 @@ class _Problem:
         return tried
 
     def _merit(self, at: _State, soft: Floats, firm: float) -> float:
-        """Return ½ |x|² and what points lack: by their softness, and from some pull on as much."""
+        """Return ½ |x|² and the target errors: by their compliance, and linear beyond some pull."""
         squares = np.bincount(self.group, at.residual**2, minlength=len(self.forces))
         lack, forces = np.sqrt(squares), np.minimum(firm, self.forces)
         own = np.zeros(len(forces))

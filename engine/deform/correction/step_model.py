@@ -1,4 +1,4 @@
-"""One step of the solver: its model, solved exactly in the few dimensions of its rows."""
+"""One step of the solver: its model, solved exactly in the few dimensions of the rows."""
 
 from collections.abc import Callable
 from typing import Literal, NamedTuple
@@ -11,7 +11,7 @@ from engine.deform.correction.barrier import BarrierModel
 
 RIDGE = 1e-13  # of the mean of the rows' products
 MOST_BENDS = 30  # steps of the conjugate gradients
-NEARLY = 1e-4  # of what the curvature changes: what may be left of it
+NEARLY = 1e-4  # of the curvature's change: largest remainder
 CURVED = 1e-2  # of the metric: the least curvature along which steps are taken
 # Rounds in which bounded pulls are found, and how exactly.
 ROUNDS, LEFT_TO_GO = 8, 1e-3
@@ -22,16 +22,14 @@ Form = Callable[[Floats], Floats]
 
 
 class Rows(NamedTuple):
-    """Conditions on the unknowns, linearized; several rows may form a group.
+    """Linearized conditions on the unknowns; several rows may form a group.
 
     Parameters
     ----------
-    lack : float64, shape (r,)
-        The residuals.
-    slopes : float64, shape (r, 2N)
-        Their derivatives.
-    soft : float64, shape (r,)
-        Compliance: the residual that is left, over the pull.
+    residual : float64, shape (r,)
+    jacobian : float64, shape (r, 2N)
+    compliances : float64, shape (r,)
+        The remaining residual over the pull.
     group : intp, shape (r,)
         The two coordinates of a point form one group.
     forces : float64, shape (g,)
@@ -57,8 +55,9 @@ class StepModel:
     """The quadratic model around unknowns x.
 
     A group that would pull with more than its largest force pulls with that force: its rows get the
-    compliance residual / force, by iteration (Holland and Welsch 1977). Walls change the metric,
-    which is the identity without them, and the slope of what is minimised, which is x.
+    compliance residual / force, by iteration (Holland and Welsch 1977). A barrier changes the
+    metric, which is otherwise the identity, and the gradient of the objective, which is otherwise
+    x.
 
     Attributes
     ----------
@@ -96,16 +95,15 @@ class StepModel:
             give = np.where(over, secant, give * share)
 
     def solve_step(self) -> tuple[Floats, complex]:
-        """Return the step in the unknowns and the translation."""
         return self._whole(self.pulls @ self._slopes - self._down), self._shift
 
     def restoring_step(self, gap: Floats) -> tuple[Floats, complex]:
-        """Return the least step that changes the rows by so much."""
+        """Return the least step that changes the rows by `gap`."""
         pulls, shift = self._solve(gap)
         return self._whole(pulls @ self._slopes), shift
 
     def curvature_corrected(self, bending: Form, step: Floats) -> tuple[Floats, complex]:
-        """Return the change of a step by a curvature, by conjugate gradients."""
+        """Return the change of a step by the curvature, by conjugate gradients."""
         rest = -bending(step)
         way, shift = self._preconditioned(rest)
         found, along = np.zeros_like(way), 0j
@@ -144,11 +142,11 @@ class StepModel:
         return v if self._root is None else _solved(self._root, v, transposed=False)
 
     def _whole(self, v: Floats) -> Floats:
-        """Return a step in the unknowns of one in those."""
+        """Return a step in the original unknowns."""
         return v if self._root is None else _solved(self._root, v, transposed=True)
 
     def _factor(self, soft: Floats) -> None:
-        """Factor the matrix of the pulls."""
+        """Factor the matrix of the multipliers."""
         translations = self._rows.translations
         count, more = translations.shape
         matrix = np.zeros((count + more, count + more))

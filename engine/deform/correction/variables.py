@@ -1,9 +1,9 @@
-"""The unknowns of corrections: h and q as sums of few functions, so that their size is |x|.
+"""The unknowns of corrections: coefficients of h and q whose size is |x|.
 
     |x|² = mean over ∂Ω of s ((Re h)² + |q|² + ε |h|² + ε' L² (|h'|² + |q'|²)),
 
-s the stiffness. Four times it is, to second order, the symmetric Dirichlet energy of what a
-correction changes.
+s the stiffness. Four times this is, to second order, the symmetric Dirichlet energy of the
+correction.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from engine.arrays import Complexes, Floats, freeze
 from engine.maps import Boundary
 
 OF_SIZE, OF_SLOPE = 1e-3, 1e-5  # ε and ε'
-# Directions of the coordinates smaller than this, over the largest, are rounding.
+# Directions of the coordinates smaller than this, over the largest, are rounding errors.
 RANK = 1e-6
 
 
@@ -27,11 +27,9 @@ class BasisValues(NamedTuple):
     q: Complexes
 
     def h_of(self, x: Floats) -> Complexes:
-        """Return h (p,) of unknowns (2N,)."""
         return _combined(x[: len(self.h)], self.h)
 
     def q_of(self, x: Floats) -> Complexes:
-        """Return q (p,) of unknowns (2N,)."""
         return _combined(x[len(self.h) :], self.q)
 
     def against(self, of_h: Complexes, of_q: Complexes) -> Floats:
@@ -92,7 +90,7 @@ class Variables:
         )
 
     def of_h(self, forms: Floats) -> Self:
-        """Return h alone, in combinations (N, M) of its unknowns."""
+        """Return only the unknowns of h, in combinations (N, M) of them."""
         places = (self.at_nodes, self.at_samples, self.at_points)
         nodes, samples, points = (BasisValues(freeze(forms.T @ v.h), v.q[:0]) for v in places)
         return type(self)(
@@ -105,12 +103,12 @@ class Variables:
 
     @property
     def count(self) -> int:
-        """N, of h."""
+        """Number N of unknowns of h."""
         return int(self.h.shape[1])
 
     @property
     def nothing(self) -> Floats:
-        """The unknowns, of h and q, of no correction."""
+        """The unknowns, of h and q, of the zero correction."""
         return np.zeros(self.h.shape[1] + self.q.shape[1])
 
 
@@ -121,14 +119,13 @@ def _gram(columns: Complexes) -> Floats:
 
 
 def _whitened(form: Floats) -> Complexes:
-    """Return combinations, one a real unknown, in which a form of (x, y) is a sum of squares."""
+    """Return combinations, one for each real unknown, that make a form a sum of squares."""
     values, vectors = np.linalg.eigh(form)
     real, imaginary = np.split(vectors / np.sqrt(values), 2)
     return np.asarray(real + 1j * imaginary)
 
 
 def _combined(x: Floats, values: Complexes) -> Complexes:
-    """Return the sum (p,) of functions (N, p) with real weights."""
-    # As reals: a complex product with real weights would do half its work on zeros.
+    # As reals: a complex product with real weights would spend half its work on zeros.
     total: Complexes = (x @ values.view(np.float64)).view(np.complex128)
     return total

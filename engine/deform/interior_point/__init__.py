@@ -1,7 +1,7 @@
-"""How a deformation comes to rest: from certified map to certified map, to a minimum.
+"""The search for the minimum: from certified map to certified map.
 
-In: an objective, a certified map, and the way to search along.
-Out: a search that is advanced step by step, how far it is from a minimum, and the active bounds.
+In: an objective, a certified map, and a starting point.
+Out: a search that is advanced step by step, its optimality measure, and the active bounds.
 Imports: `engine.maps`, and the energy, barrier, handles and Newton models of `engine.deform`.
 """
 

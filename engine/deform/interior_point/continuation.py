@@ -1,13 +1,13 @@
-"""The way to rest: a barrier whose weight goes to zero, from certified map to certified map.
+"""Continuation to the minimum by certified maps: the weight of the barrier goes to zero.
 
-Where a drag follows the hand, this finds the minimum. It begins with a heavy barrier, which holds
-the map in the middle of what the bounds allow (what has met a bound early never leaves it), and
-takes Newton steps of a primal–dual interior point method (Nocedal and Wright, ch. 19) at full pull,
-without a leash. When the model expects little more at one weight, the next one is a tenth of it, or
-a hundredth where walls are far.
+Drag steps follow the targets; this search finds the minimum. It begins with a heavy barrier, which
+holds the map in the middle of the feasible set (a map that met a bound early never leaves it). Its
+Newton steps are those of a primal–dual interior point method (Nocedal and Wright, ch. 19) with full
+targets and no trust region. When the model expects little more at one weight, the next weight is a
+tenth, or a hundredth far from the bounds.
 
-The kept open conic solver Clarabel does not pay for this: one convexified inner problem (Chen and
-Weber 2015) of 810 samples and 50 cage vertices takes it 3.8 s, the whole way here 0.7 s.
+The open conic solver Clarabel does not pay for this search: one convexified inner problem (Chen and
+Weber 2015) of 810 samples and 50 cage vertices takes it 3.8 s, the whole search here 0.7 s.
 """
 
 from dataclasses import replace
@@ -41,36 +41,36 @@ from engine.maps import (
     segment_enclosures,
 )
 
-# Weight of the barrier at the start: over the energy where that is large, and at least.
+# Weight of the barrier at the start: per energy where the energy is large, and at least.
 FIRST_PER_ENERGY = 0.1
 FIRST_LEAST = 10.0
-# The same from the present map, which stays in its valley, and at least where walls have widened.
+# The same from the present map, whose valley is kept, and the least weight after bounds widened.
 HERE_PER_ENERGY = 1e-3
 WIDENED_PER_ENERGY = 0.03
-# The weight falls by this factor when the model expects less than a part of it as a gain: a small
-# part while the weight is above this part of the energy. There the valley is chosen; later, and
-# from the present map, the way is a matter of digits.
+# The weight falls by this factor when the model expects a gain below a part of the weight: a small
+# part while the weight is above this part of the energy. There the valley is chosen. Later, and
+# from the present map, only digits change.
 LOWER = 0.1
 CENTRED = 0.1
 CENTRED_LATE = 1.0
 LATE_PER_ENERGY = 1e-3
-# After a full step from the present map walls are far, and the weight falls by this factor.
-# Measured: lower weights, at first or on the way, take up to six times as long next to walls.
+# After a full step from the present map the bounds are far, and the weight falls by this factor.
+# Measured: lower weights, at first or later, take up to six times as long next to bounds.
 LOWER_IN_THE_OPEN = 0.01
-# Where the objective is not convex little is gained at a saddle, too, from where a valley leads on:
-# only this part of that counts, while the barrier holds back less than a part of the energy (else
-# it, not the handles, shapes the valley).
+# Where the objective is not convex, the gain is small at a saddle, too, from which a valley leads
+# on. There only this part of the gain counts, while the barrier holds back less than a part of the
+# energy (else the barrier, not the handles, shapes the valley).
 AT_A_SADDLE = 0.03
 HELD_BACK = 0.5
-# At least this part of the last step must have been taken then.
+# At a saddle, at least this part of the last step must have been taken.
 LONG_ENOUGH = 0.3
 # The weight falls no lower than needed for a minimum.
 LEAST_PER_ENERGY = 1e-7
-# While the model expects more than this part of the energy as a gain, hands that give in are as
-# stiff along their pull as across. Otherwise it has nothing of them along the pull, and steps lead
-# a hundred times too far; near rest the true Hessian leads there in fewer steps.
+# While the model expects more than this part of the energy as a gain, pulls with slack are as stiff
+# along their direction as across. Otherwise their stiffness along it is 0, and steps lead a hundred
+# times too far. Near rest the true Hessian needs fewer steps.
 FAR_FROM_REST = 1e-3
-# Less slack than this cannot be told from none: the wall is moved this far away.
+# Less slack than this cannot be distinguished from none: the bound is moved this far away.
 ROUNDING_SLACK = 1e-11
 MOVED_OUT = 1e-9
 # A step whose map is not certified is halved this many times.
@@ -93,12 +93,11 @@ def begin_search(
     objective : Objective
         Without a barrier, over the shape's own samples.
     harmonic_map, certificate
-        Where it begins; the shape at rest, unless the way is from the present map.
+        The start; the shape at rest, unless `way` is the present map.
     inside : LocalBounds
-        Where the walls of all samples stand.
+        Barrier bounds of all samples.
     limits : LocalBounds
-        That the certificates are for, the one at the start included.
-    way : StartingPoint
+        Limits of all certificates, the first included.
     """
     jet = objective.evaluate(*harmonic_map.columns)
     energy = objective.energy(jet)
@@ -154,7 +153,7 @@ def advance_search(search: Search) -> Search:
 
 
 def _objective(search: Search) -> tuple[Objective, Barrier, Evaluation]:
-    """Return what the next step minimises, and the map as it sees it."""
+    """Return the objective of the next step, its barrier, and the evaluation of the map."""
     hands = search.targets.pulls
     objective = Objective(
         boundary=search.boundary,
@@ -168,7 +167,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Evaluation]:
     a, b = jet.a, jet.b
     too_near = barrier.slacks(a, b) < ROUNDING_SLACK
     if too_near.any():
-        # What the last step left of it is less than the rounding of this measurement.
+        # The slack after the last step is below the rounding of this measurement.
         k, sigma_b, sigma_a = search.bounds.k, search.bounds.sigma_b, search.bounds.sigma_a
         walls = BarrierBounds(
             k=np.where(too_near[0], np.maximum(k, b / a + MOVED_OUT), k),
@@ -180,7 +179,7 @@ def _objective(search: Search) -> tuple[Objective, Barrier, Evaluation]:
 
 
 class _Proven(NamedTuple):
-    """A certified map, and what is proven of its segments."""
+    """A certified map and the enclosures of its segments."""
 
     map: HarmonicMap
     certificate: Certificate
@@ -188,7 +187,7 @@ class _Proven(NamedTuple):
 
 
 def _certified(search: Search, step: CorrectedStep) -> tuple[CorrectedStep, _Proven, Indices]:
-    """Shorten a step until its map is certified; return broken segments, too."""
+    """Shorten a step until its map is certified; return the broken segments too."""
     broken = np.empty(0, np.intp)
     refusals = 0
     while step.length > SHORTEST and refusals <= HALVINGS:
@@ -204,7 +203,7 @@ def _certified(search: Search, step: CorrectedStep) -> tuple[CorrectedStep, _Pro
 
 
 def _optimality(search: Search, jet: Evaluation, barrier: Barrier) -> Optimality:
-    """Return how far the map is from a minimum of the present walls, where a step led."""
+    """Return the optimality of the map within the present bounds, after a step."""
     if search.length == 0:
         return Optimality()
     return Optimality.of(
@@ -219,7 +218,7 @@ def _optimality(search: Search, jet: Evaluation, barrier: Barrier) -> Optimality
 
 
 def is_centred(search: Search, *, convex: bool) -> bool:
-    """Tell whether there is little left to gain at the present weight."""
+    """Whether little is left to gain at the present weight."""
     if (
         search.starting_point is StartingPoint.HERE
         or search.weight < LATE_PER_ENERGY * search.energy
@@ -233,7 +232,6 @@ def is_centred(search: Search, *, convex: bool) -> bool:
 
 
 def lower_weight(search: Search) -> Search:
-    """Return the search with the next weight."""
     least = LEAST_PER_ENERGY * search.energy / float(search.boundary.barrier_weights.sum())
     is_open = search.starting_point is StartingPoint.HERE and search.length >= 1.0
     factor = LOWER_IN_THE_OPEN if is_open else LOWER
@@ -241,7 +239,7 @@ def lower_weight(search: Search) -> Search:
 
 
 def widen_bounds(search: Search, jet: Evaluation) -> Search:
-    """Return the search with its walls on the next rung."""
+    """Return the search with its bounds on the next level."""
     weight = max(LOWER * search.weight, WIDENED_PER_ENERGY * search.energy)
     wider = replace(
         search, level_width=next_level_width(search.final_bounds, search.level_width), weight=weight

@@ -1,4 +1,4 @@
-"""How far a map is from a minimum within its bounds, and which bounds hold it back.
+"""Optimality of a map within its bounds, and the active bounds.
 
 With the multipliers weight / c of the barrier, the gain that Newton's model expects measures the
 projected gradient; the multipliers times c are the energy that the barrier holds back.
@@ -12,9 +12,9 @@ from engine.arrays import Floats
 from engine.deform.model import Barrier, BarrierBounds
 from engine.maps import Boundary
 
-# A bound is active when moving it all the way to the identity, or at least by a tenth, would, to
-# first order, cost more than this part of the energy; and when what it holds back is so many times
-# what the barrier itself does: next to the identity it is twice that where nothing is held back.
+# A bound is active under two conditions. Moving it all the way to the identity, or at least by a
+# tenth, would to first order cost more than this part of the energy. And the energy that it holds
+# back is so many times the barrier's own: next to the identity the ratio is 2 without any force.
 ACTIVE = 1e-4
 LEAST_MOVED = 0.1
 PRESSING = 3.0
@@ -29,11 +29,11 @@ class ActiveBound(NamedTuple):
     ----------
     name : str
         "k", "sigma_a" or "sigma_b".
-    price : float
+    multiplier : float
         By how much the energy would fall, to first order, if the bound were moved by 1 away from
         the identity.
     place : complex
-        Where on the outline at rest it presses most.
+        Point of the outline at rest with the largest pressure.
     """
 
     name: str
@@ -42,15 +42,14 @@ class ActiveBound(NamedTuple):
 
 
 class Optimality(NamedTuple):
-    """How far a map is from a minimum.
+    """Distance of a map from a minimum.
 
     Parameters
     ----------
     measure : float
         Expected gain and complementarity over the energy; 0 at a minimum.
     gap : float
-        About what the map could still gain, were everything convex.
-    active : tuple of ActiveBound
+        Estimate of the remaining gain, exact for a convex objective.
     """
 
     measure: float = np.inf

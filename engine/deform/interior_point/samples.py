@@ -1,9 +1,9 @@
-"""Samples that are added on the way to rest, and where the walls of all of them stand.
+"""Samples added during a search, and the barrier bounds of all samples.
 
-Samples are added where a segment could bulge out farther than a part of the slack at its ends, so
-that the barrier sees what the certificate would find between the samples, before it refuses. The
-walls stand a little inside the bounds, which leaves the room between samples. A sample that is
-added between the two gets a wall of its own around it, and keeps it.
+Samples are added where a segment could bulge out farther than a part of the slack at its ends. The
+barrier then sees a violation between samples before the certificate finds it. The barrier bounds
+lie a little inside the bounds, which leaves the room between samples. A sample that is added in
+this room gets a barrier bound of its own beyond it, and keeps it.
 """
 
 from dataclasses import replace
@@ -15,20 +15,21 @@ from engine.deform.interior_point.search import Search
 from engine.deform.model import MARGIN, BarrierBounds, Evaluation, interpolate_duals
 from engine.maps import Enclosures
 
-# The wall of a sample that is beyond them stands this part of its way to the bound farther out.
+# The barrier bound of a sample beyond the inner bounds lies this part of the remaining way farther
+# out.
 OUTWARDS = 0.1
 # Segments may bulge by this part of the slack at their ends, or of the margin, before they are cut.
 BULGE_PER_SLACK = 0.25
 BULGE_PER_MARGIN = 0.9
-# No more samples than this many times those of the shape itself, but for segments that did break a
-# bound: as long as those stay, no step is certified.
+# Most samples, over the shape's own. Segments that did break a bound are exempt: as long as they
+# stay whole, no step is certified.
 MOST_SAMPLES = 4
 
 
 def barrier_bounds_around(
     inside: BarrierBounds, limits: BarrierBounds, a: Floats, b: Floats
 ) -> BarrierBounds:
-    """Return the inner walls, moved out a little where a sample is beyond or next to them."""
+    """Return the inner bounds, moved out a little where a sample is beyond or next to them."""
     k, sigma_a, sigma_b = b / a, a + b, a - b
     return BarrierBounds(
         k=np.maximum(inside.k, k + OUTWARDS * (limits.k - k)),
@@ -40,17 +41,16 @@ def barrier_bounds_around(
 def resolve_segments(
     search: Search, jet: Evaluation, enclosures: Enclosures, broken: Indices
 ) -> Search:
-    """Return the search with samples added where segments could bulge, or did.
+    """Return the search with samples added where segments could bulge, or broke a bound.
 
     Parameters
     ----------
-    search : Search
     jet : Evaluation
-        Of its map.
+        Of the search's map.
     enclosures : Enclosures
         Of the segments of its boundary, for its map.
     broken : Indices
-        The segments where bounds were broken.
+        The segments that broke a bound.
     """
     boundary, limits = search.boundary, BarrierBounds.at(search.limits, search.boundary)
     a, b = jet.a, jet.b
@@ -61,7 +61,7 @@ def resolve_segments(
     limit = np.maximum(limit, limit[:, boundary.next_samples])
     way = np.array([limits.k, limits.sigma_a - 1.0, 1.0 - limits.sigma_b])
     allowed = np.maximum(BULGE_PER_SLACK * (limit - ends), BULGE_PER_MARGIN * MARGIN * np.abs(way))
-    # By how much each segment bulges more than it may.
+    # Bulge of each segment, over the allowed one.
     excess = ((proven - ends) / allowed).max(axis=0)
     excess[broken] = np.inf
     most = int(MOST_SAMPLES * np.count_nonzero(boundary.weights))

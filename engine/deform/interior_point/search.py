@@ -1,4 +1,4 @@
-"""A search for the minimum: where it is, and when it is over."""
+"""State of one search for the minimum, and its stopping rules."""
 
 from dataclasses import dataclass, field
 from enum import Enum
@@ -13,27 +13,28 @@ from engine.deform.interior_point.optimality import Optimality
 from engine.deform.model import BarrierBounds
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds
 
-# Expected gain and complementarity, over the energy: a minimum. At the least weight the latter is
-# 3e-7. Measured: with an expected gain of 5e-7 poses were up to 2e-4 pixels off.
+# Optimality measure of a minimum. At the least weight the complementarity is 3e-7. Measured: with
+# an expected gain of 5e-7 poses were up to 2e-4 pixels off.
 OPTIMAL = 4e-7
-# A search from elsewhere must gain this part of the energy: less is not worth a jump.
+# A search from elsewhere must gain this part of the energy: less does not justify a jump.
 WORTH_A_JUMP = 1e-2
-# What a search could still gain is an estimate that holds below this part of the energy.
+# The estimate of the remaining gain holds below this part of the energy.
 RELIED_ON = 0.03
 # Steps after which a search is given up.
 MOST_STEPS = 200
-# Steps in a row that are hardly taken: the search is caught.
+# Stalled steps in a row, after which the search is given up.
 MOST_STALLED = 12
-# One that starts turned is given up when after so many steps its energy is more than so many times
-# what is known; measured on 80 requests, those that win are below 35, 9, 1.5 and 1 times that.
+# A search from a rotated start is given up when after so many steps its energy exceeds so many
+# times the best known. Measured on 80 requests: those that win are below 35, 9, 1.5 and 1 times the
+# best.
 ENERGY_CUTOFFS = {12: 50.0, 16: 10.0, 20: 2.0, 24: 1.2, 36: 1.0}
-# And when it comes so near (of L) to the minimum that is known, with so little more energy.
+# It also ends when it comes this near (of L) to the best known minimum, with so little more energy.
 REJOINED = 0.02
 REJOINED_ENERGY = 1.2
 
 
 class StartingPoint(Enum):
-    """Where a search for the minimum starts."""
+    """Starting point of a search for the minimum."""
 
     HERE = "from the present map"
     REST = "from the shape at rest"
@@ -43,54 +44,47 @@ class StartingPoint(Enum):
 
     @property
     def rotation(self) -> float:
-        """By which angle the shape is turned at the start, beyond what aligns it."""
+        """Rotation of the shape at the start, beyond the aligning one, in radians."""
         return {StartingPoint.LEFT: pi / 2, StartingPoint.RIGHT: -pi / 2}.get(self, 0.0)
 
     @property
     def is_rotated(self) -> bool:
-        """Whether it is turned at all."""
         return self.rotation != 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Search:
-    """A search for the minimum, on its way.
+    """A search for the minimum in progress.
 
     Parameters
     ----------
-    handles : Handles
-    wish : HandleTargets
-    way : StartingPoint
-    map : HarmonicMap
-    certificate : Certificate
     boundary : Boundary
         With the samples that were added.
     limits : LocalBounds
-        What the certificates are for.
-    within : LocalBounds
-        Where the walls of the samples stand in the end, but for those that are beyond.
-    reach : float
-        Of the rung that the walls stand on (`rungs.rung`).
-    walls : BarrierBounds
+        Of the certificates.
+    final_limits : LocalBounds
+        Final barrier bounds of the samples, except samples beyond them.
+    level_width : float
+        Of the present level (`homotopy.homotopy_level`).
+    bounds : BarrierBounds
+        The present ones.
     weight : float
         Of the barrier.
     duals : float64, shape (3, m), or None
     energy : float
-        Of the map with its handles, at the whole wish.
-    steps : int
+        Of the map with its handles, at the full targets.
     length : float
         Part of the last step that was taken.
     gain : float
-        What the model expected of it.
-    caught : int
+        Expected gain of the last step.
+    stalled_steps : int
         Steps in a row that were hardly taken.
-    optimality : Optimality
-    turn : float
-        By which angle the shape was turned at the start, beyond what aligns it.
-    most : int
-        Steps before it is given up.
+    start_rotation : float
+        Rotation of the shape at the start, beyond the aligning one, in radians.
+    max_steps : int
+        Steps after which the search is given up.
     best : Search or None
-        Of the other ways: a search that leads to no less is given up.
+        Best of the other searches: a search that cannot beat it is given up.
     """
 
     handles: Handles
@@ -117,22 +111,21 @@ class Search:
 
     @property
     def final_bounds(self) -> BarrierBounds:
-        """Where the walls stand in the end."""
+        """Barrier bounds at the end of the search."""
         return BarrierBounds.at(self.final_limits, self.boundary)
 
     @property
     def level_bounds(self) -> BarrierBounds:
-        """Where they stand now."""
+        """Barrier bounds of the present level."""
         return homotopy_level(self.final_bounds, self.level_width)
 
     @property
     def is_widest(self) -> bool:
-        """Whether the walls stand where they will in the end."""
+        """Whether the barrier bounds are the final ones."""
         return are_same_bounds(self.level_bounds, self.final_bounds)
 
     @property
     def has_converged(self) -> bool:
-        """Whether the map is a minimum."""
         return self.is_widest and self.optimality.measure <= OPTIMAL
 
     @property
@@ -146,7 +139,7 @@ class Search:
         )
 
     def _cannot_win(self, best: "Search") -> bool:
-        """Tell whether another search has found less energy than this one can come to."""
+        """Whether another search has less energy than this search can reach."""
         if (
             self.starting_point.is_rotated
             and self.energy > ENERGY_CUTOFFS.get(self.steps, np.inf) * best.energy
@@ -161,7 +154,7 @@ class Search:
         return near and self._distance(best) < REJOINED * self.boundary.size
 
     def _distance(self, other: "Search") -> float:
-        """Return how far the outline is, at most, from where another map has it."""
+        """Return the largest distance of the outline from its place under another map."""
         coordinates = self.boundary.vertex_coordinates
         phi, psi = (one - its for one, its in zip(self.map.columns, other.map.columns, strict=True))
         return float(np.abs(coordinates @ phi + (coordinates @ psi).conj()).max())

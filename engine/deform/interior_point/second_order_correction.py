@@ -1,14 +1,14 @@
-"""One step of Newton's along walls that are curved.
+"""Newton step with second-order correction (Nocedal and Wright, section 15.5).
 
-Next to a wall a straight step is soon stopped: where it turns F = f_z by an angle θ, it lengthens F
-by θ² / 2, and a slack of 1e-9 allows for 4e-5 of it (the effect of Maratos; Nocedal and Wright,
-section 15.5). So a step is taken as it is, beyond the walls if need be, and the map is then brought
-back: what the step was to leave of each slack, to first order, is restored by further steps of the
-same model, which cost a product with its factors each.
+Bounds are curved, so a straight step along one soon leaves it (the Maratos effect). Where the step
+turns F = f_z by an angle θ, it lengthens F by θ² / 2, and a slack of 1e-9 allows for 4e-5 of it. So
+the full step is taken, beyond the bounds if need be, and the map is then brought back. Further
+steps of the same model restore each slack to its first-order value; each costs a product with the
+factors.
 
-Where this fails, the step led to walls of which the model knows nothing, since they hardly press
-where the map is. Their dual variables are raised to about what would outweigh the expected gain,
-and the step is solved for anew.
+Where this fails, the step met bounds that the model ignores, since they hardly press at the map.
+Their dual variables are raised to about the amount that outweighs the expected gain, and the step
+is solved again.
 """
 
 from dataclasses import dataclass, replace
@@ -29,43 +29,41 @@ from engine.deform.model import (
     stiffening_hessian,
 )
 
-# A step leaves at least this part of each slack, and walls that leave less than twice that are
-# those it is brought back from, in at most so many corrections; each must halve what is missing.
+# A step leaves at least this part of each slack. Bounds with less than twice that are restored, in
+# at most so many corrections; each correction must halve the missing slack.
 KEPT = 0.05
 CORRECTIONS = 4
 HALVED = 0.5
-# Lengths that are tried are this part of the one before, or twice it: a full step is doubled as
-# long as that gains.
+# Each tried length is this part of the one before, or twice it: a full step is doubled as long as
+# the objective falls.
 SHORTER = 0.7
 LONGEST = 64.0
-# How often walls that stop a step are shown to the model, until so much of it can be taken; and the
-# part of what would outweigh the expected gain that their dual variables are raised to.
+# How often duals of blocking bounds are raised, until so much of the step can be taken; and the
+# part of the outweighing amount that the duals are raised to.
 DUAL_RAISES = 3
 ENOUGH = 0.7
 RAISED = 0.5
 RAISED_FACTOR = 4.0
-# Where the exact Hessian is hardly positive its steps lead far beyond the walls. Of a step that is
-# shorter than this the next model is tried, which is more convex.
+# Where the exact Hessian is hardly positive its steps lead far beyond the bounds. After a step
+# shorter than this the next, more convex model is tried.
 STALLED = 0.08
 
 
 class CorrectedStep(NamedTuple):
-    """A step from a map to a better one within the walls.
+    """A step from a map to a better one within the bounds.
 
     Parameters
     ----------
     direction : Direction
         Newton's, straight.
     change : Direction
-        What is to be taken, of any length, and brought back.
+        The corrected step, of any length.
     length : float
-        How much of the direction that is; 0 where nothing gains.
+        Length of `change` over the direction; 0 where nothing gains.
     value : float
         Of the objective at its end.
-    start : _Start
-        Where it begins.
     gain : float
-        What the model expects of its step, before walls are shown to it.
+        Expected gain of the model's step, before duals are raised.
     convex : bool
         Whether the model is the objective's own, which is convex at the map.
     """
@@ -89,24 +87,22 @@ class CorrectedStep(NamedTuple):
         return tried._replace(gain=self.gain, convex=self.convex)
 
     def without_step(self) -> "CorrectedStep":
-        """Return no step at all."""
         return self._replace(change=self.direction.scaled(0.0), length=0.0)
 
 
 def find_corrected_step(objective: Objective, barrier: Barrier, jet: Evaluation) -> CorrectedStep:
-    """Return a step to less of the objective.
+    """Return a step that lowers the objective.
 
     Parameters
     ----------
     objective : Objective
         With the barrier.
-    barrier : Barrier
     jet : Evaluation
-        Of the map at the start, strictly within the walls.
+        Of the map at the start, strictly within the bounds.
     """
     models = newton_models(objective, jet)
     best = _corrected_where_blocked(_Start.of(next(models), barrier, jet))
-    # Another model costs a factorisation, and is not asked for before it is needed.
+    # Another model costs a factorisation, and is built only when needed.
     while best.length <= STALLED and (model := next(models, None)) is not None:
         tried = _corrected_where_blocked(_Start.of(model, barrier, jet))
         if tried.value < best.value:
@@ -116,7 +112,7 @@ def find_corrected_step(objective: Objective, barrier: Barrier, jet: Evaluation)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Start:
-    """Where a step begins: a model at a map, and the walls around it."""
+    """Start of a step: the model and the barrier at a map."""
 
     model: Model
     barrier: Barrier
@@ -140,7 +136,7 @@ class _Start:
         )
 
     def with_raised_duals(self, walls: Booleans, gain: float) -> "_Start":
-        """Return the same with the dual variables of some walls (3, m) raised."""
+        """Return the start with the dual variables of some bounds (3, m) raised."""
         a, b = self.evaluation.a, self.evaluation.b
         shares = self.model.objective.boundary.barrier_weights
         enough = np.maximum(RAISED_FACTOR * self.duals, 2 * RAISED * gain / (shares * self.margins))
@@ -161,7 +157,7 @@ class _Start:
 
 
 def _corrected_where_blocked(start: _Start) -> CorrectedStep:
-    """Return the best step of a model that is shown the walls that stop it."""
+    """Solve for a step; where a bound that the model ignored blocks it, raise its dual, repeat."""
     direction = start.model.direction()
     tried, stops = _max_feasible_step(start, direction, 1.0)
     best, gain, convex = tried, -direction.derivative / 2, start.model.exact
@@ -178,7 +174,7 @@ def _corrected_where_blocked(start: _Start) -> CorrectedStep:
 def _max_feasible_step(
     start: _Start, direction: Direction, longest: float
 ) -> tuple[CorrectedStep, Booleans | None]:
-    """Return the longest step along a direction that gains, and the walls that stop longer ones."""
+    """Return the longest gaining step along a direction, and the bounds that block longer ones."""
     length, stops = longest, None
     rounding = 1e-13 * abs(start.value)
     while length > SHORTEST:
@@ -195,7 +191,7 @@ def _max_feasible_step(
 
 
 def _doubled(step: CorrectedStep) -> CorrectedStep:
-    """Return a multiple of a full step, as long as that gains."""
+    """Double a full step as long as the objective falls."""
     start = step.start
     while step.length < LONGEST:
         change, _ = _corrected_change(start, step.direction.scaled(2 * step.length))
@@ -209,10 +205,10 @@ def _doubled(step: CorrectedStep) -> CorrectedStep:
 
 
 def _corrected_change(start: _Start, change: Direction) -> tuple[Direction | None, Booleans]:
-    """Return a change that was brought back within the walls, or those (3, m) it stays beyond."""
+    """Return a change corrected back within the bounds, or the bounds (3, m) that it breaks."""
     a, b = start.evaluation.a, start.evaluation.b
     objective, barrier = start.model.objective, start.barrier
-    # What the change leaves of the margins to first order, and at least.
+    # Margins after the change to first order, and their least allowed values.
     da, db = radial_changes(start.evaluation, change)
     left = np.maximum(
         start.margins + barrier.margin_changes(a, b, da, db), 2 * KEPT * start.margins
@@ -239,7 +235,7 @@ def _corrected_change(start: _Start, change: Direction) -> tuple[Direction | Non
 def _slacks_at(start: _Start, jet: Evaluation) -> tuple[Floats, Floats]:
     """Return u − b and u + b (3, m) of each bound at another map.
 
-    Their product is c; the second is kept positive beyond the walls, where c must be negative.
+    Their product is c; the second is kept positive beyond the bounds, where c must be negative.
     """
     b = jet.b
     u = start.barrier.distances(jet.a)
@@ -247,7 +243,7 @@ def _slacks_at(start: _Start, jet: Evaluation) -> tuple[Floats, Floats]:
 
 
 def radial_changes(jet: Evaluation, change: Direction) -> tuple[Floats, Floats]:
-    """Return how a change changes a and b, to first order."""
+    """Return the first-order changes of a and b."""
     a, b = jet.a, jet.b
     da = (jet.f.conj() * change.evaluation.f).real / a
     db = (jet.g.conj() * change.evaluation.g).real / np.maximum(b, np.finfo(np.float64).tiny)

@@ -1,7 +1,7 @@
-"""What a step minimises: energy, barrier and handles, and Newton's models of them.
+"""The objective of a step: energy, barrier and handles, and its Newton models.
 
-In: a boundary, handles, a wish, walls, and the measures of a map.
-Out: values, gradients, Hessians, and directions; what limits on the boundary promise inside.
+In: a boundary, handles, targets, barrier bounds, and the evaluation of a map.
+Out: values, gradients, Hessians, and directions; inner distortion bounds from boundary limits.
 Imports: `engine.dirichlet`, `engine.maps`, and the handles of `engine.deform`.
 """
 

@@ -2,11 +2,11 @@
 
 Each bound reads b < u with u linear in a = |f_z|: k a for the conformal distortion, a − sigma_b for
 the smallest stretch, sigma_a − a for the largest. As c = u² − b² > 0 it is smooth at b = 0, and its
-barrier is −weight · log c. The Hessian of the barrier is (weight / c²) ∇c ∇cᵀ − (weight / c) ∇²c;
-with a dual variable y that follows weight / c from step to step it becomes (y / c) ∇c ∇cᵀ − y ∇²c,
-the condensed system of a primal–dual interior point method (Nocedal and Wright, ch. 19): near a
-wall the former trusts a step no longer than the slack, and a map that once touched the walls crawls
-along them.
+barrier is −weight · log c. The Hessian of the barrier is (weight / c²) ∇c ∇cᵀ − (weight / c) ∇²c.
+With a dual variable y that follows weight / c from step to step it becomes (y / c) ∇c ∇cᵀ − y ∇²c,
+the condensed system of a primal–dual interior point method (Nocedal and Wright, ch. 19). The exact
+Hessian trusts a step near a bound no longer than the slack, and a map that once touched a bound
+crawls along it.
 """
 
 from dataclasses import dataclass
@@ -18,15 +18,15 @@ from engine.arrays import Floats, Indices, freeze
 from engine.deform.model.energy import RadialDerivatives
 from engine.maps import Boundary, LocalBounds
 
-# A dual variable stays within this factor of weight / c. Measured: with much more, samples whose
-# dual variable has all but vanished stop every step by curvature that the Hessian does not see.
+# A dual variable stays within this factor of weight / c. Measured: with a larger factor, samples
+# with almost vanished duals stop every step by curvature that the Hessian omits.
 DUAL_RANGE = 100.0
-# Walls stand inside the limits by this part of the way to the identity.
+# The barrier bounds lie inside the limits by this part of the way to the identity.
 MARGIN = 3e-4
 
 
 class BarrierBounds(NamedTuple):
-    """Where a barrier becomes infinite: limits (m,) of its own for each sample."""
+    """Bounds where a barrier becomes infinite: separate limits (m,) for each sample."""
 
     k: Floats
     sigma_a: Floats
@@ -34,23 +34,21 @@ class BarrierBounds(NamedTuple):
 
     @classmethod
     def for_samples(cls, limits: LocalBounds, count: int) -> "BarrierBounds":
-        """Return the same walls for all of `count` samples, or those of each."""
+        """Return the limits for each of `count` samples; equal limits are repeated."""
         return cls(*(np.full(count, x) for x in (limits.k, limits.sigma_a, limits.sigma_b)))
 
     @classmethod
     def at(cls, limits: LocalBounds, boundary: Boundary) -> "BarrierBounds":
-        """Return walls at the limits of a boundary's samples."""
+        """Return barrier bounds at the limits of a boundary's samples."""
         return cls.for_samples(limits.at(boundary), len(boundary.points))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Barrier:
-    """A barrier: its walls, its weight, and the dual variables of its Hessian.
+    """A barrier: its bounds, its weight, and the dual variables of its Hessian.
 
     Parameters
     ----------
-    walls : BarrierBounds
-    weight : float
     duals : float64, shape (3, m), or None
         One for each bound and sample, positive; None for weight / c, the exact Hessian.
     """
@@ -60,13 +58,13 @@ class Barrier:
     duals: Floats | None = None
 
     def slacks(self, a: Floats, b: Floats) -> Floats:
-        """Return u − b (3, m) of each bound, positive within the walls."""
+        """Return u − b (3, m) of each bound, positive within the bounds."""
         u = self.distances(a)
         slacks: Floats = u - b
         return slacks
 
     def margins(self, a: Floats, b: Floats) -> Floats:
-        """Return c = u² − b² (3, m) of each bound, positive within the walls."""
+        """Return c = u² − b² (3, m) of each bound, positive within the bounds."""
         u = self.distances(a)
         margins: Floats = (u - b) * (u + b)
         return margins
@@ -83,7 +81,7 @@ class Barrier:
         return (2.0 * factors * u * u_a).sum(axis=0), (-2.0 * factors).sum(axis=0)
 
     def value(self, a: Floats, b: Floats) -> Floats:
-        """Return the barrier at each sample; ∞ everywhere where one sample is not within."""
+        """Return the barrier at each sample; ∞ everywhere if one sample is outside."""
         u = self.distances(a)
         slacks = u - b
         if not slacks.min() > 0:
@@ -93,11 +91,11 @@ class Barrier:
         return density
 
     def derivatives(self, a: Floats, b: Floats) -> RadialDerivatives:
-        """Return the derivatives of the barrier, strictly within the walls."""
+        """Return the derivatives of the barrier, strictly within the bounds."""
         u, u_a = self.distances(a), self._slopes()
         c = (u - b) * (u + b)
         central, dual = self.weight / c, self._duals_at(c)
-        # The part of −y ∇²c that is positive: never less than the barrier itself has.
+        # The positive part of −y ∇²c: never less than the barrier's own.
         bent = np.maximum(dual, central)
         by_a, b_per_b = self.margin_gradient(a, -central)
         return RadialDerivatives(
@@ -111,7 +109,7 @@ class Barrier:
         )
 
     def current_duals(self, a: Floats, b: Floats) -> Floats:
-        """Return the dual variables (3, m) as they are used at this point."""
+        """Return the dual variables (3, m), clamped for this point."""
         return self._duals_at(self.margins(a, b))
 
     def _duals_at(self, margins: Floats) -> Floats:
@@ -149,11 +147,10 @@ class Barrier:
 
 
 def interpolate_duals(duals: Floats, segments: Indices, ends: Indices) -> Floats:
-    """Return dual variables (3, m) with those of a sample more in each of some segments.
+    """Return dual variables (3, m) with one more sample in each of these segments.
 
     Parameters
     ----------
-    duals : float64, shape (3, m)
     segments, ends : intp, shape (s,)
         The samples at which these segments start, ascending, and end.
     """

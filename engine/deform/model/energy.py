@@ -19,8 +19,8 @@ class RadialDerivatives(NamedTuple):
     """Derivatives of a density h(a, b) at each sample, float64 (m,) each.
 
     The gradient is `a` and `b_per_b` = h_b / b, which stays smooth at b = 0. The Hessian is `aa`,
-    `ab`, `bb` and, along the circles |F| = a and |G| = b, `around_a` = h_a / a and `around_b` =
-    h_b / b; a primal–dual barrier has others there than its gradient says.
+    `ab`, `bb` and, along the circles |F| = a and |G| = b, `around_a` = h_a / a and `around_b` = h_b
+    / b; a primal–dual barrier has other values there, unlike its gradient.
     """
 
     a: Floats
@@ -48,7 +48,7 @@ def symmetric_dirichlet(a: Floats, b: Floats) -> Floats:
     if not np.all(a > b):
         return np.full(np.shape(a), np.inf)
     x, y = a * a, b * b
-    # By multiplications: NumPy takes several times as long for other powers than the second.
+    # By multiplications: NumPy takes several times as long for powers other than the second.
     inverse = 1.0 / (x - y)
     density: Floats = (x + y) * (1.0 + inverse * inverse)
     return density

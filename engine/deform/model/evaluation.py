@@ -1,4 +1,4 @@
-"""What the objective knows of a map."""
+"""A map evaluated at the samples and handles."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +12,7 @@ from engine.geometry import RigidMotion
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Evaluation:
-    """Everything the objective knows of a map; real-linear in its coefficients.
+    """Derivatives of a map at the samples and handles; real-linear in its coefficients.
 
     Parameters
     ----------
@@ -42,12 +42,12 @@ class Evaluation:
     @cached_property
     def density(self) -> Floats:
         """The symmetric Dirichlet density at the samples, float64 (m,)."""
-        # A trial step may lead farther than numbers reach; there the energy is ∞.
+        # A trial step may overflow; there the energy is ∞.
         with np.errstate(over="ignore", invalid="ignore"):
             return symmetric_dirichlet(self.a, self.b)
 
     def scaled(self, factor: float) -> "Evaluation":
-        """Return the jet of a change that is so many times as large."""
+        """Return the evaluation of a change times a factor."""
         return Evaluation(
             f=factor * self.f,
             g=factor * self.g,
@@ -56,7 +56,7 @@ class Evaluation:
         )
 
     def moved(self, motion: RigidMotion) -> "Evaluation":
-        """Return the jet of a map, and a rigid motion after it."""
+        """Return the evaluation of a map followed by a rigid motion."""
         return Evaluation(
             f=motion.factor * self.f,
             g=np.conj(motion.factor) * self.g,
@@ -65,7 +65,7 @@ class Evaluation:
         )
 
     def advanced(self, length: float, direction: "Evaluation") -> "Evaluation":
-        """Return the jet of the map that lies `length` steps along a direction."""
+        """Return the evaluation of the map `length` steps along a direction."""
         return Evaluation(
             f=self.f + length * direction.f,
             g=self.g + length * direction.g,

@@ -1,4 +1,4 @@
-"""Cholesky's factors of Hessians, given by their upper triangles."""
+"""Cholesky factors of Hessians, given by their upper triangles."""
 
 import numpy as np
 from scipy.linalg import blas, lapack
@@ -7,44 +7,44 @@ from engine.arrays import Floats, Singles
 from engine.deform.model.hessian import Reals
 
 # The diagonal is made larger by this part of itself and of a floor, and by more until the
-# factorisation succeeds. Next to a wall the largest entries are 1e12 times the least, and no step
-# may feel a part of their mean; the floor holds what moves nothing: without handles the whole, and
-# around a tiny hole functions of the span that are one and the same. Entries of the energy are
-# about 8.
+# factorisation succeeds. Next to a bound the largest entries are 1e12 times the least, so a part of
+# their mean must not enter any step. The floor fixes unknowns that change no map: all of them
+# without handles, and functions of the span that coincide around a tiny hole. Entries of the energy
+# are about 8.
 SHIFT, SHIFT_GROWTH = 1e-13, 1e2
 FLOOR = 1e5
-# In single precision each pivot keeps at least this part of its diagonal, else too few digits of it
-# are left. With handles it is some thousandths; with one alone, which leaves a rotation, 1e-7.
+# In single precision each pivot keeps at least this part of its diagonal, else too few digits are
+# left. With handles the part is some thousandths; with one handle, which leaves a rotation, 1e-7.
 LEAST_PIVOT = 1e-4
 
 
 def factor_shifted(hessian: Floats) -> Floats:
-    """Factor a positive semidefinite matrix, given by its upper triangle, with a shift it needs."""
+    """Factor a positive semidefinite matrix, given by its upper triangle, shifted as needed."""
     shift = SHIFT
-    # Twelve tries reach far beyond any diagonal: then the numbers themselves are at their end.
+    # Twelve tries reach far beyond any diagonal: then the entries themselves are not finite.
     for _ in range(12):
         factor = factor_regularised(hessian, shift)
         if factor is not None:
             return factor
         shift *= SHIFT_GROWTH
-    # Nothing helps: an infinite Hessian, whose steps are 0.
+    # No shift helps: an infinite Hessian, whose steps are 0.
     return np.diag(np.full(len(hessian), np.inf))
 
 
 def factor_regularised(hessian: Floats, shift: float) -> Floats | None:
     """Factor a matrix given by its upper triangle, with a part of its diagonal and a floor added.
 
-    None if it is not positive.
+    None if it is not positive definite.
     """
     shifted = hessian.copy()
     np.fill_diagonal(shifted, (1.0 + shift) * hessian.diagonal() + shift * FLOOR)
-    # Seen as Fortran order the upper triangle is the lower one.
+    # In Fortran order the upper triangle is the lower one.
     factor, failed = lapack.dpotrf(shifted.T, lower=1, clean=0, overwrite_a=1)
     return None if failed else factor
 
 
 def factor_single(hessian: Singles) -> Singles | None:
-    """Factor in place a matrix given by its upper triangle, or None if too many digits are lost."""
+    """Factor in place a matrix given by its upper triangle; None if too many digits are lost."""
     diagonal = hessian.diagonal().copy()
     factor: Singles
     factor, failed = lapack.spotrf(hessian.T, lower=1, clean=0, overwrite_a=1)
@@ -54,7 +54,7 @@ def factor_single(hessian: Singles) -> Singles | None:
 
 
 def solve_factored(factor: Reals, wanted: Floats) -> Floats:
-    """Return the solution (u,) for what is wanted (u,), of a factored matrix."""
+    """Return the solution (u,) for the right-hand side `wanted` (u,), by a Cholesky factor."""
     trsv = blas.strsv if factor.dtype == np.float32 else blas.dtrsv
     # Two solves with vectors: `dpotrs` takes three times as long for one.
     half = trsv(factor, wanted, lower=1)

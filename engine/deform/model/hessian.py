@@ -1,7 +1,7 @@
 """Hessians of the objective, projected, as sums over samples of the boundary.
 
-The rows of φ and ψ whose Gram matrices are the blocks of the Hessian are products of the samples'
-rows with the roots of what each contributes.
+The blocks of the Hessian are Gram matrices of rows of φ and ψ: the samples' rows times the roots of
+each sample's contribution.
 """
 
 from collections.abc import Sequence
@@ -18,21 +18,21 @@ from engine.deform.model.objective import Objective
 # In single or double precision.
 Reals = npt.NDArray[np.float32] | npt.NDArray[np.float64]
 
-# Samples that were added are summed with their neighbours, unless their coefficients are this far
-# above the median (near a bound).
+# Added samples are summed with their neighbours, unless their coefficients are this far above the
+# median (near a bound).
 STIFF = 3.0
-# Samples this far above the median keep all their digits.
+# Samples this far above the median keep double precision.
 HARD = 1e5
-# Stiffness of a step against turning the whole shape by an angle, over that against stretching it.
+# Stiffness of a step against a rotation of the whole shape, over that against stretching it.
 DAMPING = 1e-4
 
 
 class _Quadrature(NamedTuple):
-    """Samples (s,), and what they contribute to the Hessian (6, s).
+    """Samples (s,), and their contributions to the Hessian (6, s).
 
-    The entries are, in the frames of f and g, radial and tangential of f, the same of g, between
-    both radials, and what the projection removes from the tangential of f. The last `hard` samples
-    are so stiff that single precision would lose the others beside them.
+    The entries are, in the frames of f and g: radial and tangential of f, the same of g, between
+    both radials, and the part that the projection removes from the tangential of f. The last `hard`
+    samples are so stiff that single precision would lose the others beside them.
     """
 
     samples: Indices
@@ -70,10 +70,10 @@ def projected_hessian(objective: Objective, jet: Evaluation, radial: RadialDeriv
 def single_hessian(
     objective: Objective, jet: Evaluation, radial: RadialDerivatives
 ) -> Singles | None:
-    """Return the same in single precision throughout, or None where that will not do.
+    """Return the projected Hessian in single precision throughout, or None.
 
-    That is where samples are hard, around holes, where functions may nearly be the same, and
-    where fewer than two handles leave the shape free to turn or to go anywhere.
+    None where samples are hard, around holes, where functions may nearly coincide, and where fewer
+    than two handles leave the shape free to rotate or move.
     """
     quadrature = _quadrature(objective, radial)
     if quadrature.hard or objective.boundary.holes or len(objective.targets.positions) < 2:
@@ -89,8 +89,8 @@ def hessian_product(
 ) -> Floats:
     """Return the product (u,) of the Hessian over all samples with a change.
 
-    In double precision, and without the tiny stiffness against turning as a whole; the matrix
-    is not formed. Cost: 16 m n for m samples.
+    In double precision, and without the tiny stiffness against rotation; the matrix is not formed.
+    Cost: 16 m n for m samples.
     """
     frame_f, frame_g = _frames(jet.f, jet.g)
     f, g = frame_f * change.f, frame_g * change.g
@@ -114,7 +114,7 @@ def hessian_product(
 def stiffening_hessian(
     objective: Objective, jet: Evaluation, radial: RadialDerivatives, samples: Indices
 ) -> Floats:
-    """Return the positive part of the Hessian (u, u) of a few samples, upper triangle."""
+    """Return the positive part of the Hessian (u, u) of these samples, upper triangle."""
     hessian = np.zeros_like(objective.handles.hessian)
     entries = _entries(radial)[:, samples]
     _add(objective, hessian, jet, _Quadrature(samples, entries))
@@ -130,7 +130,7 @@ def _add(
     *,
     single: bool = False,
 ) -> None:
-    """Add samples, and further rows of φ, to a Hessian; on request in single precision."""
+    """Add samples, and further rows of φ, to a Hessian; optionally in single precision."""
     r, u = objective.boundary.basis.shape[1], len(hessian)
     by_phi, by_psi, cross = _roots(objective, jet, quadrature, more, single=single)
     of_phi, of_psi = by_phi.T @ by_phi, by_psi.T @ by_psi
@@ -145,7 +145,7 @@ def _add(
 
 
 def _fold_logarithms(objective: Objective, hessian: Reals, mixed: Reals, of_psi: Reals) -> None:
-    """Add what ψ's logarithms, the conjugates of φ's, contribute to a Hessian (u, u).
+    """Add the contributions of ψ's logarithms, the conjugates of φ's, to a Hessian (u, u).
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def _fold_logarithms(objective: Objective, hessian: Reals, mixed: Reals, of_psi:
 
 
 def negative_part(objective: Objective, jet: Evaluation, radial: RadialDerivatives) -> Floats:
-    """Return what the projection removed from the Hessian of φ, (2r, 2r).
+    """Return the part that the projection removed from the Hessian of φ, (2r, 2r).
 
     `projected_hessian` minus this is the exact Hessian; it need not be positive.
     """
@@ -190,8 +190,8 @@ def _roots(
 ) -> tuple[Reals, Reals, Reals]:
     """Return rows of φ and of ψ whose Gram matrices are their blocks of the Hessian.
 
-    Further rows of φ come last. The first s rows of each are the radial ones, of the s samples:
-    the third array (s,) weighs their products between φ and ψ.
+    Further rows of φ come last. The first s rows of each are the radial rows of the s samples: the
+    third array (s,) weighs their products between φ and ψ.
     """
     samples, entries, _ = quadrature
     kind = np.complex64 if single else np.complex128
@@ -199,7 +199,7 @@ def _roots(
     frame_f, frame_g = _frames(jet.f[samples], jet.g[samples])
     root_f, around_f, root_g, around_g = np.sqrt(entries[:4])
     count, n = rows.shape
-    # Where the projection removed the tangential one there is none.
+    # Where the projection removed the tangential entry there is no row.
     held = np.flatnonzero(around_f)
     last = count + len(held)
     by_phi = np.empty((last + sum(map(len, more)), n), kind)
@@ -249,9 +249,9 @@ def _held_hessian(objective: Objective, jet: Evaluation) -> Floats:
 
 
 def _damping_root(objective: Objective, jet: Evaluation, calm: "_Quadrature") -> Complexes:
-    """Return the row of a tiny stiffness against turning as a whole.
+    """Return the row of a tiny stiffness against rotation of the whole shape.
 
-    One handle leaves the rotation of the shape free; rounding alone would then turn it.
+    One handle leaves the rotation of the shape free; rounding alone would then rotate it.
     """
     stiffness = DAMPING * calm.entries[0].sum()
     per_sample = -1j * np.sqrt(stiffness) * objective.boundary.weights / jet.f
@@ -262,7 +262,7 @@ def _damping_root(objective: Objective, jet: Evaluation, calm: "_Quadrature") ->
 def _rotation_roots(
     objective: Objective, jet: Evaluation, *, removed: bool = False
 ) -> list[Complexes]:
-    """Return the rows of φ of `Objective.turning_frames`."""
+    """Return the rows of φ of `Objective.rotation_frames`."""
     frames = objective.rotation_frames(jet, removed=removed)
     return [frame[:, None] * objective.rotation_rows for frame in frames]
 
@@ -276,7 +276,7 @@ def _frames(f: Complexes, g: Complexes) -> tuple[Complexes, Complexes]:
 
 
 def _entries(radial: RadialDerivatives) -> Floats:
-    """Return what samples contribute to the Hessian, as a `_Quadrature` has it."""
+    """Return the samples' contributions to the Hessian, as the entries of a `_Quadrature`."""
     return np.array(
         [
             radial.aa,

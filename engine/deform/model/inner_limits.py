@@ -1,9 +1,8 @@
-"""How far a map can distort a shape inside, where the limits of its boundary differ.
+"""Bounds at inner points implied by limits that differ along the boundary.
 
-ln k, ln σ_a and −ln σ_b of a locally injective harmonic map are subharmonic: with ν = G / F,
-ln |ν| is, ln |F| is harmonic, and ln(1 + |ν|) and −ln(1 − |ν|) are convex and rising in ln |ν|. So
-none of them is anywhere above the harmonic function with the logarithm of its limit on the
-boundary.
+ln k, ln σ_a and −ln σ_b of a locally injective harmonic map are subharmonic: with ν = G / F, ln |ν|
+is, ln |F| is harmonic, and ln(1 + |ν|) and −ln(1 − |ν|) are convex and rising in ln |ν|. So each is
+bounded above by the harmonic function with the logarithm of its limit on the boundary.
 """
 
 import numpy as np
@@ -18,21 +17,22 @@ from engine.maps import Boundary, LocalBounds
 def limits_inside(
     transform: HilbertTransform, boundary: Boundary, bounds: LocalBounds, points: Complexes
 ) -> LocalBounds:
-    """Return what holds at points of the domain of maps that keep `bounds.where_stiff(boundary)`.
+    """Bounds at inner points implied by stiffness-scaled bounds on the outline.
+
+    They are harmonic extensions of the logarithms of the limits.
 
     Parameters
     ----------
     transform : HilbertTransform
         Of the same domain.
-    boundary : Boundary
     bounds : LocalBounds
-        Those of the whole shape.
+        Of the whole shape.
     points : complex128, shape (t,)
         In the closed domain.
 
     Returns
     -------
-    Limits
+    LocalBounds
         Arrays (t,).
     """
     stiffness = np.maximum(_stiffness_at(boundary, transform.nodes), 1.0)
@@ -46,7 +46,6 @@ def limits_inside(
 
 
 def _stiffness_at(boundary: Boundary, nodes: Complexes) -> Floats:
-    """Return the stiffness at points of the boundary."""
     starts, ends = boundary.points, boundary.points[boundary.next_samples]
     both = np.column_stack([starts, ends])
     segments = shapely.STRtree(shapely.linestrings(both.real, both.imag))

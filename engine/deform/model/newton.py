@@ -26,22 +26,22 @@ from engine.deform.model.hessian import (
 )
 from engine.deform.model.objective import Objective
 
-# A step is accepted when it gains at least this part of what the gradient promises (Armijo).
+# A step is accepted when it gains at least this part of the first-order gain (Armijo).
 SUFFICIENT = 1e-4
-# A step stops where this part of the way to the nearest wall is used up.
+# A step stops where this part of the way to the nearest bound is used up.
 TO_THE_BARRIER = 0.9
 SHORTEST = 1e-6
-# Conjugate gradients stop when this part of the step is missing, or after so many. Measured: with
-# less missing drags get no nearer to their wishes.
+# Conjugate gradients stop at this relative residual, or after so many rounds. Measured: a smaller
+# residual brings drags no nearer to their targets.
 REFINED = 0.3
 REFINEMENTS = 4
-# A factor serves so many steps, as long as it takes at most so many rounds and misses no more than
-# this: of the Hessian of another map it measures less well what is missing. Measured: drags then
-# get as near to their wishes as with a factor of their own for each step.
+# A factor serves so many steps, as long as it takes at most so many rounds and leaves no more than
+# this residual. A factor of another map's Hessian measures the residual less well. Measured: drags
+# then get as near to their targets as with a new factor for each step.
 SERVES_STEPS = 8
 SERVES_ROUNDS = 2
 REFINED_LATER = 0.1
-# Parts of what the projection removes from the Hessian that are tried to be left in it.
+# Parts of the negative curvature that are tried to be left in the Hessian.
 KEPT_NEGATIVE = (1.0, 0.5, 0.25, 0.1)
 
 
@@ -51,9 +51,9 @@ class Direction(NamedTuple):
     Parameters
     ----------
     phi, psi : complex128, shape (n,)
-        The change of the coefficients, those of logarithms included; psi_0 stays.
-    jet : Evaluation
-        The same change, measured.
+        The change of the coefficients, including the logarithms; psi_0 stays.
+    evaluation : Evaluation
+        Of the same change.
     derivative : float
         Of the objective along the direction, negative. Half its size is the gain that the quadratic
         model expects.
@@ -65,7 +65,6 @@ class Direction(NamedTuple):
     derivative: float
 
     def scaled(self, factor: float) -> "Direction":
-        """Return the direction times a factor."""
         return Direction(
             factor * self.phi,
             factor * self.psi,
@@ -74,7 +73,6 @@ class Direction(NamedTuple):
         )
 
     def plus(self, other: "Direction") -> "Direction":
-        """Return the sum of two directions."""
         return Direction(
             self.phi + other.phi,
             self.psi + other.psi,
@@ -89,12 +87,11 @@ class Model:
 
     Parameters
     ----------
-    objective : Objective
     gradient : float64, shape (u,)
     hessian : float64, shape (u, u)
         Its upper triangle.
     factor : float64, shape (u, u)
-        Cholesky's, in its lower triangle as LAPACK sees it.
+        Cholesky factor, in the lower triangle in LAPACK's order.
     exact : bool
         Whether nothing was projected: the objective itself is convex at the map.
     """
@@ -119,18 +116,17 @@ class Model:
 
 
 class Preconditioner(NamedTuple):
-    """A factored Hessian that serves some steps in a row.
+    """A factored Hessian that serves several steps in a row.
 
-    In a step a map changes little where walls are far, and its Hessian with it.
+    Far from the bounds a step changes the map little, and its Hessian as well.
 
     Parameters
     ----------
-    handles : Handles
-    turning : bool, shape (h,)
-        Which of them had to turn.
+    rotation_constraints : bool, shape (h,)
+        Which handles had a prescribed rotation.
     factor : float32 or float64, shape (u, u)
-    served : int
-        Steps that it has been used for.
+    served_steps : int
+        Steps that used the factor.
     """
 
     handles: Handles
@@ -139,13 +135,16 @@ class Preconditioner(NamedTuple):
     served_steps: int = 0
 
     def can_serve(self, objective: Objective) -> bool:
-        """Tell whether it is of the same handles."""
+        """Whether the objective has the same handles and rotation constraints."""
         return self.handles is objective.handles and np.array_equal(
             self.rotation_constraints, objective.rotation_constraints
         )
 
     def after_step(self, rounds: int) -> "Preconditioner | None":
-        """Return the preconditioner of the next step after a step of so many rounds, if it pays."""
+        """Return the preconditioner for the next step, or None if a new factor pays.
+
+        `rounds` are the rounds of conjugate gradients of the last step.
+        """
         served = self.served_steps + 1
         pays = rounds <= SERVES_ROUNDS and served < SERVES_STEPS
         return self._replace(served_steps=served) if pays else None
@@ -192,9 +191,9 @@ def _refined(
     *,
     missing: float,
 ) -> tuple[Direction, int]:
-    """Return the step of conjugate gradients, and the rounds until no more than a part is missing.
+    """Return the step of conjugate gradients to the relative residual `missing`, and its rounds.
 
-    Where that takes too many, one more than there were.
+    If that takes too many rounds, one more than the rounds taken.
     """
     left, ahead = gradient, solve_factored(factor, gradient)
     solution, measured = np.zeros_like(gradient), None
@@ -220,11 +219,11 @@ def _refined(
 
 
 def newton_models(objective: Objective, jet: Evaluation) -> Iterator[Model]:
-    """Yield quadratic models of the objective at a map, all positive, the last one projected.
+    """Yield positive definite quadratic models of the objective at a map, the last one projected.
 
-    Those before leave in the Hessian all that the projection removes, or parts of it, where it
-    stays positive: near a minimum steps are Newton's own, and far from it they follow bent valleys
-    that the projection crawls along.
+    Earlier models keep all or part of the negative curvature, where the Hessian stays positive.
+    Near a minimum their steps are Newton's own. Far from it they follow bent valleys that the
+    projected model crawls along.
     """
     radial = objective.radial_derivatives(jet)
     hessian = projected_hessian(objective, jet, radial)
@@ -246,23 +245,14 @@ def newton_models(objective: Objective, jet: Evaluation) -> Iterator[Model]:
 def line_search(
     objective: Objective, jet: Evaluation, direction: Direction, value: float, longest: float = 1.0
 ) -> tuple[float, Evaluation]:
-    """Return the largest tried length, at most `longest`, that gains enough, and where it leads.
+    """Return the largest tried length, at most `longest`, that gains enough, and its evaluation.
 
-    The length is 0 if none does.
-
-    Parameters
-    ----------
-    objective : Objective
-    jet : Evaluation
-        Of the map at the start.
-    direction : Direction
-    value : float
-        Of the objective at the start.
+    The length is 0 if none does. `value` is the objective at the start.
     """
     length = longest
     rounding = 1e-13 * abs(value)
     while length > SHORTEST:
-        # The wall must be farther than the step, not only beyond it.
+        # The bound must be farther than the step, not only beyond it.
         if length < 1.0 and not objective.is_within(
             jet.advanced(length / TO_THE_BARRIER, direction.evaluation)
         ):
@@ -279,6 +269,6 @@ def line_search(
 def _direction(
     objective: Objective, gradient: Floats, solution: Floats, change: Evaluation
 ) -> Direction:
-    """Return the direction that is the negative of a solution (u,), measured as a change."""
+    """Return the direction that is the negative of a solution (u,), with its evaluation."""
     phi, psi = objective.coefficients(-solution)
     return Direction(phi, psi, change.scaled(-1.0), -float(gradient @ solution))

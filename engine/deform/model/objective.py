@@ -1,14 +1,14 @@
-"""What a step of a drag minimises: energy, barrier and handles, with the gradient.
+"""The objective of a step: energy, barrier and handles, with the gradient.
 
 The unknowns are φ and ψ in the boundary's basis, whose derivatives are orthonormal and whose means
-are 0: the Hessian is then well conditioned but for walls, and half the digits do for all samples
-but those next to walls. Without ψ_0, a constant (the gauge: (φ + c, ψ − conj(c)) is the same map).
+are 0. The Hessian is then well conditioned except next to bounds, and single precision suffices for
+all other samples. ψ_0, a constant, is no unknown (the gauge: (φ + c, ψ − conj(c)) is the same map).
 As a real vector they are the real and imaginary parts, alternating, of the conjugates of φ and ψ_1,
-ψ_2, …; with that order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and
+ψ_2, …. In this order Re Σ P_j φ_j is the plain product with the parts of a complex row P, and
 matrices need no rearrangement.
 
 Around q holes the last q entries of φ are the logarithms' a_j, scaled, and those of ψ their
-conjugates: ψ's are no unknowns, and what they contribute is folded onto φ's. Constants on the cage
+conjugates: ψ's are no unknowns, and their contributions are folded onto φ's. Constants on the cage
 of a hole, which change no map, have a stiffness of their own (`Handles`), and steps never change
 them. In all there are u = 4 r − 2 − 2 q real unknowns for the r functions of the basis.
 """
@@ -34,13 +34,9 @@ class Objective:
 
     Parameters
     ----------
-    boundary : Boundary
-    handles : Handles
-    wish : HandleTargets
-    barrier : Barrier or None
     secant : bool
-        Whether hands that give in are as stiff along their pull as across, where the Hessian has
-        nothing: steps then lead no farther than to their targets.
+        Whether pulls with slack are as stiff along their direction as across, where the Hessian is
+        0: steps then lead no farther than to their targets.
     """
 
     boundary: Boundary
@@ -55,12 +51,12 @@ class Objective:
         return np.isfinite(self.targets.rotations)
 
     def coefficients(self, unknowns: Floats) -> tuple[Complexes, Complexes]:
-        """Return the columns (n,) of coefficients of φ and ψ that unknowns (u,) stand for."""
+        """Return the columns (n,) of coefficients of φ and ψ for unknowns (u,)."""
         of_phi, of_psi = in_basis(self.boundary, unknowns)
         return self.boundary.basis @ of_phi, self.boundary.basis @ of_psi
 
     def evaluate_change(self, unknowns: Floats) -> Evaluation:
-        """Measure a change of a map by its unknowns (u,)."""
+        """Evaluate a change of a map by its unknowns (u,)."""
         of_phi, of_psi = in_basis(self.boundary, unknowns)
         rows, coordinates = self.boundary.basis_derivatives, self.handles.basis_coordinates
         return Evaluation(
@@ -71,7 +67,7 @@ class Objective:
         )
 
     def evaluate(self, phi: Complexes, psi: Complexes) -> Evaluation:
-        """Measure a map, or a change of a map, by the columns (n,) of its coefficients."""
+        """Evaluate a map, or a change of a map, by the columns (n,) of its coefficients."""
         span, coordinates = self.boundary.span, self.handles.coordinates
         rows, phi_alone = self.boundary.derivatives, span.without_constant(phi)
         return Evaluation(
@@ -82,7 +78,7 @@ class Objective:
         )
 
     def value(self, jet: Evaluation) -> float:
-        """Return the objective, ∞ where the map folds or leaves the walls."""
+        """Return the objective, ∞ where the map folds or leaves the bounds."""
         value = self.energy(jet)
         if self.barrier is not None and np.isfinite(value):
             density = self.barrier.value(jet.a, jet.b)
@@ -111,13 +107,13 @@ class Objective:
         return sqrt(squares) / self.boundary.size
 
     def is_within(self, jet: Evaluation) -> bool:
-        """Tell whether the samples are strictly within the walls."""
+        """Whether the samples are strictly within the bounds."""
         if self.barrier is None:
             return bool(np.all(jet.a > jet.b))
         return bool(np.all(self.barrier.slacks(jet.a, jet.b) > 0))
 
     def radial_derivatives(self, jet: Evaluation) -> RadialDerivatives:
-        """Return what each sample contributes to the derivatives of energy and barrier."""
+        """Return each sample's contribution to the derivatives of energy and barrier."""
         a, b = jet.a, jet.b
         energy = symmetric_dirichlet_derivatives(a, b).weighted(self.boundary.weights)
         if self.barrier is None:
@@ -140,7 +136,7 @@ class Objective:
         return gradient
 
     def target_error_change(self, jet: Evaluation, changes: Complexes) -> Complexes:
-        """Return by how much more the handles (h,) lack after they have moved, to first order."""
+        """Return the first-order changes of the target errors (h,) after the handles moved."""
         hands = self.targets.pulls
         if hands is None:
             return changes
@@ -151,7 +147,7 @@ class Objective:
         return changes - hands.spread_to_handles(given)
 
     def pull_rows(self, jet: Evaluation) -> Floats:
-        """Return the rows (s, u) whose Gram matrix hands take from the Hessian of the handles."""
+        """Return the rows (s, u) whose Gram matrix pulls subtract from the handles' Hessian."""
         hands = self.targets.pulls
         if hands is None:
             return np.empty((0, len(self.handles.hessian)))
@@ -166,7 +162,7 @@ class Objective:
         return np.array(rows).reshape(-1, len(self.handles.hessian))
 
     def distance_constraint_rows(self, jet: Evaluation) -> Floats:
-        """Return the rows (s, u) whose Gram matrix links add to the Hessian of the handles."""
+        """Return the rows (s, u) whose Gram matrix the constraints add to the handles' Hessian."""
         links = self.targets.distance_constraints
         if links is None:
             return np.empty((0, len(self.handles.hessian)))
@@ -187,11 +183,10 @@ class Objective:
 
         Parameters
         ----------
-        jet : Evaluation
         by_a, b_per_b : float64, shape (m,)
-            What each sample contributes to the derivative by a, and to that by b over b.
+            Each sample's derivative by a, and its derivative by b over b.
         samples : Indices or slice
-            Which samples contribute, by default all.
+            Contributing samples, by default all.
         """
         rows, f, g = self.boundary.basis_derivatives[samples], jet.f[samples], jet.g[samples]
         by_phi = (by_a[samples] / jet.a[samples] * f.conj()) @ rows
@@ -199,12 +194,12 @@ class Objective:
         return self.by_unknowns(by_phi, by_psi)
 
     def by_unknowns(self, by_phi: Complexes, by_psi: Complexes) -> Floats:
-        """Return a gradient (u,) from what multiplies φ and ψ (r,), logarithms included."""
+        """Return a gradient (u,) from the factors of φ and ψ (r,), logarithms included."""
         return by_unknowns(self.boundary, by_phi, by_psi)
 
     @cached_property
     def rotation_stiffness(self) -> Floats:
-        """What turning each handle with a prescribed rotation costs, float64 (t,)."""
+        """Cost of a rotation of each handle with a prescribed rotation, float64 (t,)."""
         return 2.0 * self.handles.lever**2 * self.handles.stiffness[self.rotation_constraints]
 
     @cached_property
@@ -213,17 +208,17 @@ class Objective:
         return self.handles.basis_derivatives[self.rotation_constraints]
 
     def rotation_errors(self, jet: Evaluation) -> Floats:
-        """Return by how much they are turned too far, float64 (t,)."""
+        """Return the rotation errors of these handles in radians, float64 (t,)."""
         wished = np.exp(-1j * self.targets.rotations[self.rotation_constraints])
         angles: Floats = np.angle(jet.fz[self.rotation_constraints] * wished)
         return angles
 
     def rotation_frames(self, jet: Evaluation, *, removed: bool = False) -> list[Complexes]:
-        """Return what multiplies dF of handles in rows: the projected Hessian of their rotations.
+        """Return the factors of dF of handles in rows: the projected Hessian of their rotations.
 
         With dF / F = x + iy the term c δ² has the Hessian 2c [[0, −δ], [−δ, 1]]; its eigenvalues
-        are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The negative one is
-        what the projection removed.
+        are c (1 ± root) with root² = 1 + 4 δ², for the vectors (−2δ, 1 ± root). The projection
+        removes the negative one.
         """
         if not self.rotation_constraints.any():
             return []

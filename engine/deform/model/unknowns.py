@@ -7,7 +7,7 @@ from engine.maps import Boundary
 
 
 def in_basis(boundary: Boundary, unknowns: Floats) -> tuple[Complexes, Complexes]:
-    """Return φ and ψ (r,) in the basis that unknowns (u,) stand for."""
+    """Return φ and ψ (r,) in the basis for unknowns (u,)."""
     r, count = boundary.basis.shape[1], len(boundary.holes)
     conjugates = np.ascontiguousarray(unknowns).view(np.complex128).conj()
     of_phi = conjugates[:r]
@@ -16,9 +16,9 @@ def in_basis(boundary: Boundary, unknowns: Floats) -> tuple[Complexes, Complexes
 
 
 def by_unknowns(boundary: Boundary, by_phi: Complexes, by_psi: Complexes) -> Floats:
-    """Return gradients (..., u) from what multiplies φ and ψ (..., r), logarithms included.
+    """Return gradients (..., u) from the factors of φ and ψ (..., r), logarithms included.
 
-    The former is changed.
+    `by_phi` is changed.
     """
     count = len(boundary.holes)
     if count:

@@ -1,7 +1,7 @@
-"""The limbs of a shape: where handles are useful in it, and where the joints of a body may be.
+"""Anatomy of a shape: suggested handles, and suggested joints of a body.
 
 In: the outline and the outlines of the holes.
-Out: places for handles, and their names; what kind of body it looks like, and its joints.
+Out: places for handles, and their names; the kind of body, and its joints.
 Imports: `engine.geometry`, `engine.geometry.motions`, `engine.domain.meshing`.
 """
 

@@ -1,4 +1,4 @@
-"""What a shape consists of: a middle, a trunk, a head on a neck, and tips that reach out."""
+"""Parts of a shape: a middle, a trunk, a head on a neck, and tips of limbs."""
 
 from collections.abc import Sequence
 
@@ -9,35 +9,35 @@ from engine.domain.anatomy.medial_axis import medial_axis
 from engine.domain.anatomy.skeleton import Skeleton
 from engine.geometry import diameter
 
-# Of the largest radius, which may be that of a head: what belongs to the body.
+# Of the largest radius, which may be the head's: least radius of nodes of the body.
 THICK = 0.4
-# A neck is so much narrower than the head beyond it, which is at least so wide as parts of the
-# middle's radius.
+# A neck has at most this part of the radius of the head beyond it. A head has at least this part of
+# the middle's radius.
 NECK, LEAST_HEAD = 0.8, 0.55
-LONGEST_EAR = 2.5  # radii of the head that tips on it are away from its middle
-FORK = 0.5  # parts of the middle's radius: where limbs leave the trunk it is at least so thick
-# Two parts of the body have a handle each where they are so many radii apart.
+LONGEST_EAR = 2.5  # radii of the head: largest distance of its ears' tips from its middle
+FORK = 0.5  # of the middle's radius: least radius of the trunk where limbs leave it
+# Two parts of the body get separate handles if they are this many radii apart.
 APART = 0.9
-# Parts of the height: feet are so near to the ground.
+# Of the height: feet are this near to the ground.
 GROUND = 0.12
-# Along a way to a head the neck is so much narrower than what is beyond it, and than what is before
-# it; and what is beyond has such a part of the first radius.
+# On the path to a head, the neck has at most these parts of the radius beyond it and before it. The
+# part beyond it has at least this part of the first radius.
 NARROWED, HARDLY_NARROWED, SMALLEST_HEAD = 0.93, 0.97, 0.3
-BENT = 0.44  # from what angle on a limb is bent, in radians
-THICKENED = 1.45  # or thicker by what factor
-MARGIN = 0.35  # parts of a limb, on either side, in which no joint is
-STEP = 0.2  # parts of a limb, before and after a place, over which it bends
+BENT = 0.44  # least angle of a bent limb, in radians
+THICKENED = 1.45  # factor by which a limb becomes thicker at a joint
+MARGIN = 0.35  # of a limb, at either end: no joint there
+STEP = 0.2  # of a limb, before and after a place: where its bend is measured
 
 
 class Anatomy:
-    """A skeleton, its middle, and what is its trunk and its head.
+    """A skeleton with its middle, trunk and head.
 
     Parameters
     ----------
     loops : sequence of complex128
         The outline, counter-clockwise, and the outlines of the holes; y up.
     opened : bool
-        Whether ways around holes are cut open: limbs that touch are limbs all the same.
+        Whether cycles around holes are cut open, so that limbs that touch still count as limbs.
     """
 
     def __init__(self, loops: Sequence[Complexes], *, opened: bool = False) -> None:
@@ -54,7 +54,7 @@ class Anatomy:
         self.places, self.radii = self.skeleton.axis.places, self.skeleton.axis.radii
         self.kept = np.array(sorted(self.skeleton.near))
         thick = self.kept[self.radii[self.kept] >= THICK * self.radii[self.kept].max()]
-        # A shape without limbs is nearest to all of its ends.
+        # In a shape without limbs the middle is nearest to all ends.
         goals = list(self.tips.values()) or self.kept.tolist()
         farthest = np.max(
             [self.skeleton.path_distances([goal])[0][thick] for goal in goals], axis=0
@@ -66,7 +66,6 @@ class Anatomy:
         self.trunk = self._trunk()
 
     def path(self, node: int) -> Indices:
-        """Return the nodes from the middle to one."""
         path = [node]
         while path[-1] != self.middle:
             path.append(int(self.before[path[-1]]))
@@ -91,20 +90,20 @@ class Anatomy:
         return neck, head
 
     def _in_head(self) -> set[int]:
-        """Return the nodes beyond the neck; all limbs begin in it where it is the middle."""
+        """Return the nodes beyond the neck. If the middle is in the head, all limbs begin there."""
         if self.head is None:
             return set()
         return self._beyond(int(self.path(self.head)[1]) if self.neck == self.middle else self.neck)
 
     def _ends_at(self, head: int, neck: int) -> bool:
-        """Tell whether no limb reaches far out of what may be a head, as out of a chest."""
+        """Whether no limb reaches far out of a possible head, as it would out of a chest."""
         beyond = self._beyond(neck)
         tips = [self.places[tip] for tip in self.tips.values() if tip in beyond]
         reach = LONGEST_EAR * self.radii[head]
         return bool(np.all(np.abs(np.array(tips) - self.places[head]) <= reach))
 
     def _beyond(self, neck: int) -> set[int]:
-        """Return the nodes whose way from the middle leads through one."""
+        """Return the nodes whose path from the middle leads through a node."""
         found, ahead = {neck}, [neck]
         while ahead:
             node = ahead.pop()
@@ -114,7 +113,7 @@ class Anatomy:
         return found
 
     def _trunk(self) -> list[int]:
-        """Return the nodes that hold the trunk: two where limbs leave it far apart, or its middle.
+        """Return the trunk's nodes for handles: two if limbs leave it far apart, else its middle.
 
         The first is nearer to the neck, or higher.
         """
@@ -136,7 +135,7 @@ class Anatomy:
 
 
 def neck_along(radii: Floats) -> int | None:
-    """Return the number of the narrowest of some radii that grow again on both sides, if any."""
+    """Return the index of the narrowest radius with larger ones on both sides, if any."""
     after, before = np.maximum.accumulate(radii[::-1])[::-1], np.maximum.accumulate(radii)
     is_narrow = (radii <= NARROWED * after) & (radii <= HARDLY_NARROWED * before)
     is_narrow &= after >= SMALLEST_HEAD * radii[0]
@@ -146,7 +145,7 @@ def neck_along(radii: Floats) -> int | None:
 
 
 def joint_share(places: Complexes, radii: Floats, lengths: Floats) -> float:
-    """Return the part of a limb after which it bends most, or becomes thicker; or a half."""
+    """Return the share of a limb at which it bends most, or becomes thicker; else one half."""
     bend = bend_share(places, lengths)
     if bend is not None:
         return bend
@@ -158,7 +157,7 @@ def joint_share(places: Complexes, radii: Floats, lengths: Floats) -> float:
 
 
 def bend_share(places: Complexes, lengths: Floats) -> float | None:
-    """Return the part of a limb after which it bends most; None where it is straight."""
+    """Return the share of a limb at which it bends most; None for a straight limb."""
     shares = _joint_shares()
     before, here, after = (
         _along(shares + step, lengths, places.real)
@@ -169,17 +168,16 @@ def bend_share(places: Complexes, lengths: Floats) -> float | None:
 
 
 def _joint_shares() -> Floats:
-    """Return parts of a limb after which a joint may be."""
+    """Return the shares of a limb at which a joint may be."""
     return np.linspace(MARGIN, 1 - MARGIN, 29)
 
 
 def _along(shares: Floats, lengths: Floats, values: Floats) -> Floats:
-    """Return the values at parts of a limb."""
     return np.asarray(np.interp(shares * lengths[-1], lengths, values))
 
 
 def _most_within(measure: Floats, least: float) -> float | None:
-    """Return the share of what is most; at an end it would belong to a hand or a shoulder."""
+    """Return the share with the largest measure; none at an end, which is a hand or a shoulder."""
     most = int(measure.argmax())
     shares = _joint_shares()
     return float(shares[most]) if measure[most] >= least and 0 < most < len(shares) - 1 else None

@@ -1,4 +1,4 @@
-"""The plan of a body: on which legs it stands, where its head is, and to where it looks."""
+"""The plan of a body: its legs, its head, and its facing."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -11,46 +11,43 @@ from engine.domain.anatomy.anatomy import Anatomy, neck_along
 from engine.domain.anatomy.skeleton import Branch
 from engine.geometry import contains
 
-# What is so short, in radii of where it begins, and thins out so much between a quarter and three
-# of its length is a corner, not a leg.
+# A branch shorter than this, in radii of its root, that thins out this much between a quarter and
+# three quarters of its length is a corner, not a leg.
 SHORT, CORNER = 1.0, 0.5
-# Times as far to the side as down: a tail that lies on the ground.
+# Sideways over downwards: a tail that lies on the ground.
 LYING = 1.3
-# The ankle and the sole are so high above the lowest place of a leg's middle line, in its radii.
+# Heights of ankle and sole above the lowest place of a leg's middle line, in its radii.
 ANKLE, SOLE = 1.1, 0.6
-# Toes point somewhere where they reach so far beyond the ankle, in heights of the shape.
+# Toes point to a side if they reach this far beyond the ankle, in heights of the shape.
 TOES = 0.03
-# One leg alone is that of a body where its foot reaches so far.
+# A single leg counts as a body's leg if its foot reaches this far.
 FOOT = 0.06
-RISEN = 0.3  # heights by which the head is above the hips
-UPRIGHT = 2.0  # widths by which a body is tall at least whose legs are together
-# A leg that is lifted begins so near to the one that stands, in radii of where that one begins.
+RISEN = 0.3  # heights from hips to head, at least
+UPRIGHT = 2.0  # height over width of a body whose legs are together, at least
+# Distance of the roots of a lifted and a standing leg, in radii of the latter, at most.
 SAME_HIPS = 1.2
-# The trunk lies where legs leave it so far apart, in radii of it; where nothing rises above the
-# legs, where these stand so far apart in widths of the shape.
+# A trunk lies if legs leave it this far apart, in its radii. Without a part above the legs, they
+# must be this far apart in widths of the shape.
 LONG_TRUNK, WIDE_STANCE = 1.5, 0.25
-# From the front it is so much of a shape that its mirror image covers.
+# A shape is seen from the front if its mirror image covers this part of it.
 SYMMETRIC = 0.82
-# Below that, feet that point away from each other are a foot and a tail.
+# Below this symmetry, feet that point away from each other are a foot and a tail.
 LOPSIDED = 0.6
 SAMPLES = 48  # of the shape's box, along each side
-END = 0.35  # parts of what is between the legs: what leaves there is a head or a tail
+END = 0.35  # of the trunk between the legs: a head or a tail leaves it within this share
 
 
 class PlannedLeg(NamedTuple):
-    """A leg: the nodes from where it leaves the rest to its end, and its ankle among them."""
+    """A leg: the nodes from its root to its end, and its ankle among them."""
 
     path: Indices
     ankle: int
 
 
 class BodyPlan:
-    """The legs of a shape, and what is at the ends of its trunk.
+    """The legs of a shape, and the ends of its trunk.
 
-    Parameters
-    ----------
-    loops : sequence of complex128
-        The outline, counter-clockwise, and the outlines of the holes; y up.
+    `loops` are the outline, counter-clockwise, and the outlines of the holes; y up.
     """
 
     def __init__(self, loops: Sequence[Complexes]) -> None:
@@ -66,7 +63,6 @@ class BodyPlan:
         self.others = [end for end in self.anatomy.branches if end not in standing]
 
     def between(self, start: int, end: int) -> Indices:
-        """Return the nodes from one to another."""
         _, before = self.anatomy.skeleton.path_distances([start])
         path = [end]
         while path[-1] != start:
@@ -74,15 +70,14 @@ class BodyPlan:
         return np.array(path[::-1])
 
     def length(self, path: Indices) -> float:
-        """Return how long a path is."""
         return float(np.abs(np.diff(self.places[path])).sum())
 
     def handle_node(self, end: int) -> int:
-        """Return the node by which an end is held, in the middle of a round one."""
+        """Node to put a handle on for this end: the centre of a round end, else the tip."""
         return self.anatomy.tips.get(end, end)
 
     def meeting(self, one: int, other: int, third: int) -> int:
-        """Return the node at which the ways between three others meet."""
+        """Return the node at which the paths between three nodes meet."""
         on_way = set(self.between(one, other).tolist())
         return next(int(node) for node in self.between(third, one) if int(node) in on_way)
 
@@ -95,7 +90,7 @@ class BodyPlan:
         found = [(leg, lowest) for leg, lowest in map(self._leg, limbs) if leg is not None]
         legs = [leg for leg, lowest in found if lowest <= self.anatomy.ground]
         if len(legs) == 1:
-            # One that is lifted, as in a run, hangs on the same hips.
+            # A lifted leg, as in a run, has the same hips.
             hips = legs[0].path[0]
             reach = SAME_HIPS * self.radii[hips]
             middle = self.low.imag + self.tall / 2
@@ -109,7 +104,7 @@ class BodyPlan:
         return self._without_tail(sorted(legs, key=lambda leg: float(self.places[leg.ankle].real)))
 
     def _without_tail(self, legs: list[PlannedLeg]) -> list[PlannedLeg]:
-        """Return legs without a tail that lies on the ground as if it were the other foot."""
+        """Return legs without a tail that lies on the ground like a second foot."""
         if len(legs) != 2:
             return legs
         left, right = (self._toes(leg, -np.inf, np.inf) for leg in legs)
@@ -120,7 +115,7 @@ class BodyPlan:
         return legs[1:] if top.real > root.real else legs[:1]
 
     def _legs_together(self) -> list[PlannedLeg]:
-        """Return the leg of an upright body that has no limbs, but a head, and toes."""
+        """Return the single leg of an upright body that has a head and toes but no limbs."""
         way = self.longest()
         places, radii = self.places[way], self.radii[way]
         if len(way) < 4 or self.tall < UPRIGHT * self.wide or neck_along(radii) is None:
@@ -131,14 +126,14 @@ class BodyPlan:
         return [leg] if abs(self._toes(leg, -np.inf, np.inf)) > FOOT else []
 
     def _leg(self, branch: Branch) -> tuple[PlannedLeg | None, float]:
-        """Return a branch as a leg, None where it is none, and how low it comes."""
+        """Return a branch as a leg, or None, and its lowest height."""
         path = np.array(branch.path)
         places, radii, lengths = self.places[path], self.radii[path], np.array(branch.lengths)
         out = lengths[-1] - radii[-1]
         thin, thick = np.interp([0.25 * out, 0.75 * out], lengths, radii)
         lowest = float((places.imag - radii).min())
         if out < lengths[0]:
-            return None, lowest  # a corner: it does not leave the disc at its root
+            return None, lowest  # a corner: it stays in the disc at its root
         radius = float(np.median(radii[lengths <= out]))
 
         def reaches(height: float) -> int:
@@ -152,16 +147,16 @@ class BodyPlan:
 
     @cached_property
     def pairs(self) -> tuple[list[PlannedLeg], list[PlannedLeg]]:
-        """The legs on the left and on the right, parted where most is between them."""
+        """The legs on the left and on the right, separated at the largest gap."""
         feet = np.array([self.places[leg.ankle].real for leg in self.legs])
         parted = int(np.diff(feet).argmax()) + 1
         return self.legs[:parted], self.legs[parted:]
 
     @cached_property
     def trunk(self) -> Indices:
-        """The nodes from where the legs on the left leave the trunk to where those on the right do.
+        """The nodes between the roots of the left and of the right legs.
 
-        One alone where they leave at the same place.
+        One node if they have the same root.
         """
         ways = [
             self.between(int(one.path[0]), int(other.path[0]))
@@ -171,7 +166,7 @@ class BodyPlan:
         return min(ways, key=self.length)
 
     def _leaves_at(self, end: int) -> float:
-        """Return after which part of the trunk, from the left to the right, something leaves it."""
+        """Return the share of the trunk, from the left, at which a branch leaves it."""
         first, last = int(self.trunk[0]), int(self.trunk[-1])
         ways = (self.places[[self.meeting(first, last, end), last]] - self.places[first]).real
         return float(ways[0] / (ways[1] if abs(ways[1]) > 1e-9 else 1e-9))
@@ -194,18 +189,18 @@ class BodyPlan:
         return bool(feet[1] - feet[0] >= WIDE_STANCE * self.wide and not rises)
 
     def ahead(self, end: int) -> bool:
-        """Tell whether something leaves a trunk that lies at the end where it looks to."""
+        """Whether a branch leaves a lying trunk at the end that the body faces."""
         return (self._leaves_at(end) - 0.5) * self.facing > 0
 
     def thickness(self, end: int) -> float:
-        """Return how thick a branch is, halfway."""
+        """Return the radius of a branch at its middle."""
         branch = self.anatomy.branches[end]
         lengths = np.array(branch.lengths)
         out = lengths[-1] - self.radii[branch.path[-1]]
         return float(np.interp(0.5 * out, lengths, self.radii[branch.path]))
 
     def _bulk(self, end: int) -> float:
-        """Return how thick at most it is where something reaches out of a trunk that lies."""
+        """Return the largest radius where a branch leaves a lying trunk."""
         first, last = int(self.trunk[0]), int(self.trunk[-1])
         fork = self.meeting(first, last, end)
         way = self.between(fork, end)
@@ -214,14 +209,14 @@ class BodyPlan:
 
     @cached_property
     def head_end(self) -> int | None:
-        """The end of the axis that is in the head of a body that stands; None without one."""
+        """The end of the axis in the head of a standing body; None without a head."""
         if not self.others:
             return None
         return max(self.others, key=lambda end: self.places[end].imag + 2 * self.thickness(end))
 
     @cached_property
     def hips(self) -> int:
-        """The node at which the legs of a body that stands meet; that of one leg hangs there."""
+        """The node at which the legs of a standing body meet; of a single leg its root."""
         tip = self.head_end
         if not self.legs:
             longest = self.longest()
@@ -234,11 +229,11 @@ class BodyPlan:
 
     @cached_property
     def symmetry(self) -> float:
-        """Which part of the shape is covered by its mirror image, at the hips' middle."""
+        """Share of the shape covered by its mirror image, about the middle of the hips."""
         return self._symmetry_about(float(self.places[self.hips].real))
 
     def _symmetry_about(self, middle: float) -> float:
-        """Return which part of the shape is covered by its mirror image at an upright line."""
+        """Return the share of the shape covered by its mirror image about an upright line."""
         steps = (np.arange(SAMPLES) + 0.5) / SAMPLES
         grid: Complexes = self.low + steps * self.wide + 1j * steps[:, None] * self.tall
         inside = grid[contains(self.loops[0], grid.ravel()).reshape(grid.shape)]
@@ -253,7 +248,7 @@ class BodyPlan:
         return float((self.places[tip] - self.places[self.hips]).imag) >= RISEN * self.tall
 
     def longest(self) -> Indices:
-        """Return the longest way from end to end, from the lower end, or from the left one."""
+        """Return the longest path from end to end, from the lower or the left end."""
         ends = list(self.anatomy.branches)
         if len(ends) < 2:
             return np.array([self.anatomy.middle])
@@ -265,7 +260,7 @@ class BodyPlan:
 
     @cached_property
     def facing(self) -> int:
-        """Where it looks: 1 is to the right and -1 to the left."""
+        """Facing: 1 is to the right and -1 to the left."""
         votes = 2.0 * sum(np.sign(toes) * (abs(toes) > TOES) for toes in self.toes)
         if self.is_lying:
             thick = [
@@ -286,7 +281,7 @@ class BodyPlan:
     def toes(self) -> list[float]:
         """How far feet reach to the right of their ankles, less how far to the left, in heights.
 
-        Outlines tell that better than middle lines, which end in one of a foot's corners.
+        Outlines show this better than middle lines, which end in one of a foot's corners.
         """
         if not self.legs:
             return []
@@ -308,7 +303,7 @@ class BodyPlan:
 
 
 def _crossings(outline: Complexes, height: float) -> Floats:
-    """Return where an outline crosses a level line, from the left."""
+    """Return the crossings of an outline with a level line, from the left."""
     start, end = outline, np.roll(outline, -1)
     crossing = (start.imag > height) != (end.imag > height)
     start, end = start[crossing], end[crossing]

@@ -1,28 +1,28 @@
-"""What is a chain, and its joints along the longest way through it."""
+"""Recognition of chains, and their joints along the longest path."""
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 from engine.domain.anatomy.body_plan import BodyPlan
 
-# So many times as long as it is wide a shape is a chain, and a fish where it has a fin at its end.
+# Length over width of a chain, and of a fish with a fin at its end.
 LONG, LONG_FISH = 3.4, 1.7
-FIN = 0.4  # parts of the way along a fish that its fin takes at most
-ALIKE = 2.0  # times by which the two tips of a fin are as long as each other
-# Parts of a shape's area that are along one path.
+FIN = 0.4  # largest share of a fish's length taken by its fin
+ALIKE = 2.0  # largest ratio of the lengths of a fin's two tips
+# Share of a shape's area along one path.
 ALONG = 0.75
-# From joint to joint it is so many times as far as the shape is thick, if there are enough of them.
+# Distance between joints over the thickness of the shape, if that gives enough joints.
 SPACING = 0.9
 FEWEST, USUAL, MOST = 4, 7, 16
-TURN = 0.8  # radians by which it turns from joint to joint at most, if that many suffice
-# An end is the head where it is so many times as thick as the other one.
+TURN = 0.8  # largest angle in radians from joint to joint, if that many joints suffice
+# The head is the end that is this many times as thick as the other.
 THICKER = 1.15
-ENDS = 0.15  # parts of the way that are its ends
-WINDOW = 8  # nodes over which it has a direction
+ENDS = 0.15  # share of the length at each end
+WINDOW = 8  # nodes over which a direction is measured
 
 
 def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
-    """Return joints from the end that leads, or by which it hangs, to the other."""
+    """Return the joints of a chain, from its leading or fixed end to the other."""
     way = plan.longest()
     nodes = way.tolist()
     first, last = (
@@ -30,7 +30,7 @@ def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
     )
     fin = find_fin(plan, way)
     if fin is not None:
-        # A fin has two tips; the chain ends where it begins.
+        # A fin has two tips; the chain ends where the fin begins.
         at = nodes.index(fin)
         first, last = (at, last) if at < len(nodes) / 2 else (first, at)
     places, radii = plan.places[way[first : last + 1]], plan.radii[way[first : last + 1]]
@@ -49,7 +49,7 @@ def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
 
 
 def _count(places: Complexes, radii: Floats, lengths: Floats) -> int:
-    """Return how many joints a chain has: more where it is long and thin, or turns a lot."""
+    """Return the number of joints: more for a long, thin or strongly curved chain."""
     usual = 1 + round(float(lengths[-1]) / (SPACING * 2 * float(np.median(radii))))
     steps = places[WINDOW:] - places[:-WINDOW]
     turning = float(np.abs(np.diff(np.unwrap(np.angle(steps)))).sum())
@@ -57,7 +57,7 @@ def _count(places: Complexes, radii: Floats, lengths: Floats) -> int:
 
 
 def _ends_with_its_head(places: Complexes, radii: Floats, lengths: Floats) -> bool:
-    """Tell whether the last end is the thicker one; of two alike, the upper or the right one."""
+    """Whether the last end is the thicker one; of equal ends, the upper or the right one."""
     starts = float(radii[lengths <= ENDS * lengths[-1]].mean())
     ends = float(radii[lengths >= (1 - ENDS) * lengths[-1]].mean())
     if max(starts, ends) >= THICKER * min(starts, ends):
@@ -67,7 +67,7 @@ def _ends_with_its_head(places: Complexes, radii: Floats, lengths: Floats) -> bo
 
 
 def is_chain(plan: BodyPlan) -> bool:
-    """Tell whether all of it is along one path that is long, or has the stalk of a fish."""
+    """Whether the whole shape lies along one path that is long, or has the stalk of a fish."""
     if len(plan.anatomy.branches) < 2 or plan.anatomy.holes:
         return False
     way = plan.longest()
@@ -84,7 +84,7 @@ def is_chain(plan: BodyPlan) -> bool:
 
 
 def find_fin(plan: BodyPlan, way: Indices) -> int | None:
-    """Return the node of a way at which a fin of two tips begins, None without one."""
+    """Return the node of a path at which a fin of two tips begins, None without one."""
     on_way, whole = way.tolist(), plan.length(way)
     for end in set(plan.anatomy.branches) - {on_way[0], on_way[-1]}:
         fork = plan.meeting(on_way[0], on_way[-1], end)

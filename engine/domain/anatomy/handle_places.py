@@ -1,4 +1,4 @@
-"""Where handles are useful: on the body, at the tips of its limbs, and where these bend."""
+"""Suggested handles: on the body, at the tips of limbs, and at their joints."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,22 +9,23 @@ from engine.domain.anatomy.anatomy import NECK, Anatomy, joint_share
 from engine.domain.anatomy.names import Limb, SuggestedHandle, name_legs, name_limbs
 
 CORNERS_OF_A_RING = 4
-# The handle of a head is so far above its middle, or that of another round end, in radii: not in a
-# face.
+# The handle of a head or another round end lies this far above its middle, in radii: not in a face.
 CROWN = 0.65
-LEAST_NECK = 0.4  # radii by which the neck is away from the trunk's handles, to have one
-# A round end has at least such a part of the middle's radius, and so many times that before it.
+LEAST_NECK = 0.4  # radii: least distance of the neck's handle from the trunk's handles
+# A round end has at least this part of the middle's radius, and this many times the radius before
+# it.
 ROUND_END, SWOLLEN = 0.55, 1.15
-# Limbs that are so many radii long have a joint, legs sooner; each so many more give one more.
+# Least length of limbs with a joint, in radii, and of legs; each further length of the third number
+# adds a joint.
 JOINTED, JOINTED_LEG, SUPPLE = 5.0, 2.4, 14.0
 MOST_JOINTS = 3
-CLEAR = 1.2  # radii by which a joint is away from other handles
-# On a head, what is at most such a part as thick is an ear or a horn.
+CLEAR = 1.2  # radii: least distance of a joint from other handles
+# On a head, a tip with at most this part of its thickness is an ear or a horn.
 THIN_ON_HEAD = 0.45
 
 
 def suggest_handles(loops: Sequence[Complexes]) -> list[SuggestedHandle]:
-    """Return places for handles: on the body and its head, at the tips and joints of limbs.
+    """Suggest handles on the body and its head, and at the tips and joints of limbs.
 
     Parameters
     ----------
@@ -38,9 +39,9 @@ def suggest_handles(loops: Sequence[Complexes]) -> list[SuggestedHandle]:
 
     Notes
     -----
-    Ways around holes are cut where the shape only touches itself. Spurs of the medial axis that
-    reach out of the body by little are cut off, the least one first; what is left are limbs. The
-    middle is the node that is nearest to all tips, among those where the shape is thick.
+    Cycles around holes are cut where the shape only touches itself. Spurs of the medial axis that
+    hardly reach out of the body are cut off, the least one first; the remaining branches are limbs.
+    The middle is the node that is nearest to all tips, among nodes where the shape is thick.
     """
     body = _Body(loops)
     found = body.trunk_and_head()
@@ -57,10 +58,10 @@ def suggest_handles(loops: Sequence[Complexes]) -> list[SuggestedHandle]:
 
 
 class _Body(Anatomy):
-    """A shape's anatomy, and where it is held."""
+    """A shape's anatomy, and its handles."""
 
     def trunk_and_head(self) -> list[SuggestedHandle]:
-        """Return the handles of trunk, neck and head, the last above what may be a face."""
+        """Return the handles of trunk, neck and head, the last above a possible face."""
         names = ["chest", "hips"] if len(self.trunk) > 1 else ["body"]
         found = [
             SuggestedHandle(complex(self.places[node]), name)
@@ -71,20 +72,19 @@ class _Body(Anatomy):
             up = self.radii[self.head] * (head - neck) / abs(head - neck)
             apart = np.abs(self.places[self.trunk] - (head - up)).min()
             narrow = self.radii[self.neck]
-            # The head turns where the neck enters its disc; a wide one may have a face there.
+            # The head rotates where the neck enters its disc; a wide neck may have a face there.
             if narrow <= NECK * self.radii[self.head] and apart > LEAST_NECK * narrow:
                 found.append(SuggestedHandle(complex(head - up), "neck"))
             found.append(SuggestedHandle(complex(head + CROWN * up), "head"))
         return found
 
     def limbs(self) -> Iterator[Limb]:
-        """Yield the limbs."""
         trunk = np.unique([self.middle, *self.trunk])
         taken = list(self.places[self.trunk])
         for end, tip in self.tips.items():
             path = self.path(tip)
             if end in self.in_head:
-                # Ears and horns; what is thick is a nose.
+                # Thin tips are ears and horns; a thick one is a nose.
                 if self.radii[tip] <= THIN_ON_HEAD * self.radii[self.head]:
                     yield Limb(complex(self.places[tip]), [], is_leg=False)
                 continue
@@ -104,7 +104,7 @@ class _Body(Anatomy):
             yield Limb(place, joints, is_leg)
 
     def _end(self, path: Indices) -> complex:
-        """Return where a limb's tip is held; a round end beyond its middle, where a face may be."""
+        """Return the place of a limb tip's handle; in a round end beyond the middle, off a face."""
         places, radii = self.places[path], self.radii[path]
         wide = int(np.where(np.abs(places - places[-1]) <= 2 * radii[-1], radii, 0.0).argmax())
         inner = np.flatnonzero(np.abs(places[:wide] - places[wide]) >= radii[wide])
@@ -115,7 +115,7 @@ class _Body(Anatomy):
         return complex(places[wide] + CROWN * radii[wide] * onward / abs(onward))
 
     def _joints(self, limb: Indices, least: float) -> list[int]:
-        """Return the nodes at which a limb is held between the body and its tip."""
+        """Return the nodes for handles between the body and a limb's tip."""
         places, radii = self.places[limb], self.radii[limb]
         if len(limb) < 3:
             return []
@@ -130,7 +130,7 @@ class _Body(Anatomy):
         return [int(limb[np.abs(lengths - share * lengths[-1]).argmin()]) for share in shares]
 
     def around_holes(self, held: Sequence[complex]) -> Iterator[complex]:
-        """Yield more places, until ways around holes are held all around."""
+        """Yield more places, until cycles around holes have handles all around."""
         ring = np.array(self.skeleton.ring_nodes(), dtype=np.intp)
         if not ring.size:
             return
@@ -144,7 +144,7 @@ class _Body(Anatomy):
         chosen = self.kept[nearest].tolist()
         while True:
             away = self.skeleton.path_distances(chosen)[0][ring]
-            # In four places each half of a ring is held at its ends and in its middle.
+            # With four handles each half of a ring has one at its ends and in its middle.
             if away.max() < 0.75 * around / CORNERS_OF_A_RING:
                 return
             chosen.append(int(ring[away.argmax()]))

@@ -11,36 +11,36 @@ from engine.domain.anatomy.chain import suggest_chain_joints
 from engine.geometry import contains
 from engine.geometry.motions import BodyKind
 
-CROWN = 0.65  # radii above the middle of a head, where no face is
-# A head without a neck is where the shape comes so near to its top, in heights.
+CROWN = 0.65  # radii above the middle of a head, off the face
+# A head without a neck is the first node whose disc comes this near to the top, in heights.
 BELOW_TOP = 0.08
-# Radii of a place from which a limb reaches out: where the limb's root is.
+# Distance of a limb's root from the node it leaves, in radii of the node.
 ROOT = 0.8
-# The chest is where the trunk is last so thick as at the hips, at most after such a part of it.
-THICK_HEAD = 0.5  # of a trunk that lies, so much of the chest's thickness
+# The chest is the last place where the trunk has this part of the hips' thickness, at most at this
+# share of it.
+THICK_HEAD = 0.5  # of a lying trunk: thickness of the head over the chest's
 THICK_CHEST, HIGHEST_CHEST = 0.6, 0.75
-LOWEST_ARM = 0.35  # parts of what is between hips and neck, below which a limb is a tail
-LEAST_NECK = 0.2  # of the way from chest to head, by which a neck is away from the chest
+LOWEST_ARM = 0.35  # share from hips to neck below which a limb is a tail
+LEAST_NECK = 0.2  # share from chest to head: least distance of a neck from the chest
 LEAST_TAIL = 0.12  # heights of the shape
-APART = 0.5  # radii of the hips by which the chest is away from them
-CROTCH = 1.3  # radii of a leg by which hips are above what parts the legs
+APART = 0.5  # radii of the hips: least distance of the chest
+CROTCH = 1.3  # radii of a leg from the crotch up to the hips
 
 
 def suggest_joints(loops: Sequence[Complexes], kind: BodyKind) -> Mapping[str, complex]:
-    """Return where the joints of a kind of body may be in a shape.
+    """Suggest the joints of a kind of body in a shape.
 
     Parameters
     ----------
     loops : sequence of complex128
         The outline, counter-clockwise, and the outlines of the holes; y up.
-    kind : BodyKind
 
     Returns
     -------
     mapping of str to complex
-        Places inside the shape by the names of joints, in the kind's order; those of limbs that
-        are not found are left out. From the front `.L` is the side on the right of the picture;
-        from the side the legs that are ahead, or of four the outer ones.
+        Places inside the shape by the names of joints, in the kind's order, without limbs that were
+        not found. From the front `.L` is the side on the right of the picture. From the side it
+        means the legs ahead, or of four legs the outer ones.
     """
     plan = BodyPlan(loops)
     if not kind.parents:
@@ -61,7 +61,7 @@ def suggest_joints(loops: Sequence[Complexes], kind: BodyKind) -> Mapping[str, c
 
 
 class _JointPath:
-    """Nodes in their order, and how far they are along it."""
+    """Nodes in order, and their distances along the path."""
 
     def __init__(self, plan: BodyPlan, nodes: Indices) -> None:
         self.nodes = nodes
@@ -69,18 +69,18 @@ class _JointPath:
         self.lengths = np.append(0.0, np.cumsum(np.abs(np.diff(self.places))))
 
     def leaving(self, radii: float) -> int:
-        """Return the number of the node at which it leaves the disc around its first one."""
+        """Return the index of the node at which the path leaves the disc around its first one."""
         inside = np.abs(self.places - self.places[0]) <= radii * self.radii[0]
         return min(int(np.flatnonzero(inside)[-1]) + 1, len(self.nodes) - 1)
 
     def part(self, first: int, last: int) -> tuple[Complexes, Floats, Floats]:
-        """Return places, radii and lengths from a node to another."""
+        """Return places, radii and lengths from one node to another."""
         last = max(last, first + 1)
         lengths = self.lengths[first : last + 1]
         return self.places[first : last + 1], self.radii[first : last + 1], lengths - lengths[0]
 
     def bent(self, first: int, last: int) -> complex:
-        """Return where a limb between two nodes has its joint."""
+        """Return the joint of a limb between two nodes."""
         places, radii, lengths = self.part(first, last)
         if len(places) < 3:
             return complex(places[0])
@@ -89,7 +89,7 @@ class _JointPath:
 
 
 def _limb(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, complex, complex]:
-    """Return the root, the joint and the tip of a limb that reaches out at a node."""
+    """Return the root, the joint and the tip of a limb that leaves the body at a node."""
     way = _JointPath(plan, plan.between(start, end))
     root = way.leaving(ROOT)
     nodes = way.nodes.tolist()
@@ -103,7 +103,7 @@ def _leg(plan: BodyPlan, start: int, leg: PlannedLeg) -> tuple[complex, complex,
 
 
 def _head(plan: BodyPlan, way: _JointPath, *, is_frontal: bool) -> tuple[dict[str, complex], int]:
-    """Return the joints of head and neck, and with which node of the way the trunk ends."""
+    """Return the joints of head and neck, and the index of the node at which the trunk ends."""
     radii = way.radii
     at = neck_along(radii)
     if at is not None:
@@ -159,10 +159,9 @@ def _sides(
     *,
     is_frontal: bool,
 ) -> dict[str, complex]:
-    """Return the joints of one pair of limbs, the longest ones that there are.
+    """Return the joints of one pair of limbs, the longest found.
 
-    From the front each side has its own; from the side the leg that is ahead goes with the arm
-    that is not.
+    From the front each side has its own limb. From the side the leg ahead goes with the arm behind.
     """
 
     def reach(limb: tuple[int, tuple[complex, complex, complex]]) -> float:
@@ -203,7 +202,7 @@ def _arms_and_tail(
         limb = _limb(plan, fork, end, plan.handle_node(end))
         share = way.lengths[at] / max(way.lengths[top], 1e-9)
         root, _, tip = limb
-        # Of a short trunk everything leaves at one place.
+        # On a short trunk all limbs leave at one place.
         is_level = (root - plan.places[fork]).imag >= -0.5 * plan.radii[fork]
         is_behind = (tip.real - plan.places[nodes[0]].real) * plan.facing < 0
         if share >= LOWEST_ARM or (is_level and (is_frontal or not is_behind)):
@@ -214,7 +213,7 @@ def _arms_and_tail(
 
 
 def _hips(plan: BodyPlan, node: int, legs: list[PlannedLeg]) -> complex:
-    """Return where the hips are: above what parts the legs."""
+    """Return the place of the hips, above the crotch."""
     place, radius = complex(plan.places[node]), float(plan.radii[node])
     if len(legs) < 2:
         return place
@@ -228,7 +227,7 @@ def _hips(plan: BodyPlan, node: int, legs: list[PlannedLeg]) -> complex:
 
 
 def _chest(way: _JointPath, top: int, hips: complex, roots: list[complex]) -> complex:
-    """Return where the chest is: between the arms, or where the trunk is last thick."""
+    """Return the place of the chest: between the arms, or where the trunk is last thick."""
     trunk = slice(0, top + 1)
     places, radii, lengths = way.places[trunk], way.radii[trunk], way.lengths[trunk]
     if roots:
@@ -254,7 +253,7 @@ def _with_neck_apart(found: dict[str, complex]) -> dict[str, complex]:
 
 
 def _thickest(plan: BodyPlan, fork: int, ends: list[int]) -> complex:
-    """Return where it is thickest around a fork, on the ways to what reaches out there."""
+    """Return the thickest place around a fork, on the paths to its ends."""
     nodes = np.unique(
         np.concatenate([plan.between(fork, end) for end in ends] + [np.array([fork])])
     )
@@ -263,7 +262,7 @@ def _thickest(plan: BodyPlan, fork: int, ends: list[int]) -> complex:
 
 
 def _lying(plan: BodyPlan) -> dict[str, complex]:
-    """Return the joints of a body that lies on legs below both of its ends."""
+    """Return the joints of a body with legs below both ends of a lying trunk."""
     if len(plan.legs) < 2:
         return _standing(plan, is_frontal=False)
     found: dict[str, complex] = {}
@@ -273,7 +272,7 @@ def _lying(plan: BodyPlan) -> dict[str, complex]:
         (hips, plan.pairs[hind], ("knee", "foot")),
         (chest, plan.pairs[front], ("elbow", "hand")),
     ):
-        # The outer legs are those on the near side, as a rule.
+        # The outer legs are usually those on the near side.
         outer = pair if (start == hips) == (plan.facing > 0) else pair[::-1]
         for side, leg in zip("LR", (outer[0], outer[-1])[: len(outer)], strict=False):
             limb = _leg(plan, start, leg)

@@ -1,4 +1,4 @@
-"""What kind of body a shape looks like."""
+"""Guess of the kind of body."""
 
 from collections.abc import Sequence
 
@@ -13,22 +13,14 @@ MOST_LEGS, MOST_LIMBS = 4, 9
 def guess_kind(loops: Sequence[Complexes]) -> BodyKind:
     """Return the kind of body that a shape looks like.
 
-    Parameters
-    ----------
-    loops : sequence of complex128
-        The outline, counter-clockwise, and the outlines of the holes; y up.
-
-    Returns
-    -------
-    BodyKind
-        Of the drawing as it is: legs stand on the ground, a chain is all along one path; what
-        is neither is anything.
+    `loops` are the outline, counter-clockwise, and the outlines of the holes; y up. The drawing is
+    judged as it stands: legs are on the ground, a chain lies along one path; other shapes are
+    without joints.
     """
     return _kind(BodyPlan(loops))
 
 
 def _kind(plan: BodyPlan) -> BodyKind:
-    """Return what kind of body it is."""
     count = len(plan.legs)
     if count > MOST_LEGS or len(plan.anatomy.branches) > MOST_LIMBS:
         return find_kind("anything")
@@ -37,7 +29,7 @@ def _kind(plan: BodyPlan) -> BodyKind:
     if count > 1:
         return find_kind("biped-front" if _is_frontal(plan) else "biped-side")
     is_long = is_chain(plan)
-    # What is low at a fish is a fin.
+    # The low part of a fish is a fin.
     stands = count == 1 and abs(plan.toes[0]) > FOOT and plan.is_upright
     if stands and not (is_long and plan.wide > plan.tall):
         return find_kind("biped-side")
@@ -45,7 +37,7 @@ def _kind(plan: BodyPlan) -> BodyKind:
 
 
 def _is_frontal(plan: BodyPlan) -> bool:
-    """Tell whether a body on two legs is seen from the front, by its toes or its symmetry."""
+    """Whether a body on two legs is seen from the front, by its toes or its symmetry."""
     left, right = plan.toes[0], plan.toes[-1]
     if abs(left + right) > 2 * TOES:
         return False

@@ -1,9 +1,9 @@
-"""The medial axis of a shape: what is in the middle between its sides, and how far from them.
+"""The medial axis of a shape: the middle between its sides, and the distance from them.
 
-It is made of the triangles of the constrained Delaunay triangulation of a sampled boundary,
-each linked to its neighbours: their circumcentres tend to the medial axis (Brandt and Algazi,
-"Continuous skeleton computation by Voronoi diagram", 1992), and the links to its connectivity
-(Prasad, "Morphological analysis of shapes", 1997).
+Its nodes are the triangles of the constrained Delaunay triangulation of a sampled boundary, each
+linked to its neighbours. The circumcentres tend to the medial axis (Brandt and Algazi, "Continuous
+skeleton computation by Voronoi diagram", 1992), and the links to its connectivity (Prasad,
+"Morphological analysis of shapes", 1997).
 """
 
 from collections.abc import Sequence
@@ -25,15 +25,16 @@ from engine.geometry import (
 
 # Of the length of the whole boundary: the longest of its segments that are triangulated.
 STEP = 1 / 300
-# Of the circumradius: so far from the boundary is the centre of a circle that is empty, but for
-# what the samples leave out.
+# Of the circumradius: least distance of the centre of an empty circle from the boundary. Samples
+# miss parts of the boundary.
 EMPTY = 0.7
 
 
 class MedialAxis(NamedTuple):
     """A graph of n nodes in the middle of a shape; links (m, 2) are pairs of them.
 
-    Radii are distances from the boundary, and gates (m,) half as wide as where links lead through.
+    Radii are distances from the boundary, and gates (m,) half the widths of the openings that links
+    lead through.
     """
 
     places: Complexes
@@ -46,10 +47,10 @@ def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
     """Return the medial axis of a shape, with a spur into each convex corner.
 
     The loops are its outline, counter-clockwise, and those of its holes. A node stands for a
-    triangle: at its circumcentre, which is as far from the boundary as from the corners if the
-    circle is empty. Where the samples are too far apart for that, it is between the midpoints of
+    triangle. It lies at the circumcentre, which is as far from the boundary as from the corners if
+    the circle is empty. Where the samples are too sparse for that, it lies between the midpoints of
     the sides that the triangle shares. The triangulation has no inner points, so that without holes
-    the graph is a tree. Vertices on the way of straight edges change nothing.
+    the graph is a tree. Vertices inside straight edges change nothing.
     """
     loops = [corners_of(loop) for loop in loops]
     step = STEP * sum(float(abs(edge_vectors(loop)).sum()) for loop in loops)

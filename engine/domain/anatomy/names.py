@@ -1,4 +1,4 @@
-"""Suggested handles by name: by the side on which they are, or as feet and knees."""
+"""Names of suggested handles: by side, or as feet and knees."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -18,22 +18,18 @@ SIDES = (
 
 
 class SuggestedHandle(NamedTuple):
-    """A place for a handle, and what is there in words."""
-
     place: complex
     name: str
 
 
 class Limb(NamedTuple):
-    """Where a limb of the body is held."""
-
     tip: complex
     joints: list[complex]
     is_leg: bool
 
 
 def name_legs(legs: list[Limb]) -> Iterator[SuggestedHandle]:
-    """Yield the handles of legs: of a left and a right one, or by numbers from the left."""
+    """Yield the handles of legs, named left and right, or numbered from the left."""
     legs = sorted(legs, key=lambda leg: leg.tip.real)
     names = ["left {}", "right {}"]
     if len(legs) != 2:
@@ -43,7 +39,7 @@ def name_legs(legs: list[Limb]) -> Iterator[SuggestedHandle]:
 
 
 def name_limbs(limbs: list[Limb], middle: complex) -> Iterator[SuggestedHandle]:
-    """Yield the handles of other limbs, named by the side on which their tips are."""
+    """Yield the handles of other limbs, named by the side of their tips."""
     counts: dict[str, int] = {}
     for limb in sorted(limbs, key=lambda limb: -limb.tip.imag):
         sector = round(float(np.angle(limb.tip - middle)) / (np.pi / 4)) % 8

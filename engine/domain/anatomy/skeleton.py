@@ -1,4 +1,4 @@
-"""The medial axis without its spurs: a body and its limbs, as paths from place to place."""
+"""The medial axis without its spurs: a body and its limbs, as paths of nodes."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -10,22 +10,22 @@ from scipy.sparse.csgraph import dijkstra
 from engine.arrays import Floats, Indices
 from engine.domain.anatomy.medial_axis import MedialAxis
 
-# A limb reaches out of the body by so much of the body's half width where it leaves it, and of the
+# A limb reaches out of the body by these parts of the body's half width at its root, and of the
 # diameter. Corners of a square reach out by 0.41, those of a regular triangle by 1.
 LEAST_REACH, LEAST_SHARE = 0.6, 0.05
-# The handle of a sharp tip, of which this many radii of the largest disc lie before its middle, is
-# at this share of the limb; that of a round one is where discs further inwards, within so many
-# radii, are hardly larger.
+# A node this many radii or more from the tip belongs to a sharp tip; the handle is at this share of
+# the limb. In a round tip, the handle is at the first node whose discs further inwards, within so
+# many radii, are hardly larger.
 ROUND, SHARP = 1.5, 0.1
 AHEAD, LEVEL = 0.6, 1.2
 THIN = 0.25
-# A way around a hole is pinched where so near to a gate, in half widths of it, either side is so
+# A cycle around a hole is pinched at a gate if within so many half widths of it both sides are so
 # many times as wide.
 PINCH_LENGTH, PINCH = 4.0, 1.6
 
 
 class Branch(NamedTuple):
-    """The nodes from an end of the axis up to where it forks, and how far that end reaches out."""
+    """The nodes from an end of the axis up to its fork, and how far the end reaches out."""
 
     path: list[int]
     lengths: list[float]
@@ -36,11 +36,7 @@ class Branch(NamedTuple):
 class Skeleton:
     """The axis as a graph, while pinches and spurs are cut off.
 
-    Parameters
-    ----------
-    axis : MedialAxis
-    diameter : float
-        Of the shape.
+    `diameter` is that of the shape.
     """
 
     def __init__(self, axis: MedialAxis, diameter: float) -> None:
@@ -65,14 +61,14 @@ class Skeleton:
             lengths.append(lengths[-1] + way)
         at = len(path) - 1
         if len(self.near[path[-1]]) < 2:
-            # It forks nowhere: each end reaches out of the middle.
+            # Without a fork, each end reaches out of the middle.
             at = int(np.searchsorted(lengths, lengths[-1] / 2))
         radius = float(self.axis.radii[path[at]])
         needed = max(LEAST_REACH * radius, LEAST_SHARE * self.diameter)
         return Branch(path, lengths, lengths[at] - radius, needed)
 
     def cut_spurs(self) -> dict[int, Branch]:
-        """Cut off what reaches out too little, the least first; return what is left by its end."""
+        """Cut off branches that hardly reach out, the least first; return the others by end."""
         branches = {
             node: self.branch(node) for node, others in self.near.items() if len(others) == 1
         }
@@ -97,17 +93,17 @@ class Skeleton:
         return branches
 
     def tip(self, branch: Branch) -> int:
-        """Return where on a branch a handle holds its end: in the middle of a round one."""
+        """Return the node for the handle of a branch's end: the middle of a round one."""
         radii, lengths = self.axis.radii[branch.path], np.array(branch.lengths)
         inwards = np.interp(lengths + AHEAD * radii, lengths, radii)
         is_sharp = lengths >= ROUND * radii
         is_tip = np.where(is_sharp, lengths >= SHARP * branch.reach, inwards <= LEVEL * radii)
-        # What is thin at the end of a thick limb, as a thumb, is not what the limb is held by.
+        # A thin end of a thick limb, such as a thumb, does not get the handle.
         is_tip &= radii >= THIN * np.median(radii)
         return branch.path[int(is_tip.argmax())] if is_tip.any() else branch.path[-1]
 
     def cut_pinches(self) -> None:
-        """Part what touches, as two boots do: cut ways around holes where they are pinched."""
+        """Cut cycles around holes at pinches, where parts only touch, as two boots do."""
         places, radii, links, gates = self.axis
         on_ring = np.isin(links, self.ring_nodes()).all(axis=1)
         for link in sorted(np.flatnonzero(on_ring), key=lambda link: float(gates[link])):
@@ -119,13 +115,13 @@ class Skeleton:
             self.near[other].discard(one)
             sides = [self.path_distances([end])[0] for end in (one, other)]
             is_pinched = all((radii[away <= reach] >= least).any() for away in sides)
-            # What an earlier cut has opened is not parted wholly.
+            # A cycle that an earlier cut has opened is not cut again.
             if np.isinf(sides[0][other]) or not is_pinched:
                 self.near[one].add(other)
                 self.near[other].add(one)
 
     def open_rings(self, ground: float) -> None:
-        """Cut all ways around holes: between feet on the ground, else where they are narrowest."""
+        """Cut all cycles around holes: between feet on the ground, else at their narrowest."""
         places, _, links, gates = self.axis
         heights = places.imag[links].mean(axis=1)
         order = np.lexsort((gates, np.where(heights <= ground, heights, np.inf)))
@@ -138,14 +134,14 @@ class Skeleton:
                 self.near[other].discard(one)
                 if np.isfinite(self.path_distances([one])[0][other]):
                     break
-                # It led from one ring to another.
+                # The link connects two rings.
                 self.near[one].add(other)
                 self.near[other].add(one)
 
     def path_distances(self, starts: Iterable[int]) -> tuple[Floats, Indices]:
-        """Return how far nodes are along it from the nearest of some, inf if cut off or not linked.
+        """Return the path distance of nodes from the nearest start, inf if cut off or unconnected.
 
-        And for each the node before it on that way; negative where there is none.
+        For each node also the node before it on the path; negative if there is none.
         """
         links = [(node, other) for node, others in self.near.items() for other in others]
         rows, columns = np.array(links, dtype=np.intp).reshape(-1, 2).T
@@ -158,7 +154,7 @@ class Skeleton:
         return away, before.astype(np.intp)
 
     def ring_nodes(self) -> list[int]:
-        """Return the nodes that lie on a way around a hole, or between two of those."""
+        """Return the nodes that lie on a cycle around a hole, or between two such cycles."""
         near = {node: set(others) for node, others in self.near.items()}
         ends = [node for node, others in near.items() if len(others) < 2]
         while ends:

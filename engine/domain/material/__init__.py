@@ -1,4 +1,4 @@
-"""Where a drawing is stiff: limbs around bones, what a brush reaches, and what is carried over.
+"""Stiffness of a drawing: limbs around bones, brush strokes, and transfer to a new outline.
 
 In: the loops of a domain, and places in it.
 Out: shares from 0 to 1 along the loops, and stiffnesses there.

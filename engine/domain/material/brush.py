@@ -1,4 +1,4 @@
-"""What a brush reaches: the outline near it, and by that what lies behind, as deep as a limb is."""
+"""Effect of a brush stroke on the vertices of the outline."""
 
 from collections.abc import Sequence
 
@@ -14,11 +14,11 @@ TINY = 1e-9
 def brush_weights(
     loops: Sequence[Complexes], places: Complexes, radius: float, softness: float
 ) -> Floats:
-    """Return how much the vertices of a drawing's loops get of a stroke, 0 to 1.
+    """Return the effect of a stroke on the vertices of a drawing's loops, 0 to 1.
 
-    A dab acts on the outline within its radius that is seen from its centre, so that it does not
-    reach across a gap; where it lies beside the drawing, on all of that. A dab on a long edge acts
-    on the ends of that, the more the nearer they are.
+    A dab acts on the outline within its radius that is visible from its centre, so that it does not
+    reach across a gap. Beside the drawing it acts on all of the outline within its radius. A dab on
+    a long edge acts on the edge's ends, more on the nearer one.
 
     Parameters
     ----------
@@ -26,14 +26,13 @@ def brush_weights(
         The outline, and those of holes.
     places : complex128, shape (d,)
         The centres of the dabs.
-    radius : float
     softness : float
-        The part of the radius over which the share falls to 0 at its edge, 0 to 1.
+        The part of the radius over which the effect falls to 0 at its edge, 0 to 1.
 
     Returns
     -------
     float64, shape (p,)
-        All 0 where the stroke reaches no outline.
+        All 0 if the stroke reaches no outline.
     """
     places = as_points(places, "The dabs of a stroke")
     radius = as_number(radius, "The radius of a brush", above=0)
@@ -47,7 +46,7 @@ def brush_weights(
     following = next_on_loop(starts, len(corners))
     for place in places.tolist():
         along = np.clip(((place - corners) / sides).real, 0.0, 1.0)
-        # The nearest outline has all of it, however deep inside the brush is.
+        # The nearest outline gets the full effect, at any depth inside the brush.
         depth = min(float(np.abs(corners + along * sides - place).min()), radius)
         for part in (along, np.zeros(len(corners))):
             at = corners + part * sides

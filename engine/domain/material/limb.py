@@ -1,8 +1,8 @@
-"""The limb around a bone: as wide as it is, without its joints.
+"""The limb around a bone, without its joints.
 
-A bone is a line in the drawing. Across it, at places along it, the outline is at some distance on
-either side; a limb is about equally thick along most of it, so that the distances where the bone
-enters the trunk, which are much larger, do not belong to it.
+A bone is a line in the drawing. At places along the bone, the outline has a distance on either
+side. A limb is about equally thick along most of the bone. Much larger distances, where the bone
+enters the trunk, do not belong to the limb.
 """
 
 from collections.abc import Sequence
@@ -16,11 +16,11 @@ from engine.geometry import ON_OUTLINE, as_xy, diameter, shapely_region
 
 # Places along a bone at which its limb is measured.
 PLACES = 48
-# Half of a limb is on each side at least so wide as at this share of the places, and points
-# belong to it that are at most so many times as far away; from there on the share falls to 0.
+# The half width on each side is this quantile of the places' distances. Points up to so many times
+# the half width belong to the limb; from there to the last factor the share falls to 0.
 USUAL, THICKEST, BEYOND = 0.4, 1.35, 1.8
-# A joint is at each end, so many times as long as the limb is wide on one side, but at most such a
-# part of it. Measured: with 1 an arm turns at its shoulder by less than half as far.
+# Length of the joint at each end, over the limb's half width, and at most over its length.
+# Measured: with 1 an arm rotates at its shoulder by less than half as far.
 JOINT, LONGEST_JOINT = 1.6, 0.42
 BONE_STAYS = (
     "A bone must stay on the drawing, and this one leaves it or crosses a hole; put a handle "
@@ -31,10 +31,10 @@ BONE_STAYS = (
 def limb_weights(
     loops: Sequence[Complexes], start: complex, end: complex, points: Complexes
 ) -> Floats:
-    """Return how much of a bone's stiffness points of a drawing's boundary have (t,), 0 to 1.
+    """Return the share of a bone's stiffness at points of a drawing's boundary (t,), 0 to 1.
 
-    A point belongs to the limb where it is beside the bone, seen from there, and not much farther
-    away than the limb is thick. Towards both ends the share falls smoothly to 0: joints bend.
+    A point belongs to the limb if it is beside the bone, visible from it, and not much farther away
+    than the limb is thick. Towards both ends the share falls smoothly to 0: joints bend.
 
     Parameters
     ----------
@@ -42,12 +42,11 @@ def limb_weights(
         The outline, and those of holes.
     start, end : complex
         The ends of the bone, in the closed domain.
-    points : complex128, shape (t,)
 
     Raises
     ------
     EngineError
-        If the bone is a point, or leaves the drawing or crosses a hole.
+        If the bone has no length, leaves the drawing or crosses a hole.
     """
     as_points([start, end], "The ends of a bone")
     length = abs(end - start)
@@ -71,7 +70,7 @@ def limb_weights(
 
 
 def _widths(loops: Sequence[Complexes], start: complex, end: complex) -> Floats:
-    """Return how wide the limb is to the left of the bone and to the right of it."""
+    """Return the width of the limb to the left and to the right of the bone."""
     outlines = shapely.MultiLineString([shapely.LinearRing(as_xy(loop)) for loop in loops])
     shapely.prepare(outlines)
     feet = np.array(start + (np.arange(PLACES) + 0.5) / PLACES * (end - start), complex)
@@ -94,7 +93,7 @@ def _smooth(depth: Floats) -> Floats:
 
 
 def _sees(area: shapely.Geometry, feet: Complexes, points: Complexes) -> Booleans:
-    """Tell of each foot whether its point is seen from there."""
+    """Whether the straight line from each foot to its point is inside."""
     shapely.prepare(area)
     lines = np.column_stack([feet, points])
     seen = shapely.covers(area, shapely.linestrings(lines.real, lines.imag))

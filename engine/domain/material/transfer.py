@@ -1,4 +1,4 @@
-"""The stiffness of an outline, carried over to another one by place."""
+"""Transfer of stiffness from one outline to another by position."""
 
 from collections.abc import Sequence
 
@@ -9,8 +9,8 @@ from engine.arrays import Complexes, Floats, as_reals
 from engine.errors import EngineError
 from engine.geometry import as_xy, diameter, loop_ends, next_on_loop
 
-# Of the old outline's diameter: what is so far from it has nothing of its stiffness, and from half
-# of that on less.
+# Of the old outline's diameter: beyond this distance no stiffness is transferred, and from half of
+# it on less.
 FAR = 0.06
 NO_STIFFNESS = (
     "stiffness must be {count} finite numbers above 0, one for each vertex, not {stiffness}."
@@ -29,7 +29,7 @@ def copy_nearest_stiffness(
     stiffness : float64, shape (p,)
         At their vertices; logarithmically linear along their edges.
     points : complex128, shape (t,)
-        Such as the vertices of the new ones.
+        For example the vertices of the new outline.
     """
     corners, ends = np.concatenate(loops), loop_ends(loops)
     stiffness = as_reals(stiffness, "stiffness")

@@ -1,4 +1,4 @@
-"""The limbs of a shape: where the ways that lead outwards from a point inside it part."""
+"""The limbs of a shape: branches of the shortest paths from an inner point."""
 
 from collections import defaultdict
 from itertools import count
@@ -8,24 +8,24 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
 
-SHORTEST_BRANCH = 0.03  # of the longest way; what rises less is no limb
-SLENDEREST = 1.0  # length² over area: what has less is plump; the corner of a square has 0.8
-ALIKE = 0.1  # of the longest way; limbs whose lengths differ less are told apart by their tips
+SHORTEST_BRANCH = 0.03  # of the longest path; a shorter branch is no limb
+SLENDEREST = 1.0  # length² over area: with less a part is plump; the corner of a square has 0.8
+ALIKE = 0.1  # of the longest path; limbs of more equal length are ordered by their tips
 
 
 class _Parts(NamedTuple):
-    """The tree of the connected parts of {way > c} as c falls, the last part its root.
+    """The tree of the connected parts of {path length > c} as c falls, the last part its root.
 
     A part begins at a peak or where two parts meet, and lasts until it meets another.
 
     Parameters
     ----------
     tips : int64, shape (p,)
-        The farthest vertex of each part and of all that leads to it.
+        The farthest vertex of each part and of all its descendants.
     parents : int64, shape (p,)
-        What begins where a part ends; −1 where nothing does.
+        The part that begins where this part ends; −1 for none.
     bottoms : float64, shape (p,)
-        The way where it ends: −inf where it does not, inf where it is too short to be a part.
+        The path length where it ends: −inf if it does not, inf if it is too short to be a part.
     """
 
     tips: Indices
@@ -34,27 +34,26 @@ class _Parts(NamedTuple):
 
 
 def rank_branches(vertices: Complexes, edges: Integers, areas: Floats, ways: Floats) -> Indices:
-    """Tell for each vertex on which limb it is.
+    """Return the limb of each vertex, as a rank.
 
     Parameters
     ----------
-    vertices, edges : complex128, shape (v,), and int32, shape (e, 2)
     areas : float64, shape (v,)
-        What each vertex stands for.
+        The area that each vertex represents.
     ways : float64, shape (v,)
-        How long the way is from the point that all limbs grow from, along the edges.
+        Length of the path along the edges from the common root of all limbs.
 
     Returns
     -------
     int64, shape (v,)
-        Ranks of the limbs. One that grows from another ranks higher, and limbs that grow from
-        different ones do not come between them. Of limbs that grow from the same one the longer one
-        ranks higher, and of those as long the one whose tip is farther to the right.
+        Ranks of the limbs. A child limb ranks above its parent, and limbs of other parents do not
+        come between them. Of the children of one parent the longer one ranks higher, and of equally
+        long ones the one whose tip is farther to the right.
 
     Notes
     -----
-    The join tree of the ways (Carr, Snoeyink and Axen 2003), from which short and plump parts are
-    taken. Cost: O(e log e), and a loop over the pairs of peaks that are neighbours.
+    The join tree of the path lengths (Carr, Snoeyink and Axen 2003), without short and plump parts.
+    Cost: O(e log e), and a loop over the pairs of neighbouring peaks.
     """
     peaks = _peaks(edges, ways)
     tree, parts = _join(peaks, edges, ways, shortest=SHORTEST_BRANCH * ways.max())
@@ -69,7 +68,7 @@ def rank_branches(vertices: Complexes, edges: Integers, areas: Floats, ways: Flo
 
 
 def _peaks(edges: Integers, ways: Floats) -> Indices:
-    """Return at which vertex (v,) the steepest climb from each vertex ends."""
+    """Return the vertex (v,) at which the steepest climb from each vertex ends."""
     order = np.argsort(ways, kind="stable")
     places = np.empty_like(order)
     places[order] = np.arange(len(order))
@@ -85,7 +84,7 @@ def _peaks(edges: Integers, ways: Floats) -> Indices:
 def _join(
     peaks: Indices, edges: Integers, ways: Floats, *, shortest: float
 ) -> tuple[_Parts, Indices]:
-    """Return the tree of the parts, and from which part (v,) on each vertex belongs to them."""
+    """Return the tree of the parts, and each vertex's first part (v,)."""
     tips, leaves = np.unique(peaks, return_inverse=True)
     order = np.argsort(ways[tips], kind="stable")
     places = np.empty_like(order)
@@ -96,13 +95,13 @@ def _join(
     apart = np.flatnonzero(ends[:, 0] != ends[:, 1])
     passes = ways[edges[apart]].min(axis=1)
     apart, passes = apart[(falling := np.argsort(-passes, kind="stable"))], passes[falling]
-    # Of all edges between two peaks only the highest matters, the first of them.
+    # Of all edges between two peaks only the highest matters: keep the first.
     _, first = np.unique(ends[apart] @ (len(tips), 1), return_index=True)
     first.sort()
 
     parts = [(tip, -1, -np.inf) for tip in tips.tolist()]
     leader = list(range(len(tips)))
-    growing = list(range(len(tips)))  # the part, of a leader
+    growing = list(range(len(tips)))  # the present part of each leader
     for pair, bottom in zip(ends[apart[first]].tolist(), passes[first].tolist(), strict=True):
         low, high = sorted(_lead(leader, peak) for peak in pair)
         if low == high:
@@ -128,15 +127,15 @@ def _lead(leader: list[int], peak: int) -> int:
 
 
 def _not_branches(tree: _Parts, tops: Floats, areas: Floats) -> Booleans:
-    """Tell which parts (p,) are no limbs of their own but belong to what begins where they end.
+    """Mark the parts (p,) that are no limbs and belong to their parents.
 
-    They are those that are plump, each without the limbs and with the plump parts that lead to it.
+    They are the plump ones. A part is measured without its limbs and with its plump children.
     """
     joined: Booleans = tree.parents >= 0
     real = np.flatnonzero(joined & (tree.bottoms < np.inf))
     tops, areas = tops.copy(), areas.copy()
     tops[tree.parents[real]] = tree.bottoms[real]
-    for part in real.tolist():  # a part comes before what begins where it ends
+    for part in real.tolist():  # a part comes before its parent
         parent = tree.parents[part]
         joined[part] = (tops[part] - tree.bottoms[part]) ** 2 <= SLENDEREST * areas[part]
         if joined[part]:
@@ -148,7 +147,7 @@ def _not_branches(tree: _Parts, tops: Floats, areas: Floats) -> Booleans:
 def _numbered(
     parents: Indices, joined: Booleans, keys: list[tuple[float, float, float]]
 ) -> Indices:
-    """Number the limbs, each before those that grow from it and these by their keys."""
+    """Number the limbs, each before its children, and the children by their keys."""
     limbs = np.arange(len(parents))
     grown: dict[int, list[int]] = defaultdict(list)
     for part in reversed(range(len(parents))):

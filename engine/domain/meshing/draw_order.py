@@ -1,4 +1,4 @@
-"""The order in which triangles are painted, for where a posed shape lies over itself."""
+"""The order of painting triangles, for poses in which a shape overlaps itself."""
 
 import numpy as np
 import scipy.sparse
@@ -14,15 +14,15 @@ from engine.geometry import as_xy
 def order_branches_on_top(mesh: Mesh, centre: complex) -> Mesh:
     """Return the mesh with its triangles limb by limb, each outwards from a point of the shape.
 
-    Painted in this order, a limb covers what it grows from, and of two limbs always the same one
-    covers the other, wherever they cross; a limb that curls covers itself by what is farther out.
-    No pose is asked, so that the order is steady while the shape moves.
+    A limb then covers its parent. Of two limbs always the same one covers the other, wherever they
+    cross. A curled limb covers itself by its outer part. The order does not depend on the pose, so
+    that it is steady while the shape moves.
 
     Notes
     -----
-    Ways go out along the edges from the vertex next to `centre`. Around a hole they meet again.
-    What they lead around is a limb like others at first; then the sides of the line where they meet
-    are told apart within it. Cost: that of Dijkstra's algorithm and of sorting, O(v log v).
+    Paths start along the edges from the vertex next to `centre`. Around a hole they meet again. The
+    part around the hole is first treated as one limb. Then the sides of the line where paths meet
+    are separated within it. Cost: that of Dijkstra's algorithm and of sorting, O(v log v).
     """
     edges = mesh.edges()
     lengths = np.abs(mesh.vertices[edges[:, 1]] - mesh.vertices[edges[:, 0]])
@@ -43,7 +43,7 @@ def order_branches_on_top(mesh: Mesh, centre: complex) -> Mesh:
 
 
 def copy_draw_order(mesh: Mesh, other: Mesh) -> Mesh:
-    """Return a mesh with its triangles in the order that another one of the same shape has."""
+    """Return a mesh with its triangles in the order of another mesh of the same shape."""
     here, there = (as_xy(each.vertices[each.triangles].mean(axis=1)) for each in (mesh, other))
     _, nearest = cKDTree(there).query(here)
     return _reordered(mesh, np.argsort(nearest, kind="stable"))
@@ -54,17 +54,17 @@ def _reordered(mesh: Mesh, order: Indices) -> Mesh:
 
 
 def _where_ways_meet(mesh: Mesh, edges: Integers, previous: Integers) -> Booleans:
-    """Tell which `Mesh.edges` cross a line from a hole to the border where shortest ways meet.
+    """Mark the `Mesh.edges` that cross a line from a hole to the border where shortest paths meet.
 
-    The edges that are on no shortest way join the triangles, the holes and the outside to another
-    tree (Eppstein 2003); its branches to the holes are the lines. `previous` (v,) is the vertex
-    before each vertex on its shortest way.
+    The edges on no shortest path join the triangles, the holes and the outside to another tree
+    (Eppstein 2003). Its branches to the holes are the lines. `previous` (v,) is the vertex before
+    each vertex on its shortest path.
     """
     faces, outside = _faces_beside(mesh, edges)
     near, far = edges.T
     crossed = np.flatnonzero((previous[near] != far) & (previous[far] != near))
     count = faces.max() + 1
-    # Edges count from 1 here: a sparse array keeps no zeros.
+    # Edges count from 1 here, because a sparse array keeps no zeros.
     tree = scipy.sparse.csr_array((crossed + 1, faces[crossed].T), shape=(count, count))
     _, towards = breadth_first_order(tree, outside, directed=False)
     meeting = np.zeros(len(edges), dtype=np.bool_)
@@ -78,7 +78,7 @@ def _where_ways_meet(mesh: Mesh, edges: Integers, previous: Integers) -> Boolean
 
 
 def _faces_beside(mesh: Mesh, edges: Integers) -> tuple[Indices, int]:
-    """Return what is on the two sides of each edge, (e, 2), and which face is the outside.
+    """Return the faces on the two sides of each edge, (e, 2), and the face of the outside.
 
     Faces are the triangles, by their indices, and after them the loops of the border.
     """

@@ -11,11 +11,11 @@ import numpy.typing as npt
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.domain.meshing.mesh import sides_of
 
-# Twins of half-edges on the outline, and of those beyond which the mesh is not edited.
+# Twins of half-edges on the outline, and of those at the limit of the edited region.
 OUTLINE, SEAM = -1, -2
 ROUNDING = 1e-11  # where a sign decides, smaller numbers are zero; the region must be of size 1
 FLAT = (
-    1e-6  # a point lies on an edge of its triangle if its height over it is less, over its length
+    1e-6  # height of a point over an edge, over the edge's length, below which it lies on the edge
 )
 LONGEST_WALK = 1_000  # triangles after which a walk is given up
 
@@ -38,12 +38,12 @@ def disjoint(*claims: Indices, among: int) -> Booleans:
     Parameters
     ----------
     *claims : intp, shape (r,)
-        Triangles that each row needs for itself; a negative number is no claim.
+        Triangles that each row needs; a negative number is no claim.
     among : int
         Number of triangles.
     """
     row = np.arange(len(claims[0]))
-    owner = np.full(among + 1, -1)  # The last entry takes what is no claim.
+    owner = np.full(among + 1, -1)  # the last entry absorbs negative numbers
     for claim in claims:
         np.maximum.at(owner, claim, row)
     kept = [(claim < 0) | (owner[claim] == row) for claim in claims]
@@ -51,25 +51,23 @@ def disjoint(*claims: Indices, among: int) -> Booleans:
 
 
 class HalfEdgeMesh:
-    """A triangulation of a region, under work.
+    """A triangulation of a region that is being edited.
 
     Parameters
     ----------
-    points : complex128, shape (v,)
     triangles : intp, shape (m, 3)
         Counter-clockwise; each edge in one or two triangles.
 
     Attributes
     ----------
-    points : complex128, shape (v,)
     origins : intp, shape (3 m,)
         Vertex at which each half-edge starts.
     twins : intp, shape (3 m,)
         Half-edge of the neighbour, or `OUTLINE` or `SEAM`.
     waiting : intp, shape (w,)
-        Vertices without triangles whose places are kept track of.
+        Vertices without triangles that are still to be inserted.
     places : intp, shape (w,)
-        Triangle that each waiting vertex lies in, kept up to date by `flip` and `insert`.
+        Triangle around each waiting vertex, kept up to date by `flip` and `insert`.
     """
 
     __slots__ = ("origins", "places", "points", "twins", "waiting")
@@ -93,16 +91,14 @@ class HalfEdgeMesh:
         return len(self.origins) // 3
 
     def ends(self, half_edges: Indices) -> tuple[Indices, Indices]:
-        """Return the vertices where half-edges start and end."""
         return self.origins[half_edges], self.origins[following(half_edges)]
 
     def end_points(self, half_edges: Indices) -> tuple[Complexes, Complexes]:
-        """Return the points where half-edges start and end."""
         start, end = self.ends(half_edges)
         return self.points[start], self.points[end]
 
     def add_points(self, points: Complexes) -> Indices:
-        """Append points that no triangle uses yet, and return their indices."""
+        """Append points without triangles, and return their indices."""
         first = len(self.points)
         self.points = np.concatenate([self.points, points])
         return np.arange(first, len(self.points))
@@ -110,14 +106,14 @@ class HalfEdgeMesh:
     def flip(self, half_edges: Indices) -> Indices:
         """Replace inner edges a-b of triangles abc, bad by the other diagonals c-d.
 
-        No triangle may be concerned twice. Returns the half-edges around the quadrilaterals.
+        No triangle may occur twice. Returns the half-edges around the quadrilaterals.
         """
         ab, ba = half_edges, self.twins[half_edges]
         ca, db = preceding(ab), preceding(ba)
         bc, ad = following(ab), following(ba)
         c, d = self.origins[ca], self.origins[db]
         # abc becomes dbc and bad becomes cad. Edges b-c and a-d stay in their places, d-b moves to
-        # where a-b was, and c-a to where b-a was; the diagonal takes the places that they leave.
+        # the place of a-b, and c-a to that of b-a; the diagonal takes the places that they leave.
         self._move(np.concatenate([db, ca]), np.concatenate([ab, ba]))
         self.origins[ab], self.origins[ba] = d, c
         self._join(ca, db)
@@ -127,16 +123,16 @@ class HalfEdgeMesh:
     def insert_where_possible(
         self, vertices: Indices, triangles: Indices
     ) -> tuple[Booleans, Indices]:
-        """Insert vertices into the triangles that they lie in, as many as is possible at once.
+        """Insert vertices into the triangles around them, as many as is possible at once.
 
-        Returns which of them (r,) are now corners of triangles, and the half-edges (s,) that may
-        not be Delaunay any more.
+        Returns the mask (r,) of the inserted vertices, and the half-edges (s,) that may not be
+        Delaunay any more.
         """
         corners = self.points[self.triangles[triangles]]
         along = np.roll(corners, -1, axis=1) - corners
         height = _height(corners, along, self.points[vertices]) / np.abs(along)
         nearest = np.argmin(height, axis=1)
-        # A point on an edge makes a flat triangle with it, to be flipped away at once.
+        # A point on an edge makes a flat triangle with it, which is flipped away at once.
         flat = height.min(axis=1, initial=1.0) < FLAT
         across = np.where(flat, self.twins[3 * triangles + nearest] // 3, -1)
         inserted = disjoint(triangles, across, among=self.count)
@@ -146,10 +142,10 @@ class HalfEdgeMesh:
         return inserted, np.concatenate([around.ravel(), self.flip(flattened)])
 
     def insert(self, vertices: Indices, triangles: Indices) -> Indices:
-        """Join each new vertex to the corners of the triangle that it lies in.
+        """Join each new vertex to the corners of the triangle around it.
 
-        Returns the half-edges around the former triangles, those of edge k of every triangle in
-        row k, shape (3, r).
+        Returns the half-edges around the former triangles, those of edge k of every triangle in row
+        k, shape (3, r).
         """
         ab = 3 * triangles
         bc = 3 * (self.count + np.arange(len(vertices)))
@@ -168,7 +164,7 @@ class HalfEdgeMesh:
     def split_border(self, vertices: Indices, half_edges: Indices) -> Indices:
         """Split half-edges a-b without twin at new vertices, and their triangles abc in two.
 
-        No triangle may be concerned twice. Returns the half-edges around the former triangles.
+        No triangle may occur twice. Returns the half-edges around the former triangles.
         """
         ab, bc, ca = half_edges, following(half_edges), preceding(half_edges)
         b, c = self.origins[bc], self.origins[ca]
@@ -183,7 +179,7 @@ class HalfEdgeMesh:
         return np.concatenate([ab, ca, rest, rest + 1])
 
     def restore_delaunay(self, suspects: Indices) -> None:
-        """Flip edges until all are Delaunay, given every half-edge that may not be."""
+        """Flip edges until all are Delaunay; `suspects` are all half-edges that may not be."""
         while len(suspects):
             twins = self.twins[suspects]
             once = np.zeros(len(self.twins), dtype=np.bool_)
@@ -195,10 +191,10 @@ class HalfEdgeMesh:
             suspects = np.concatenate([suspects[~chosen], around])
 
     def _violates_delaunay(self, half_edges: Indices) -> Booleans:
-        """Tell which inner edges a-b have opposite angles at c and d that sum to over 180°.
+        """Mark the inner edges a-b whose opposite angles at c and d sum to over 180°.
 
-        For triangles that are positive this makes acbd convex, up to rounding, which is therefore
-        asked for as well.
+        For triangles of positive area this makes acbd convex, up to rounding, so convexity is
+        tested as well.
         """
         twins = self.twins[half_edges]
         a, b = self.end_points(half_edges)
@@ -210,11 +206,11 @@ class HalfEdgeMesh:
         return np.asarray(convex & (product.imag < -ROUNDING * np.abs(product)))
 
     def walk(self, starts: Indices, targets: Complexes) -> tuple[Indices, Indices]:
-        """Go straight from the middle of triangles to targets, as far as the region reaches.
+        """Walk straight from the middle of triangles to targets, as far as the region reaches.
 
-        Returns the triangles (r,) where the walks ended and the exits (r,): -1 where the target
-        lies in that triangle, else the half-edge on the border that the walk would have crossed.
-        (If rounding made a walk circle, any half-edge.)
+        Returns the triangles (r,) where the walks ended and the exits (r,): -1 if the target lies
+        in that triangle, else the half-edge on the border that the walk would have crossed. (If
+        rounding made a walk circle, any half-edge.)
         """
         triangles, exits = starts.copy(), np.full(len(starts), -1)
         sources = self.points[self.triangles[starts]].mean(axis=1)
@@ -234,7 +230,7 @@ class HalfEdgeMesh:
     def _exit(
         self, triangles: Indices, sources: Complexes, targets: Complexes
     ) -> tuple[Booleans, Indices]:
-        """Tell which targets lie outside of triangles, and the edges that lead towards them."""
+        """Mark the targets outside of their triangles, and return the edges towards them."""
         corners = self.points[self.triangles[triangles]]
         along = np.roll(corners, -1, axis=1) - corners
         outside = _height(corners, along, targets) < -ROUNDING
@@ -250,25 +246,25 @@ class HalfEdgeMesh:
         self.twins = np.concatenate([self.twins, empty])
 
     def _move(self, old: Indices, new: Indices) -> None:
-        """Tell the twins of half-edges that have moved from `old` to `new` in the arrays."""
+        """Update the twins of half-edges that have moved from `old` to `new` in the arrays."""
         place: npt.NDArray[np.intp] = np.arange(len(self.twins))
         place[old] = new
         twins = self.twins[old]
         inner = twins >= 0
-        # Twins may be moved at the same time.
+        # Twins may move at the same time.
         twins[inner] = place[twins[inner]]
         self.twins[new] = twins
         self.twins[twins[inner]] = new[inner]
 
     def _follow_flips(self, left: Indices, right: Indices) -> None:
-        """Keep track of waiting vertices, given half-edges d-b and c-a of new pairs dbc, cad."""
+        """Update the places of waiting vertices, for half-edges d-b and c-a of new dbc, cad."""
         row, pair = self._waiting_in(left // 3, right // 3)
         c, d = self.points[self.origins[right[pair]]], self.points[self.origins[left[pair]]]
         is_left = ((d - c).conj() * (self.points[self.waiting[row]] - c)).imag >= 0
         self.places[row] = np.where(is_left, left[pair], right[pair]) // 3
 
     def _follow_inserts(self, *around: Indices) -> None:
-        """Keep track of waiting vertices, given the edges opposite to the inserted ones."""
+        """Update the places of waiting vertices, given the edges opposite to the inserted ones."""
         row, which = self._waiting_in(around[0] // 3)
         inner = np.stack([half_edges[which] for half_edges in around])
         middle = self.points[self.origins[preceding(inner[0])]]
@@ -278,7 +274,7 @@ class HalfEdgeMesh:
         self.places[row] = inner[sector, np.arange(len(row))] // 3
 
     def _waiting_in(self, *triangles: Indices) -> tuple[Indices, Indices]:
-        """Return the rows of `waiting` that lie in triangles, and the columns of these."""
+        """Return the rows of `waiting` in these triangles, and the columns of the triangles."""
         column = np.full(self.count, -1)
         for row in triangles:
             column[row] = np.arange(len(row))

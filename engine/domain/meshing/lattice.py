@@ -27,9 +27,9 @@ class Lattice(NamedTuple):
 
 
 def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
-    """Fill a simple polygon, less its holes, with points so far apart (scan conversion).
+    """Fill a simple polygon, less its holes, with lattice points by scan conversion.
 
-    Those within rounding of the boundary may fall on either side.
+    Points within rounding of the boundary may fall on either side.
     """
     starts, ends = np.concatenate(loops), loop_ends(loops)
     origin = complex(starts.real.min(), starts.imag.min())
@@ -46,11 +46,11 @@ def lattice_inside(loops: Sequence[Complexes], spacing: float) -> Lattice:
 
 
 def lattice_triangles(lattice: Lattice) -> Indices:
-    """Return the unit triangles (m, 3), counter-clockwise, that have all three corners here."""
+    """Return the unit triangles (m, 3), counter-clockwise, with three corners in the lattice."""
     if not len(lattice.rows):
         return np.empty((0, 3), dtype=np.intp)
     first = lattice.columns.min()
-    # Two spare columns, so that the neighbours of a row's last point are not found in the next row.
+    # Two spare columns, so that a row's last point has no neighbours in the next row.
     width = int(np.ptp(lattice.columns)) + 3
     keys = lattice.rows * width + (lattice.columns - first + 1)
     odd = lattice.rows % 2
@@ -87,6 +87,6 @@ def _crossings(
 
 
 def _find(keys: Indices, wanted: Indices) -> Indices:
-    """Return where each wanted key stands in the sorted keys, or -1."""
+    """Return the index of each wanted key in the sorted keys, or -1."""
     place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
     return np.where(keys[place] == wanted, place, -1)

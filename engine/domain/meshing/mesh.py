@@ -1,4 +1,4 @@
-"""Triangulations as values, and the quantities that are read off them."""
+"""Triangulations as values, and quantities of their triangles and edges."""
 
 from dataclasses import dataclass
 
@@ -11,11 +11,7 @@ from engine.arrays import Complexes, Floats, Indices, Integers, readonly
 class Mesh:
     """A triangulation of a plane domain.
 
-    Parameters
-    ----------
-    vertices : complex128, shape (v,)
-    triangles : int32, shape (m, 3)
-        Indices of the vertices of each triangle, counter-clockwise.
+    `triangles` (m, 3) are counter-clockwise indices of vertices.
     """
 
     vertices: Complexes
@@ -37,23 +33,23 @@ class Mesh:
         """Return the undirected edges (e, 2), each once, the smaller index first, in order."""
         ends = np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
         ends.sort(axis=1)
-        # One 64-bit key an edge, and sorted: much faster than `np.unique`, of rows or of keys.
+        # One sorted 64-bit key for each edge: much faster than `np.unique`, of rows or of keys.
         keys = np.sort(ends[:, 0].astype(np.int64) << 32 | ends[:, 1])
         keys = keys[np.diff(keys, prepend=-1) > 0]
         return np.column_stack([keys >> 32, keys & 0xFFFFFFFF]).astype(np.int32)
 
 
 def sides_of(triangles: Integers | Indices) -> tuple[Indices, Indices, Indices]:
-    """Find the sides of triangles (m, 3), and which of them two triangles share.
+    """Find the sides of triangles (m, 3), and the sides that two triangles share.
 
     Returns
     -------
     sides : intp, shape (e, 2)
         As `Mesh.edges` has them.
     numbers : intp, shape (m, 3)
-        Which of them leads from each corner of a triangle to its next.
+        The side from each corner of a triangle to its next.
     twins : intp, shape (p, 2)
-        For each shared one, in order, where its number stands twice in `numbers` as it lies flat.
+        For each shared side, in order, its two positions in the flattened `numbers`.
     """
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     low, high = ends.min(axis=1).astype(np.intp), ends.max(axis=1)

@@ -1,8 +1,8 @@
-"""Chew's second algorithm: new points until no triangle has a needlessly small angle.
+"""Chew's second algorithm: insert points until no triangle has a needlessly small angle.
 
 Source: L. P. Chew, "Guaranteed-quality mesh generation for curved surfaces" (1993); off-centres
-after A. Üngör, "Off-centers: a new type of Steiner points" (2004). Unlike Chew's, a point that an
-outline edge would see at over 90° is never inserted, but the edge split (J. Ruppert, 1995).
+after A. Üngör, "Off-centers: a new type of Steiner points" (2004). Unlike Chew's, a point that sees
+an outline edge at over 90° is never inserted; the edge is split instead (J. Ruppert, 1995).
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, disjoint, fo
 from engine.domain.meshing.mesh import smallest_angles
 
 MOST_ROUNDS = 100  # a bad outline takes about 40
-# Edges of the outline must be longer, and are never split below this, over its size.
+# Least length of the outline's edges, over its size; edges are never split below it.
 SHORTEST_EDGE = 1e-6
 
 
@@ -26,7 +26,7 @@ def refine_mesh(mesh: HalfEdgeMesh, smallest: float) -> None:
     mesh : HalfEdgeMesh
         Of size 1; changed in place.
     smallest : float
-        Angle in degrees that is asked for; up to about 28 is reached on all outlines.
+        Wanted angle in degrees; up to about 28 is reached on all outlines.
     """
     for _ in range(MOST_ROUNDS):
         bad = _triangles_to_improve(mesh, smallest)
@@ -62,17 +62,17 @@ def _shortest_edges(mesh: HalfEdgeMesh, triangles: Indices) -> Indices:
 
 
 def _enforced(mesh: HalfEdgeMesh, triangles: Indices) -> Booleans:
-    """Tell which smallest angles lie between two edges of the outline."""
+    """Mark the triangles whose smallest angle lies between two edges of the outline."""
     opposite = _shortest_edges(mesh, triangles)
     sides = mesh.twins[[following(opposite), preceding(opposite)]]
     return np.asarray((sides == OUTLINE).all(axis=0))
 
 
 def _off_centres(mesh: HalfEdgeMesh, triangles: Indices, smallest: float) -> Complexes:
-    """Return where to insert a point against each triangle's smallest angle.
+    """Return a point to insert against each triangle's smallest angle.
 
-    This is the circumcentre, or the nearest point on the way there from the shortest edge that
-    makes a triangle with that edge that is good enough: fewer points do.
+    It is the circumcentre, or the nearest point on the way there from the shortest edge that makes
+    a good enough triangle with this edge: that saves points.
     """
     pq = _shortest_edges(mesh, triangles)
     p, q = mesh.end_points(pq)
@@ -86,7 +86,7 @@ def _off_centres(mesh: HalfEdgeMesh, triangles: Indices, smallest: float) -> Com
 
 
 def _encroached(mesh: HalfEdgeMesh, triangles: Indices, points: Complexes) -> Indices:
-    """Return the outline edge of each triangle that a point in it sees at over 90°, or -1."""
+    """Return the outline edge of each triangle that its point sees at over 90°, or -1."""
     half_edges = 3 * triangles[:, None] + np.arange(3)
     a, b = mesh.end_points(half_edges)
     cosine = ((a - points[:, None]).conj() * (b - points[:, None])).real
@@ -106,7 +106,7 @@ def _split_outline(mesh: HalfEdgeMesh, half_edges: Indices) -> Indices:
 
 
 def _insert(mesh: HalfEdgeMesh, points: Complexes, triangles: Indices, touched: Indices) -> Indices:
-    """Insert those of the points that are far enough from each other and from what was touched.
+    """Insert the points that are far enough from each other and from the touched triangles.
 
     Returns the half-edges that may not be Delaunay any more.
     """

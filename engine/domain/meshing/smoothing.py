@@ -1,4 +1,4 @@
-"""Smoothing of a triangulation: every vertex goes where its triangles would be equilateral."""
+"""Smoothing of a triangulation: every vertex moves to make its triangles equilateral."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from engine.arrays import Complexes, Indices
 from engine.domain.meshing.half_edges import OUTLINE, HalfEdgeMesh, following, preceding
 from engine.domain.meshing.mesh import smallest_angles
 
-GOOD_ANGLE = 30.0  # degrees: above, the smallest angle of a triangle may become smaller
+GOOD_ANGLE = 30.0  # degrees: larger angles may shrink
 
 
 def smooth_mesh(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
@@ -17,9 +17,9 @@ def smooth_mesh(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
     mesh : HalfEdgeMesh
         Constrained Delaunay; changed in place and left so.
     corners : int
-        So many vertices, the first ones, are the outline's own and stay, as does the seam.
+        Number of the outline's own vertices, which come first and stay, as the seam does.
     sweeps : int
-        How often every vertex moves.
+        Number of moves of every vertex.
     """
     border = np.flatnonzero(mesh.twins < 0)
     fixed = np.ones(len(mesh.points), dtype=np.bool_)
@@ -45,10 +45,10 @@ def _cuts(mesh: HalfEdgeMesh, corners: int) -> tuple[Indices, Indices, Indices]:
 
 
 def _best_places(mesh: HalfEdgeMesh) -> Complexes:
-    """Return for each vertex (v,) the mean of where its triangles would be equilateral.
+    """Return for each vertex (v,) the mean of the places that make its triangles equilateral.
 
-    Each counts by the inverse of its edge opposite to the vertex, which keeps small triangles
-    small. (With equal weights a vertex inside would go to the mean of its neighbours.)
+    Each place counts by the inverse length of the edge opposite to the vertex, which keeps small
+    triangles small. (With equal weights an inner vertex would move to the mean of its neighbours.)
     """
     corner = np.arange(len(mesh.origins))
     p, q = (mesh.points[mesh.origins[near(corner)]] for near in (following, preceding))
@@ -62,19 +62,19 @@ def _best_places(mesh: HalfEdgeMesh) -> Complexes:
 
 
 def _project(points: Complexes, starts: Complexes, ends: Complexes) -> Complexes:
-    """Return the points of the lines from `starts` to `ends` next to some others."""
+    """Return the orthogonal projections of points on the lines from `starts` to `ends`."""
     direction = (ends - starts) / np.abs(ends - starts)
     return np.asarray(starts + ((points - starts) * direction.conj()).real * direction)
 
 
 def _safe_move(mesh: HalfEdgeMesh, target: Complexes) -> Complexes:
-    """Return the target positions, but the present ones where moving would spoil a triangle."""
+    """Return the target positions, except where a move would spoil a triangle."""
     enough = np.minimum(smallest_angles(mesh.points, mesh.triangles), GOOD_ANGLE)
     points = target
     while True:
         spoilt = smallest_angles(points, mesh.triangles) < enough
         if not spoilt.any():
             return points
-        # A triangle is only spoilt if one of its corners moved: each round leaves fewer that do.
+        # Only a moved corner can spoil a triangle: each round leaves fewer moved corners.
         back = mesh.triangles[spoilt].ravel()
         points[back] = mesh.points[back]

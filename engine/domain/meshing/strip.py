@@ -24,7 +24,7 @@ class Rings:
     order : intp, shape (r,)
         The points' indices in the order along the loops, one loop after the other.
     size : intp, shape (r,)
-        For each place in that order, how many points its loop has.
+        For each entry of `order`, the number of points of its loop.
     """
 
     points: Complexes
@@ -33,7 +33,7 @@ class Rings:
 
 
 def split_edges(loops: Sequence[Complexes], spacing: float) -> Rings:
-    """Cut each edge of some polygons into equal pieces about as long as the spacing."""
+    """Cut each edge of polygons into equal pieces about as long as the spacing."""
     starts = np.concatenate(loops)
     along = loop_ends(loops) - starts
     pieces = np.maximum(np.round(np.abs(along) / spacing), 1).astype(np.intp)
@@ -55,11 +55,11 @@ def triangulate_strip(
     loops : sequence of complex128
         A simple polygon, counter-clockwise, and those of its holes, clockwise.
     rings : Rings
-        Of those loops.
+        Of these loops.
     lattice : HalfEdgeMesh
-        Unit triangles, among them all that have an edge to the strip; the edges that have not, but
-        no neighbour either, are marked as `SEAM`. Its points begin with the rings', and no
-        point of a loop is within the circumcircle of a triangle.
+        Unit triangles, including all with an edge to the strip. Other edges without a neighbour are
+        marked as `SEAM`. Its points begin with the rings', and no point of a loop is within the
+        circumcircle of a triangle.
     loose : intp, shape (s,)
         Points of the lattice that no unit triangle uses.
     """
@@ -88,7 +88,7 @@ def _cut_border(mesh: HalfEdgeMesh, rings: Rings) -> None:
 
 def _insert_all(mesh: HalfEdgeMesh, vertices: Indices) -> None:
     """Insert vertices into a constrained Delaunay mesh."""
-    # In random order, vertices that follow each other are seldom in each other's way.
+    # In random order, successive vertices seldom claim the same triangle.
     mesh.waiting = np.random.default_rng(0).permutation(vertices)
     mesh.places = _locate(mesh, mesh.points[mesh.waiting])
     while len(mesh.waiting):
@@ -108,9 +108,9 @@ def _locate(mesh: HalfEdgeMesh, points: Complexes) -> Indices:
 
 
 def _enclosed(mesh: HalfEdgeMesh, starts: Indices, ends: Indices) -> Booleans:
-    """Tell which triangles are enclosed by directed edges (r,), which have them on their left.
+    """Mark the triangles enclosed by directed edges (r,) that have them on the left.
 
-    A flood that begins on the left of the edges and does not cross them.
+    A flood fill that begins on the left of the edges and does not cross them.
     """
     fence = starts * len(mesh.points) + ends
     start, end = mesh.ends(np.arange(len(mesh.origins)))

@@ -1,8 +1,8 @@
 """Near-equilateral triangulation of a polygon with holes (Section 7: the domain of the maps).
 
-Almost all of the inside is covered by the lattice of equilateral triangles, which needs no search.
-Only the band between lattice and outline is triangulated (constrained Delaunay), refined where the
-outline asks for smaller triangles, and smoothed.
+The lattice of equilateral triangles covers almost all of the inside, without any search. Only the
+band between lattice and outline is triangulated (constrained Delaunay), refined where the outline
+needs smaller triangles, and smoothed.
 """
 
 from collections.abc import Sequence
@@ -31,12 +31,12 @@ from engine.geometry import (
 # circumradius, 0.577, so that no part of the outline comes between the corners of a unit triangle,
 # and every edge of the lattice is Delaunay.
 CLEARANCE = 0.6
-BAND = 3.5  # spacings down to which the lattice may give way to smoothing and refinement
-# Degrees that refinement asks for, and where otherwise there would be too many triangles.
+BAND = 3.5  # spacings: depth down to which smoothing and refinement may replace the lattice
+# Smallest angles in degrees of the refinement, and if they would take too many triangles.
 SMALLEST_ANGLE, RELAXED_ANGLE = 28.0, 20.0
 SWEEPS = 4  # of smoothing
-CLOSE_ENOUGH = 0.03  # relative error of the number of triangles that is accepted
-MOST_TRIALS = 10  # spacings that are tried for the right number of triangles
+CLOSE_ENOUGH = 0.03  # accepted relative error of the number of triangles
+MOST_TRIALS = 10  # spacings tried for the right number of triangles
 
 
 def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = ()) -> Mesh:
@@ -47,23 +47,22 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
     outline : complex128, shape (p,)
         Simple, counter-clockwise. Its vertices are the first p vertices of the mesh.
     count : int
-        How many triangles to aim at. They are met within a few percent unless the outline's own
-        detail enforces more.
+        Wanted number of triangles, met within a few percent unless the outline's detail needs more.
     holes : sequence of complex128
-        Simple polygons inside the outline, clockwise and apart, that are left out. Their vertices
-        follow the outline's.
+        Simple polygons inside the outline, clockwise and apart. Their vertices follow the
+        outline's.
 
     Returns
     -------
     Mesh
         A conforming triangulation with angles of 28° and more (20° where that takes too many
-        triangles), except in corners of the outline that are sharper themselves.
+        triangles), except in sharper corners of the outline.
 
     Raises
     ------
     EngineError
         If the outline is not simple, runs clockwise, or has an edge below 1e-6 of its size; if a
-        hole is not as said.
+        hole is invalid.
 
     Notes
     -----
@@ -92,7 +91,7 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
 
 
 def _fill_to_count(loops: Sequence[Complexes], count: int) -> Mesh:
-    """Triangulate with about so many triangles, if need be with somewhat smaller angles."""
+    """Triangulate with about this many triangles, if need be with somewhat smaller angles."""
     best = _search_spacing(loops, count, SMALLEST_ANGLE)
     if not _is_close(best, count):
         relaxed = _search_spacing(loops, count, RELAXED_ANGLE)
@@ -102,16 +101,16 @@ def _fill_to_count(loops: Sequence[Complexes], count: int) -> Mesh:
 
 
 def _is_close(mesh: Mesh, count: int) -> bool:
-    """Tell whether a mesh has nearly the right number of triangles."""
+    """Whether a mesh has nearly the right number of triangles."""
     return abs(len(mesh.triangles) - count) <= CLOSE_ENOUGH * count
 
 
 def _search_spacing(loops: Sequence[Complexes], count: int, smallest: float) -> Mesh:
-    """Triangulate with the spacing that brings the number of triangles nearest to what is wanted.
+    """Triangulate with the spacing whose number of triangles is nearest to `count`.
 
-    The number is about linear in x = 1/spacing²: the area over that of a unit triangle, plus what
-    the outline's detail costs. It jumps where a limb gets room for another row, so that steps are
-    kept between the x that gave too few and those that gave too many.
+    The number is about linear in x = 1/spacing²: the area over that of a unit triangle, plus the
+    triangles for the outline's detail. It jumps where a limb gets room for another row, so steps
+    stay between the x that gave too few and those that gave too many.
     """
     slope = sum(map(signed_area, loops)) * 4 / np.sqrt(3)
     x = count / slope
@@ -159,7 +158,7 @@ def _fill(loops: Sequence[Complexes], spacing: float, smallest: float) -> Mesh:
 
 def _depth(loops: Sequence[Complexes], points: Complexes, spacing: float) -> Floats:
     """Return the distance of points from the loops in spacings, infinite below the band."""
-    # So dense that the distance from the samples is at most 2 % too large at the clearance.
+    # Dense enough that the distance from the samples is at most 2 % too large at the clearance.
     tree = cKDTree(as_xy(split_edges(loops, spacing / 6).points))
     distance, _ = tree.query(as_xy(points), distance_upper_bound=(BAND + 0.1) * spacing)
     return np.asarray(distance / spacing)
@@ -173,7 +172,7 @@ def _mark_seam(mesh: HalfEdgeMesh, deep: Booleans) -> None:
 
 
 def _compact(points: Complexes, triangles: Indices) -> Mesh:
-    """Return the mesh of the points that some triangle uses."""
+    """Return the mesh without unused points."""
     used: Booleans = np.zeros(len(points), dtype=np.bool_)
     used[triangles] = True
     number = np.cumsum(used) - 1

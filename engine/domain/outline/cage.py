@@ -13,7 +13,7 @@ MITER_LIMIT = 2.0  # of the offset: how far a sharp corner of the cage stands ou
 ROOM = 0.7  # of the way to the middle of a gap
 LEAST_DISTANCE = 0.0003  # of the diameter
 LEAST_ALONG = 0.1  # cosine between an edge of the cage and of the outline
-SLOPE = 0.5  # by which the offset may change per length of an edge
+SLOPE = 0.5  # largest change of the offset per length of an edge
 SHRINKING = 0.8
 MOST_ROUNDS = 60
 CLOSE_OUTLINE = (
@@ -25,8 +25,8 @@ CLOSE_OUTLINE = (
 def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Complexes:
     """Return the cage around an outline, or inside that of a hole.
 
-    Each vertex of the outline is moved outwards, so that the adjacent edges move by `offset`;
-    less at very sharp corners, and less where the cage would meet itself.
+    Each vertex of the outline is moved outwards, so that the adjacent edges move by `offset`. The
+    displacement is less at very sharp corners, and where the cage would meet itself.
 
     Parameters
     ----------
@@ -40,8 +40,8 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
     Returns
     -------
     complex128, shape (n,)
-        Simple, in the direction of the outline, strictly on its other side than the domain, nowhere
-        closer to it than 0.03 % of its diameter.
+        Simple, in the direction of the outline, strictly on the side away from the domain, nowhere
+        closer to the outline than 0.03 % of its diameter.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
 
 
 def _miters(outline: Complexes) -> Complexes:
-    """Return the movement of each vertex that moves both its edges outwards by 1, limited."""
+    """Return each vertex's displacement that moves both its edges outwards by 1, limited."""
     direction = edge_vectors(outline)
     normal = -1j * direction / np.abs(direction)
     both = normal + np.roll(normal, 1)
@@ -79,7 +79,7 @@ def _miters(outline: Complexes) -> Complexes:
 
 
 def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
-    """Return how far the offset may go at each vertex (n,) before it fills half a gap.
+    """Return the largest offset at each vertex (n,) before it fills half a gap.
 
     Two edges come closest at a vertex of one of them, so vertices against edges are enough.
     """
@@ -93,17 +93,17 @@ def _room_outside(outline: Complexes, directions: Complexes) -> Floats:
     here = np.arange(len(outline))
     radius[here, here] = radius[here, here - 1] = np.inf  # a vertex's own edges
     half = np.where(np.isfinite(radius), np.abs(across) / 2, np.inf)
-    # A convex vertex itself approaches the other side; in a notch the walls do.
+    # A convex vertex itself approaches the other side; in a notch its edges do.
     convex = (np.roll(along, 1).conj() * along).imag > 0
     at_vertex = np.where(convex, radius.min(axis=1) / np.abs(directions), half.min(axis=1))
-    # Further from the place across the gap, an end of the edge may keep more.
+    # Farther from the gap's narrowest place, an end of the edge may keep more.
     start_room = (radius + SLOPE * parameter * np.abs(along)).min(axis=0)
     end_room = (radius + SLOPE * (1 - parameter) * np.abs(along)).min(axis=0)
     return np.asarray(np.minimum(at_vertex, np.minimum(start_room, np.roll(end_room, 1))))
 
 
 def _faulty_edges(outline: Complexes, cage: Complexes) -> Booleans:
-    """Tell which edges (n,) of the cage are turned back, or meet the cage or the outline."""
+    """Mark the edges (n,) of the cage that run backwards, or meet the cage or the outline."""
     along, moved = edge_vectors(outline), edge_vectors(cage)
     turned = (moved * along.conj()).real <= LEAST_ALONG * np.abs(along) * np.abs(moved)
     touching, touched = find_meeting_edges(cage, outline)

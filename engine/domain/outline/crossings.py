@@ -1,4 +1,4 @@
-"""Where edges of polygons meet that should not."""
+"""Forbidden contacts between edges of polygons."""
 
 import numpy as np
 import shapely
@@ -8,7 +8,7 @@ from engine.geometry import as_xy
 
 
 def find_meeting_edges(polygon: Complexes, other: Complexes) -> tuple[Booleans, Booleans]:
-    """Tell which edges of a polygon (n,) and of another (m,) meet one of the other polygon."""
+    """Mark the edges of a polygon (n,) and of another (m,) that meet the other polygon."""
     own, met = _meetings(polygon, other)
     marks = np.zeros(len(polygon), dtype=np.bool_), np.zeros(len(other), dtype=np.bool_)
     marks[0][own] = True
@@ -17,7 +17,7 @@ def find_meeting_edges(polygon: Complexes, other: Complexes) -> tuple[Booleans, 
 
 
 def find_crossing_edges(polygon: Complexes) -> Booleans:
-    """Tell which edges (n,) of a polygon meet another of its edges that is no neighbour."""
+    """Mark the edges (n,) of a polygon that meet another of its edges, except neighbours."""
     n = len(polygon)
     first, second = _meetings(polygon, polygon)
     apart = (second - first) % n
@@ -27,7 +27,7 @@ def find_crossing_edges(polygon: Complexes) -> Booleans:
 
 
 def _meetings(polygon: Complexes, other: Complexes) -> tuple[Indices, Indices]:
-    """Return the pairs of edges of two polygons that meet; O(n log n) where they are few."""
+    """Return the pairs of edges of two polygons that meet; O(n log n) if they are few."""
     first, second = shapely.STRtree(_edges(other)).query(_edges(polygon), predicate="intersects")
     return first, second
 

@@ -7,7 +7,7 @@ from engine.geometry import edge_vectors
 
 
 def arc_lengths(curve: Complexes) -> Floats:
-    """Return the arc length (n + 1,) from point 0 to each point and, last, all the way round."""
+    """Return the arc length (n + 1,) from point 0 to each point and, last, of the whole curve."""
     return np.concatenate([[0.0], np.cumsum(np.abs(edge_vectors(curve)))])
 
 
@@ -34,7 +34,7 @@ def outward_normals(curve: Complexes, reach: int) -> Complexes:
 
 
 def smooth_curve(curve: Complexes, leash: Floats, rounds: int) -> Complexes:
-    """Smooth a curve by repeated averaging, no point further than `leash` (n,) from its place."""
+    """Smooth a curve by repeated averaging, no point farther than `leash` (n,) from its place."""
     smoothed = curve
     for _ in range(rounds):
         mean = (np.roll(smoothed, 1) + 2 * smoothed + np.roll(smoothed, -1)) / 4
@@ -46,9 +46,9 @@ def smooth_curve(curve: Complexes, leash: Floats, rounds: int) -> Complexes:
 def limit_growth(values: Floats, arcs: Floats, slope: float) -> Floats:
     """Lower values (n,) on a closed curve until they grow by at most `slope` per arc length.
 
-    That is either way round; `arcs` (n + 1,) are the curve's `arc_lengths`.
+    In both directions; `arcs` (n + 1,) are the curve's `arc_lengths`.
     """
-    # Twice round: the lowest value may stand just before point 0.
+    # Twice around: the lowest value may stand just before point 0.
     around = slope * np.concatenate([arcs[:-1], arcs[:-1] + arcs[-1]])
     n = len(values)
     twice = np.tile(values, 2)

@@ -1,8 +1,8 @@
-"""The knife: lines along which what touches is parted, by slits in the outline.
+"""The knife: lines along which touching parts are separated, by slits in the outline.
 
-A slit is as narrow as cages can stand in. Its sides are cut at the precision of numbers and not of
-pixels, and closed again where the drawing is painted: there its two sides reach its middle line,
-and a little beyond, so that nothing shows through as long as they lie side by side.
+A slit is just wide enough for cages. Its sides are cut with the precision of numbers, not of
+pixels, and closed again where the drawing is painted. There its two sides reach its middle line,
+and a little beyond, so that no gap shows while they lie side by side.
 """
 
 from collections.abc import Sequence
@@ -17,19 +17,19 @@ from engine.errors import EngineError
 from engine.geometry import as_xy, edge_vectors, shapely_region
 
 CUT_WIDTH = 0.002  # of the diagonal of the subject's box
-TREMOR = 0.7  # slit widths: by what a hand trembles is left out
-NEAR_EDGE = 0.02  # of the diagonal: an end that is no farther inside is led out
+TREMOR = 0.7  # slit widths: smaller tremor of the hand is smoothed away
+NEAR_EDGE = 0.02  # of the diagonal: an end this near to the edge is extended to it
 BLUNT = 2.0  # mitre limit at the bends of a line
-SAMPLES, MOST_SAMPLES = 1_000, 1e6  # of a part and of its box, which tell how much of it is drawn
+SAMPLES, MOST_SAMPLES = 1_000, 1e6  # of a part and of its box, to estimate the drawn area
 SPECK = 2e-4  # of the subject's area: smaller pieces that lines cut off are dropped
-THIN = 1.5  # slit widths: thinner strips beside a line are dropped
-LEAST_STRIP, MOST_STRIP = 0.25, 4.0  # squares of slit widths: of them all, and of the drawing
+THIN = 1.5  # slit widths: narrower strips beside a line are dropped
+LEAST_STRIP, MOST_STRIP = 0.25, 4.0  # squares of slit widths: smallest strip, most drawn area
 BESIDE = 0.75  # slit widths from a line: the sides of its slit
 OVERLAP = 1.1  # of the way to the middle line: how far the sides are painted
-# Lengths of edges on the sides of a slit: at its ends, of the diagonal; per distance from there;
-# and at most.
+# Lengths of edges on the sides of a slit: at its ends, over the diagonal; growth per distance from
+# there; and largest.
 AT_END, GROWTH, LONGEST = 0.006, 0.5, 0.06
-SHORTEST = 0.35  # slit widths: ends of shorter edges are one
+SHORTEST = 0.35  # slit widths: the ends of a shorter edge are merged
 SHARP = 110.0  # degrees: turn at a corner that is blunted
 STRAIGHT = 0.2  # sine of the angle of two lines that hardly cross
 CUTS_OFF = (
@@ -39,14 +39,14 @@ CUTS_OFF = (
 
 
 class CutRegion(NamedTuple):
-    """The loops of a domain that was parted: the outline, then those of holes.
+    """The loops of a domain with slits: the outline, then those of holes.
 
     Parameters
     ----------
     loops : tuple of complex128
         The holes' run clockwise.
     closed : tuple of complex128
-        Where the vertices of each are painted.
+        Painted places of the vertices of each loop.
     """
 
     loops: tuple[Complexes, ...]
@@ -56,7 +56,7 @@ class CutRegion(NamedTuple):
 def cut_region(
     loops: Sequence[Complexes], lines: Sequence[Complexes], mask: Booleans, diagonal: float
 ) -> CutRegion:
-    """Part a region along lines.
+    """Separate a region along lines.
 
     Parameters
     ----------
@@ -67,13 +67,13 @@ def cut_region(
     mask : bool, shape (h, w)
         The subject in the region: cell (r, c) is the square [c, c + 1] × [r, r + 1].
     diagonal : float
-        Of the subject's box, of which the slits' width is a part.
+        Of the subject's box; the slits' width is a part of it.
 
     Raises
     ------
     EngineError
-        If a line misses the region, begins and ends inside, runs along its edge, or cuts off a
-        part; if it is too short.
+        If a line misses the region, begins and ends inside, runs along its edge, cuts off a part,
+        or is too short.
     """
     width = CUT_WIDTH * diagonal
     whole = shapely_region(loops[0], loops[1:])
@@ -83,7 +83,7 @@ def cut_region(
     rest = shapely.difference(whole, shapely.union_all(slits))
     parts = shapely.get_parts(rest)
     piece = _largest(rest)
-    # Beside the drawing, a line may cut off some of the outline's margin.
+    # Beside the drawing, a line may cut off a part of the outline's margin.
     others = (part for part in parts if not shapely.equals(part, piece))
     cut_off = sum(_drawn_area(part, mask) for part in others) / np.count_nonzero(mask)
     if cut_off > SPECK:
@@ -96,9 +96,9 @@ def cut_region(
 
 
 def _drawn_area(part: shapely.Polygon, mask: Booleans) -> float:
-    """Return about how much of a part belongs to the subject, in cells."""
+    """Estimate the area of a part that belongs to the subject, in cells."""
     left, low, right, high = shapely.bounds(part)
-    # Slivers of hardly any area may be long.
+    # Slivers of small area may be long.
     spacing = float(np.sqrt(max(part.area / SAMPLES, (right - left) * (high - low) / MOST_SAMPLES)))
     if not spacing:
         return 0.0
@@ -110,7 +110,7 @@ def _drawn_area(part: shapely.Polygon, mask: Booleans) -> float:
 
 
 def _simplified(line: Complexes, width: float) -> Complexes:
-    """Return a line with few vertices, as a hand means it."""
+    """Return a line with few vertices, without the tremor of the hand."""
     way = shapely.simplify(shapely.LineString(as_xy(line)), TREMOR * width)
     if way.length < 4 * width:
         raise EngineError("The knife's line is too short to part anything; draw a longer one.")
@@ -119,9 +119,9 @@ def _simplified(line: Complexes, width: float) -> Complexes:
 
 
 def _reaching_out(way: Complexes, whole: shapely.Polygon, width: float) -> Complexes:
-    """Return a line that is inside with the end that nearly reaches an edge led out there.
+    """Return a line inside a region, with ends near the edge extended to it.
 
-    The edge that is seen lies farther inside than the outline, by its margin.
+    The visible edge lies farther inside than the outline, by the outline's margin.
     """
     if not shapely.contains_properly(whole, shapely.LineString(as_xy(way))):
         return way
@@ -137,7 +137,7 @@ def _reaching_out(way: Complexes, whole: shapely.Polygon, width: float) -> Compl
 
 
 def _cut_strip(way: Complexes, width: float) -> shapely.Geometry:
-    """Return what is cut out along a line: a strip with pointed ends."""
+    """Return the strip that is cut out along a line, with pointed ends."""
     line = shapely.LineString(as_xy(way))
     half = width / 2
     inner = substring(line, half, line.length - half)
@@ -145,14 +145,14 @@ def _cut_strip(way: Complexes, width: float) -> shapely.Geometry:
     points = []
     for end, before in ((way[0], way[1]), (way[-1], way[-2])):
         along = half * (before - end) / abs(before - end)
-        # A hair longer, so that strip and point are one.
+        # A hair longer, so that strip and point merge.
         corners = np.array([end, end + 1.001 * (1 + 1j) * along, end + 1.001 * (1 - 1j) * along])
         points.append(shapely.Polygon(as_xy(corners)))
     return shapely.union_all([strip, *points])
 
 
 def _require_touching(whole: shapely.Polygon, slits: Sequence[shapely.Geometry]) -> None:
-    """Raise `EngineError` where a slit misses the region, or lies inside and meets no other."""
+    """Raise `EngineError` if a slit misses the region, or lies inside and meets no other slit."""
     if not all(shapely.intersects(whole, slit) for slit in slits):
         raise EngineError("The knife's line does not touch the drawing; draw it across an edge.")
     for piece in shapely.get_parts(shapely.union_all(slits)):
@@ -166,12 +166,12 @@ def _require_touching(whole: shapely.Polygon, slits: Sequence[shapely.Geometry])
 def _without_strips(
     piece: shapely.Polygon, whole: shapely.Polygon, mask: Booleans, width: float
 ) -> shapely.Polygon:
-    """Return a piece without what lines leave beside edges that is too thin to be moved.
+    """Return a piece without the thin strips that lines leave beside edges.
 
     Raises
     ------
     EngineError
-        If that is a part of the drawing.
+        If a strip is a part of the drawing.
     """
     left = shapely.difference(
         shapely.intersection(piece, _opened(whole, width)), _opened(piece, width)
@@ -188,7 +188,7 @@ def _without_strips(
 
 
 def _opened(area: shapely.Polygon, width: float) -> shapely.Geometry:
-    """Return what of an area is wider than some slits."""
+    """Return the parts of an area that are wider than some slits."""
     half, options = THIN * width / 2, {"join_style": "mitre", "mitre_limit": 5.0}
     return shapely.buffer(shapely.buffer(area, -half, **options), 1.01 * half, **options)
 
@@ -206,7 +206,7 @@ def _loop(
     *,
     hole: bool,
 ) -> tuple[Complexes, Complexes]:
-    """Return a ring of the parted region, with fit edges, and where its vertices are painted."""
+    """Return a ring of the cut region, with well-sized edges, and its vertices' painted places."""
     ring = shapely.LinearRing(shapely.get_coordinates(ring))
     if shapely.is_ccw(ring) == hole:
         ring = shapely.reverse(ring)
@@ -239,7 +239,7 @@ def _without_short_edges(loop: Complexes, ways: Sequence[Complexes], width: floa
 
 
 def _without_spikes(loop: Complexes, ways: Sequence[Complexes], width: float) -> Complexes:
-    """Return a loop whose sharp corners at the mouths of slits are blunt: a cage has room there."""
+    """Return a loop whose sharp corners at the mouths of slits are blunted, as room for a cage."""
     blunt: list[complex] = []
     near = _distances(loop, ways) < BESIDE * width
     for before, corner, after, is_near in zip(
@@ -257,7 +257,7 @@ def _without_spikes(loop: Complexes, ways: Sequence[Complexes], width: float) ->
 
 
 def _divided(start: complex, end: complex, ends: Complexes, width: float) -> list[complex]:
-    """Return the points, but the last, of an edge that is divided the finer the nearer to ends."""
+    """Return the points, without the last, of an edge divided more finely near `ends`."""
     diagonal = width / CUT_WIDTH
     middle = (start + end) / 2
     longest = min(LONGEST * diagonal, AT_END * diagonal + GROWTH * np.abs(ends - middle).min())
@@ -267,7 +267,7 @@ def _divided(start: complex, end: complex, ends: Complexes, width: float) -> lis
 
 
 def _distances(points: Complexes, ways: Sequence[Complexes]) -> Floats:
-    """Return how far points (n,) are from the nearest of the lines."""
+    """Return the distance of points (n,) from the nearest line."""
     lines = shapely.MultiLineString([as_xy(way) for way in ways])
     distances: Floats = shapely.distance(lines, shapely.points(as_xy(points)))
     return distances
@@ -276,7 +276,7 @@ def _distances(points: Complexes, ways: Sequence[Complexes]) -> Floats:
 def _lines_of(
     loop: Complexes, ways: Sequence[Complexes], width: float
 ) -> list[tuple[complex, complex] | None]:
-    """Return for each edge of a loop the piece of a line of whose slit it is a side, if it is."""
+    """Return for each edge on the side of a slit the piece of its line, for others None."""
     starts = np.concatenate([way[:-1] for way in ways])
     pieces = np.concatenate([way[1:] for way in ways]) - starts
     lengths = np.abs(pieces)
@@ -298,7 +298,7 @@ def _lines_of(
 
 
 def _closed(loop: Complexes, ways: Sequence[Complexes], tips: Complexes, width: float) -> Complexes:
-    """Return where the vertices of a loop are painted: those beside a line, on it."""
+    """Return the painted places of a loop's vertices; vertices beside a line are painted on it."""
     lines, closed = _lines_of(loop, ways, width), loop.copy()
     for index, point in enumerate(loop):
         before, after = lines[index - 1], lines[index]

@@ -1,4 +1,4 @@
-"""From the mask of a subject to its outline, a polygon of few edges, and the cage around it."""
+"""From the mask of a subject to its outline, a polygon of few edges, and its cage."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,40 +19,40 @@ from engine.geometry import Hole, require_holes
 Detail = Literal["coarse", "normal", "fine"]
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
-# Of the diagonal: a cage that is closer makes boundary spikes, a farther one bad conditioning.
+# Of the diagonal: a closer cage causes spikes at the boundary, a farther one bad conditioning.
 LEAST_OFFSET, MOST_OFFSET = 0.005, 0.02
-NARROWEST_GAP = 0.002  # of the diagonal: below, two cages have no room in a gap
-# Vertices that are aimed at. Where an outline takes more, its margin is widened; where that is not
-# enough, gaps are closed, wider ones each time.
+NARROWEST_GAP = 0.002  # of the diagonal: a narrower gap has no room for two cages
+# Vertices to aim at. If an outline needs more, its margin is widened; if that fails, gaps are
+# closed, wider ones each time.
 MOST_VERTICES = 200
-# Vertices above which no outline is worth having: the cost of a map grows with their square.
+# Most vertices of an outline: the cost of a map grows with their square.
 LARGEST_OUTLINE = 500
-WIDEST_GAP = 0.2  # of the diagonal: so wide ones are closed where else there would be more
+WIDEST_GAP = 0.2  # of the diagonal: widest gap that is closed to save vertices
 WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
 DISC = 2.5  # area of a disc of radius 1, with some room for pixels
-LEAST_ENCLOSED = 0.001  # of the subject's area: what is told
-LEAST_JOINED = 0.03  # of the subject's outline: what is told
+LEAST_ENCLOSED = 0.001  # of the subject's area: smallest area that is reported
+LEAST_JOINED = 0.03  # of the subject's outline: smallest part that is reported
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Enclosure:
-    """The outline of a subject and the cage around it, and those of its holes.
+    """The outline of a subject and its cage, and those of its holes.
 
     Parameters
     ----------
     outline : complex128, shape (n,)
-        Simple, counter-clockwise, in pixels of the picture: origin at the lower left corner of
-        the picture, y up.
+        Simple, counter-clockwise, in pixels of the picture: origin at the lower left corner of the
+        picture, y up.
     cage : complex128, shape (n,)
         Simple, counter-clockwise, strictly around the outline, one vertex for each of its own.
     holes : tuple of Hole
         Inside the outline and apart, the largest first.
     notices : tuple of str
-        What had to be done to the subject, in words.
+        Every remedy that was applied, in words.
     closed : complex128, shape (m,), optional
-        Where the vertices of the outline, and then of the holes' outlines, are painted: those on
-        both sides of a slit meet. None where nothing was parted.
+        Painted places of the vertices of the outline, and then of the holes' outlines: both sides
+        of a slit meet. None without slits.
     """
 
     outline: Complexes
@@ -64,18 +64,18 @@ class Enclosure:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Draft:
-    """A curve for an outline, in cells, with what was done to get it."""
+    """A curve for an outline, in cells, with the remedies behind it."""
 
     curve: MarginCurve
     candidates: Candidates
     offset: float  # from outline to cage, in cells
     widening: float  # of the margin
-    closing: float  # cells: width below which gaps were closed
+    closing: float  # cells: narrower gaps were closed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Fit:
-    """An outline and its cage in cells, and the draft that they were fitted to."""
+    """An outline and its cage in cells, fitted to a draft."""
 
     outline: Complexes
     cage: Complexes
@@ -90,22 +90,22 @@ def enclose_subject(
     swapped: Sequence[complex] = (),
     slits: Sequence[Complexes] = (),
 ) -> Enclosure:
-    """Find the outline of a subject, and the cage around it.
+    """Find the outline of a subject, and its cage.
 
     Parameters
     ----------
     mask : bool, shape (h, w)
         True on the subject, first row on top.
     detail : {"coarse", "normal", "fine"}
-        How closely the outline follows: its margin is 1.2, 0.6 or 0.3 % of the diagonal of the
-        subject's box, wider where it would take too many vertices, narrower between limbs.
+        Margin of the outline: 1.2, 0.6 or 0.3 % of the diagonal of the subject's box, wider where
+        it would take too many vertices, narrower between limbs.
     holes : {"keep", "fill"}
-        Whether holes stay holes into which a disc fits that is 2.4 % of the diagonal wide: the
-        largest first, as long as all loops together have few vertices.
+        Whether large holes stay holes. A disc of 2.4 % of the diagonal must fit into them. The
+        largest come first, as long as all loops together have few vertices.
     swapped : sequence of complex
         Points in holes that are treated the other way, in pixels of the picture, y up.
     slits : sequence of complex128, each of shape (n,)
-        Lines along which the subject is parted, in pixels of the picture, y up.
+        Lines along which the subject is cut, in pixels of the picture, y up.
 
     Returns
     -------
@@ -116,8 +116,8 @@ def enclose_subject(
     Raises
     ------
     EngineError
-        If the subject falls into too many parts, or is too intricate for an outline; if a slit
-        cuts off a part of it, or parts nothing.
+        If the subject has too many separate parts, or is too intricate for an outline; if a slit
+        cuts off a part of it, or separates nothing.
     """
     require_word(detail, MARGINS, "The detail")
     require_word(holes, HOLES, "What is done with holes")
@@ -161,7 +161,7 @@ def _cut_loops(
     mask: Booleans,
     diagonal: float,
 ) -> tuple[Complexes, Complexes, tuple[Hole, ...], Complexes]:
-    """Part an outline and its holes; return both with cages, and where they are painted."""
+    """Cut an outline and its holes; return both with cages, and their painted places."""
     loops, closed = cut_region(
         [fit.outline, *(hole.outline for hole in holes)], lines, mask, diagonal
     )
@@ -185,14 +185,14 @@ def _cut_loops(
 def _kept_holes(
     piece: WholePiece, wanted: Indices, fit: _Fit, margin: float, diagonal: float
 ) -> tuple[dict[int, Hole], list[int]]:
-    """Trace those of the wanted holes that are large enough, as many as there are vertices for.
+    """Trace the wanted holes that are large enough, as long as vertices are left.
 
-    Return holes by their numbers, and the numbers of those for which there are no vertices left.
+    Return holes by their numbers, and the numbers of the holes without vertices.
     """
     kept: dict[int, Hole] = {}
     room = MOST_VERTICES - len(fit.outline)
     crowded: list[int] = []
-    # Into a smaller one no disc fits that is wide enough; pictures may have thousands of them.
+    # No disc of the least width fits into a smaller hole; pictures may have thousands of them.
     least = DISC * (SMALLEST_HOLE * diagonal) ** 2
     for number in map(int, wanted[piece.hole_areas[wanted - 1] >= least]):
         hole = trace_hole(
@@ -218,11 +218,11 @@ def _kept_holes(
 
 
 def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
-    """Return the first outline of few vertices, or else the one of fewest that is bearable.
+    """Return the first outline of few vertices, or else the acceptable one with fewest.
 
-    The margin is widened while there are too many vertices; wider gaps are closed where that is
-    not enough, or where no outline or cage fits. A draft that few vertices cannot follow is fitted
-    only if every other fails.
+    The margin is widened while there are too many vertices. If that is not enough, or no outline or
+    cage fits, wider gaps are closed. A draft that few vertices cannot follow is fitted only if
+    every other fails.
     """
     widening, closing = 1.0, NARROWEST_GAP * diagonal
     corners = field.boundary()
@@ -259,7 +259,7 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
 
 
 def _describe_draft(draft: _Draft, area: int) -> tuple[str, ...]:
-    """Return, in words, what a draft makes of a subject of `area` cells."""
+    """Describe in words the remedies of a draft, for a subject of `area` cells."""
     notices = []
     fused = draft.curve.joined_gap_share()
     if fused >= LEAST_JOINED:
@@ -278,7 +278,7 @@ def _describe_draft(draft: _Draft, area: int) -> tuple[str, ...]:
 def _draft(
     field: DistanceField, margin: float, diagonal: float, *, widening: float, closing: float
 ) -> _Draft:
-    """Draft the curve that an outline is to follow."""
+    """Draft the curve that an outline follows."""
     margin *= widening
     offset = float(np.clip(margin, LEAST_OFFSET * diagonal, MOST_OFFSET * diagonal))
     curve = curve_at_margin(field, margin=margin, offset=offset, closing=closing, diagonal=diagonal)
@@ -292,7 +292,7 @@ def _draft(
 
 
 def _fit(draft: _Draft, corners: Complexes) -> _Fit | None:
-    """Fit outline and cage to a draft; return None where the subject is too intricate for them."""
+    """Fit outline and cage to a draft; return None if the subject is too intricate."""
     outline = fit_polygon(draft.candidates, corners)
     if outline is None:
         return None

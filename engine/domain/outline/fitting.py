@@ -26,13 +26,12 @@ MOST_ATTEMPTS = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Candidates:
-    """The points of a curve that may become vertices of a polygon.
+    """Points of a curve that may become vertices of a polygon.
 
     Parameters
     ----------
     points : complex128, shape (n,)
         In order along the curve, closer where its margin is small.
-    margins : float64, shape (n,)
     shortest, longest : float
         Lengths of an edge of the polygon.
     """
@@ -54,15 +53,15 @@ class Candidates:
 
     @property
     def fewest_edges(self) -> int:
-        """The number of edges below which no polygon with such edges follows the curve."""
+        """The least number of edges of a polygon with edges of these lengths along the curve."""
         return -(-len(self.points) // LONGEST_SPAN)
 
 
 def fit_polygon(candidates: Candidates, corners: Complexes) -> Complexes | None:
     """Fit a simple polygon of few edges (p,) to a curve that has `corners` (c,) on its left.
 
-    Where it crosses itself, turns back or leaves out a corner, it is fitted again, closer to the
-    curve. Returns it in the direction of the curve; None if that does not help.
+    If the polygon crosses itself, turns back or leaves out a corner, it is fitted again, closer to
+    the curve. Returns it in the direction of the curve; None if that does not help.
     """
     points, margins = candidates.points, candidates.margins
     slack = np.ones(len(points))

@@ -1,4 +1,4 @@
-"""Narrow gaps: how much room there is outside a curve before it meets itself."""
+"""Narrow gaps: the room outside a curve before it meets itself."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -6,9 +6,9 @@ from scipy.spatial import cKDTree
 from engine.arrays import Complexes, Floats
 from engine.geometry import as_xy, edge_vectors
 
-FACING = 0.2  # cosine between the outward normal and what lies opposite, at least
-SQUARE_ON = 0.7  # cosine from which on the opposite side counts as straight ahead
-BLOCK = 1 << 14  # pairs that are looked at together, so that they stay in cache
+FACING = 0.2  # least cosine between the outward normal and the direction to the opposite side
+SQUARE_ON = 0.7  # cosine from which the opposite side counts as straight ahead
+BLOCK = 1 << 14  # pairs in one block, so that they stay in cache
 DETOUR = 4.0  # arc length over distance from which on two points lie on different limbs
 
 
@@ -22,14 +22,14 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
     normals : complex128, shape (n,)
         Outward unit normals.
     reach : float
-        Gaps with half widths above this are not looked for.
+        Largest half width of a gap.
     separation : float
         Points closer than this along the curve make no gap.
 
     Returns
     -------
     float64, shape (n,)
-        The radius, or infinity where no other part of the curve lies opposite within 2 `reach`.
+        The radius; infinity if no other part of the curve lies opposite within 2 `reach`.
     """
     radius = np.full(len(curve), np.inf)
     spacing = float(np.abs(edge_vectors(curve)).mean())
@@ -38,7 +38,7 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
         first, second = pairs[start : start + BLOCK].T
         steps = second - first
         apart = np.minimum(steps, len(curve) - steps)
-        # Most pairs are neighbours along the curve: these go first.
+        # Most pairs are neighbours along the curve: drop these first.
         limbs = apart > separation / spacing
         first, second, apart = first[limbs], second[limbs], apart[limbs]
         across = curve[second] - curve[first]
@@ -52,10 +52,10 @@ def half_gaps(curve: Complexes, normals: Complexes, *, reach: float, separation:
 def empty_disc_radius(normals: Complexes, across: Complexes) -> Floats:
     """Return the radius of the disc that touches a curve from outside and another place of it.
 
-    That is |q - p| / (2 cos a), a the angle between the outward unit normal m where it touches and
-    the vector q - p `across` from there to the other place; infinity where q does not lie opposite.
-    The cosine is kept above 0.7 because normals at corners point past what is nearest to
-    them; that only makes the disc smaller.
+    It is |q - p| / (2 cos a), a the angle between the outward unit normal at the contact p and the
+    vector q - p `across` to the other place; infinity if q does not lie opposite. The cosine is
+    kept above 0.7 because normals at corners point past the nearest opposite place; this only makes
+    the disc smaller.
     """
     distance = np.abs(across)
     cosine = (across * normals.conj()).real / np.maximum(distance, np.finfo(np.float64).tiny)

@@ -1,8 +1,8 @@
-"""The holes of a subject that stay holes: an outline around each, and a cage inside it.
+"""The kept holes of a subject: an outline around each, and a cage inside it.
 
-A hole is outlined by the rules of the subject itself, seen from the subject: its loop runs
-clockwise, so that the subject lies on the left, and margin and offset lead into the hole. They
-shrink with the hole, so that outline and cage leave its middle free.
+A hole is outlined by the same rules as the subject, seen from the subject. Its loop runs clockwise,
+so that the subject lies on the left, and margin and offset lead into the hole. They shrink with the
+hole, so that outline and cage leave its middle free.
 """
 
 from collections.abc import Mapping
@@ -19,28 +19,27 @@ from engine.domain.picture import WholePiece, WorkingGrid, join_parts, working_g
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point
 
-# Radii of the largest disc, of the diagonal: in a hole that is kept, and in a part inside that
-# looks like the background, and is seen through or not although the mesh has no hole there.
+# Least radii of the largest disc, over the diagonal: in a kept hole, and in an enclosed part of the
+# background's colour. Such a part is removed or kept although the mesh has no hole there.
 SMALLEST_HOLE, SMALLEST_POCKET = 0.012, 0.003
-BUBBLE = 3.0  # pixels: the same of a part that a soft contour encloses, which nobody sees as a hole
-SHARE = 0.25  # of that radius: the margin at most, and the offset from outline to cage
+BUBBLE = 3.0  # pixels: least radius of a visible part inside a soft contour
+SHARE = 0.25  # of this radius: largest margin, and largest offset from outline to cage
 FEWEST_EDGES = 16
 FRAME = 2  # cells of the subject around a hole that is cut out
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class HoleMap:
-    """Where the holes of a subject are, in pixels of its picture, y up.
+    """The holes of a subject, in pixels of its picture, y up.
 
     Parameters
     ----------
-    grid : WorkingGrid
     piece : WholePiece
         In cells of the grid.
     middles : dict of int to complex
-        Of the holes that are large enough to be kept or to be seen through, by their numbers.
+        Middles by number of the holes that are large enough to be kept or removed.
     shut : frozenset of int
-        Of these, the ones that are parts of the subject where nothing else is said.
+        Of these, the ones that belong to the subject by default.
     """
 
     grid: WorkingGrid
@@ -49,27 +48,27 @@ class HoleMap:
     shut: frozenset[int]
 
     def number_at(self, point: complex) -> int:
-        """Return the number of the hole that a point is in, if it has a middle; else 0."""
+        """Return the number of the hole with this point, if it has a middle; else 0."""
         numbers = self.piece.numbers_at(self.grid.to_cells(np.array([point])))
         return int(numbers[0]) if len(numbers) and int(numbers[0]) in self.middles else 0
 
 
 def find_holes(mask: Booleans, enclosed: Booleans | None = None, *, opens: bool = False) -> HoleMap:
-    """Find the holes of a subject, and those that it could have.
+    """Find the holes of a subject, and its possible holes.
 
     Parameters
     ----------
     mask : bool, shape (h, w)
         True on the subject, first row on top.
     enclosed : bool, shape (h, w), optional
-        True on parts inside, that of the mask or not, that could be holes.
+        True on inner parts that could be holes, whether or not they are in the mask.
     opens : bool
-        Whether they are where nothing else is said.
+        Whether these parts are holes by default.
 
     Raises
     ------
     EngineError
-        If the subject falls into too many parts.
+        If the subject has too many separate parts.
     """
     if enclosed is not None:
         mask = mask & ~enclosed
@@ -95,7 +94,7 @@ def find_holes(mask: Booleans, enclosed: Booleans | None = None, *, opens: bool 
 
 
 def find_visible_holes(piece: WholePiece, grid: WorkingGrid) -> Indices:
-    """Return the numbers of the holes that a person sees: not of bubbles in a soft contour."""
+    """Return the numbers of visible holes, without bubbles in a soft contour."""
     least = max(SMALLEST_POCKET * grid.diagonal, BUBBLE / grid.cell)
     seen = []
     for number, (rows, columns) in enumerate(ndimage.find_objects(piece.holes), start=1):
@@ -113,7 +112,7 @@ def trace_hole(
     Parameters
     ----------
     labels : int32, shape (h, w)
-        The number of the hole that each cell belongs to, 0 where to none.
+        The number of each cell's hole, 0 without one.
     number : int
         Of the hole.
     margin, offset : float
@@ -126,7 +125,7 @@ def trace_hole(
     Returns
     -------
     Hole or None
-        None where the hole is too small, or too intricate.
+        None if the hole is too small, or too intricate.
     """
     rows, columns = ndimage.find_objects(labels, max_label=number)[number - 1]
     window: Booleans = np.pad(labels[rows, columns] == number, FRAME)
@@ -155,7 +154,7 @@ def trace_hole(
 
 
 def make_hole(outline: Complexes, offset: float) -> Hole:
-    """Return the hole with this outline, and a cage in it at most at this offset.
+    """Return the hole with this outline, and a cage in it with at most this offset.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The curve around a mask at a margin that shrinks where two limbs leave little room."""
+"""The curve around a mask at a margin, which shrinks between two close limbs."""
 
 from dataclasses import dataclass
 from typing import cast
@@ -16,25 +16,25 @@ from engine.geometry import as_xy, signed_area
 
 GAP_ROOM = 0.75  # of half a gap, for margin and cage offset together
 SEPARATION = 0.08  # of the diagonal: arc length from which on two points can face each other
-SAMPLING = 0.0015  # of the diagonal: spacing at which gaps are looked for
-GROWTH = 0.35  # by which the margin may grow along the curve, per arc length
+SAMPLING = 0.0015  # of the diagonal: spacing of the search for gaps
+GROWTH = 0.35  # largest growth of the margin along the curve, per arc length
 NORMAL_REACH = 3  # samples before and after, over which normals are taken
-CLOSED_GAP_WIDTH = 0.5  # of the width of closed gaps: what is left of a gap between the margins
+CLOSED_GAP_WIDTH = 0.5  # of the width of closed gaps: the rest of a gap between the margins
 MOST_SAMPLES = 10_000
-SKETCH = 0.125  # of the margin: spacing that is always fine enough for it
-DEEP = 3.0  # margins: where the mask's outline lies farther inside the curve, it is lost
-SKIN = 0.25  # cells: margin of the curve on which gaps are looked for
+SKETCH = 0.125  # of the margin: spacing that is always fine enough
+DEEP = 3.0  # margins: the mask's outline is lost where it lies farther inside the curve
+SKIN = 0.25  # cells: margin of the curve for the search for gaps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DistanceField:
-    """How far the nodes of a grid, the corners of its cells, are from the cells of a mask.
+    """Distance of the nodes of a grid, the corners of its cells, from the cells of a mask.
 
     Parameters
     ----------
     distance : float64, shape (h + 1, w + 1)
-        From node c + ir to the nearest point of the mask's squares: exact, because that point is
-        a node itself.
+        From node c + ir to the nearest point of the mask's squares: exact, because this point is a
+        node itself.
     rows, columns : int32, shape (h + 1, w + 1)
         The nearest node of the mask.
     """
@@ -44,7 +44,7 @@ class DistanceField:
     columns: Integers
 
     def boundary(self) -> Complexes:
-        """Return the nodes of the mask, as points, that have a neighbour outside it."""
+        """Return the mask's nodes, as points, with a neighbour outside."""
         inside = self.distance == 0
         inner = inside[:-2, 1:-1] & inside[2:, 1:-1] & inside[1:-1, :-2] & inside[1:-1, 2:]
         inside[1:-1, 1:-1] &= ~inner
@@ -54,22 +54,22 @@ class DistanceField:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MarginCurve:
-    """A simple closed curve along a mask, which lies on its left.
+    """A simple closed curve along a mask on its left.
 
     Parameters
     ----------
     points : complex128, shape (n,)
-        In cells, at most about one cell apart where it bends: counter-clockwise around the mask,
+        In cells, at most about one cell apart in bends: counter-clockwise around the mask,
         clockwise in a hole of it.
     margins : float64, shape (n,)
         Distance from the mask, nearly.
     enclosed : float
-        Area that the curve encloses, or leaves out of a hole, because it closes on itself, in
-        cells.
+        Area of pockets that the curve encloses, or leaves out of a hole, because it closes on
+        itself, in cells.
     skin : complex128, shape (s,)
         The mask's own outline.
     deep : float
-        How far from the curve a point of the skin is lost.
+        Distance from the curve from which a point of the skin is lost.
     """
 
     points: Complexes
@@ -79,7 +79,7 @@ class MarginCurve:
     deep: float
 
     def joined_gap_share(self) -> float:
-        """Return how much of the skin is left far inside, since what lies opposite is too close."""
+        """Return the share of the skin far inside the curve, in gaps that were closed."""
         shell = shapely.LinearRing(as_xy(self.points))
         shapely.prepare(shell)
         followed = shapely.dwithin(shell, shapely.points(as_xy(self.skin)), self.deep)
@@ -111,7 +111,6 @@ def curve_at_margin(
 
     Parameters
     ----------
-    field : DistanceField
     margin, offset : float
         Wanted distances from mask to curve and from curve to cage, in cells.
     closing : float
@@ -149,15 +148,15 @@ def _local_margins(
     closed = room < closing / 2
     margins = np.where(closed, margin, np.minimum(margin, room * margin / enough))
     margins = limit_growth(margins, arc_lengths(skin), GROWTH)
-    # Both sides of a closed gap must meet, whatever the margins beside it.
+    # Both sides of a closed gap must meet, regardless of the margins beside it.
     margins[closed] = np.maximum(margin, room[closed] + 1)
     return margins
 
 
 def _without_slits(ring: Complexes, width: float) -> tuple[Complexes, float]:
-    """Close the slits on the right of a ring that are narrower than `width`: no edges fit in there.
+    """Close the slits on the right of a ring that are narrower than `width`, too narrow for edges.
 
-    Return the ring and the area of the pockets that this encloses, or cuts off from a hole.
+    Return the ring and the area of the pockets that are enclosed, or cut off from a hole.
     """
     clockwise = signed_area(ring) < 0
     grow = -width / 2 if clockwise else width / 2
@@ -186,9 +185,9 @@ def _spread(field: DistanceField, tree: cKDTree, margins: Floats, margin: float)
 
 
 def _largest_ring(values: Floats, *, hole: bool) -> tuple[Complexes, float]:
-    """Trace the zero level; return its largest ring, and the area in rings that it leaves out.
+    """Trace the zero level; return its largest ring, and the area in the other rings.
 
-    These are the pockets within an outer ring, and whatever is cut off from a hole.
+    These are pockets within an outer ring, and parts cut off from a hole.
     """
     # Separate polylines (the generator's default), each with its first point again at the end.
     lines = contourpy.contour_generator(z=values, name="serial").lines(0.0)
@@ -198,7 +197,7 @@ def _largest_ring(values: Floats, *, hole: bool) -> tuple[Complexes, float]:
     areas = np.array([signed_area(ring) for ring in rings])
     largest = int(np.abs(areas).argmax())
     ring = rings[largest]
-    # Rings within the outer one run the other way round, the other parts of a hole the same way.
+    # Rings within the outer one run the other way around, the other parts of a hole the same way.
     same = areas * areas[largest] > 0
     left_out = float(np.abs(areas[same == hole]).sum())
     if hole:

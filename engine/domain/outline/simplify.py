@@ -1,10 +1,10 @@
-"""A closed curve by few, well-shaped edges: the cheapest polygon by dynamic programming."""
+"""Simplify a closed curve to few, well-shaped edges by dynamic programming."""
 
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
 
-LONGEST_SPAN = 40  # points along the curve, of one edge
+LONGEST_SPAN = 40  # largest number of curve points per edge
 FIDELITY = 3.0  # cost of an edge with the whole tolerance as root mean square error, in edges
 LAST_RESORT = 1e3  # cost of an edge that is too short, in edges
 
@@ -15,8 +15,8 @@ def choose_vertices(
     """Choose the points of a closed curve that make the best polygon.
 
     An edge may pass on the inner side of the curve by at most `inner` and on its outer side by at
-    most `outer`. Among the polygons with such edges the one with the smallest sum over its edges
-    of 1 + 3 (mean square deviation over tolerance) is taken: few vertices, well placed.
+    most `outer`. Of the polygons with such edges the one with the smallest sum over its edges of 1
+    + 3 (mean square deviation over tolerance) is chosen: few vertices, well placed.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def choose_vertices(
     inner, outer : float64, shape (n,)
         Tolerances at each point.
     shortest, longest : float
-        Lengths of an edge. Shorter ones are taken only where nothing else fits.
+        Lengths of an edge. Shorter ones are chosen only if nothing else fits.
 
     Returns
     -------
@@ -34,8 +34,8 @@ def choose_vertices(
 
     Notes
     -----
-    The best polygon through point 0 comes first; the best one through a vertex of that polygon
-    far from point 0 is then practically the best of all. O(n) steps of 40 candidates each.
+    The best polygon through point 0 comes first; the best one through a vertex of that polygon far
+    from point 0 is then practically the best of all. O(n) steps of 40 candidates each.
     """
     costs = _edge_costs(curve, inner, outer, shortest, longest)
     first = _cheapest_round(costs)
@@ -51,7 +51,7 @@ def _edge_costs(
     n = len(curve)
     spans = min(LONGEST_SPAN, n // 3)
     costs = np.empty((spans, n))
-    # Row s: what is s points further along, and how far away from each point.
+    # Row s: the point s steps along, and the distance of each point from it.
     further = np.arange(n) + np.arange(spans + 1)[:, None]
     further[further >= n] -= n
     away, inside, outside = curve[further] - curve, inner[further], outer[further]
@@ -61,13 +61,13 @@ def _edge_costs(
         offset = away[1:span] * (chord.conj() / np.maximum(length, 1e-300))
         # Left of the chord, the chord passes outside the curve; right of it, inside.
         tolerance = np.where(offset.imag > 0, outside[1:span], inside[1:span])
-        # Past an end of the chord the curve turns back: measured from that end.
+        # Past an end of the chord the curve turns back: measure from this end.
         past = np.maximum(np.maximum(-offset.real, offset.real - length), 0)
         error = np.hypot(offset.imag, past) / tolerance
         worst, squares = error.max(axis=0, initial=0.0), (error**2).sum(axis=0)
         cost = 1 + FIDELITY * squares / max(span - 1, 1)
         cost[length < shortest] += LAST_RESORT
-        # One step along the curve is always allowed, so that there is a polygon at all.
+        # One step along the curve is always allowed, so that a polygon exists.
         if span > 1:
             cost[(worst > 1) | (length > longest)] = np.inf
         costs[span - 1] = cost
@@ -80,7 +80,7 @@ def _cheapest_round(costs: Floats) -> Indices:
     # Row i: the costs of the edges that end at point i, from the points i - 1, i - 2, …
     span = np.arange(spans)
     arriving = costs[span, (np.arange(n)[:, None] - span - 1) % n]
-    # Of point i at n - i, so that the points before it follow it; there is nothing before point 0.
+    # Point i is at n - i, so that the points before it follow it; there is nothing before point 0.
     best = np.full(n + 1 + spans, np.inf)
     best[n] = 0
     previous = [0] * (n + 1)

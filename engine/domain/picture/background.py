@@ -11,29 +11,28 @@ from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_block
 from engine.domain.picture.parts import WITH_CORNERS, keep_touching
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
-COLOUR_BIN = 16  # levels: how finely colours are told apart when the border votes
-CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no channel that is narrower
-# What a lossy encoder leaves around edges: islands of fewer pixels, no farther from the
+COLOUR_BIN = 16  # levels: width of the colour bins in which the border's pixels are counted
+CHANNEL_WIDTH = 0.006  # of the diagonal: the flood passes no narrower channel
+# Islands that a lossy encoder leaves around edges: they have fewer pixels, no farther from the
 # background's colour. JPEG at quality 50 to 95 left 5,404 of them around ten drawings, one larger.
 SMALLEST_ISLAND, NOISE_LEVELS = 25, 54
-BAND = 512  # rows in which they are looked for at once
-VIVID = 48  # levels between a colour's channels: white, grey and black have fewer
-SEEN_WIDTH = 0.002  # of the diagonal: narrower places inside are not looked for
-NEARBY_STEP, NEARBY_REACH = 8, 5  # pixels, and steps: where the paper beside a place is measured
+BAND = 512  # rows in one search for islands
+VIVID = 48  # levels between a colour's channels: less is white, grey or black
+SEEN_WIDTH = 0.002  # of the diagonal: narrower places inside are ignored
+NEARBY_STEP, NEARBY_REACH = 8, 5  # pixels, and steps: how far the paper nearby is measured
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Background:
-    """Where an opaque picture shows its background.
+    """The background of an opaque picture.
 
     Parameters
     ----------
     mask : bool, shape (h, w)
         True on the background.
     enclosed : bool, shape (h, w)
-        True on what has the same colour inside of something else, or that of the background
-        nearby: places wide enough to be seen, and where the colour is vivid whatever has it.
-    colour : uint8, shape (3,)
+        True on inner places with the colour of the background, or of the background nearby. They
+        are wide enough to be visible, and of any width if the colour is vivid.
     agreement : float
         Share of the border's pixels that have the background's colour.
     """
@@ -52,25 +51,24 @@ class Background:
 def flood_background(
     rgb: Bytes, tolerance: int, colour: BackgroundColour | None = None
 ) -> Background:
-    """Find the background of an opaque picture as what its border's colour floods.
+    """Find the background of an opaque picture by a flood of its border's colour.
 
     Parameters
     ----------
-    rgb : uint8, shape (h, w, 3)
     tolerance : int
         Levels by which each channel of a background pixel may differ from the border's colour.
     colour : tuple of int, optional
-        Red, green and blue of the background where it is not the colour of most of the border.
+        Red, green and blue of the background; by default the colour of most of the border.
 
     Notes
     -----
-    White teeth in an open mouth must not be eaten through a thin channel between the lips, yet a
-    thin gap between two legs is background. So the flood runs through wide places only (a
-    morphological opening); then the thin remains that touch it are added, without what lies
-    behind them. Pictures above 1,400 pixels are flooded in blocks and refined to pixels after.
-    Islands of a few pixels that hardly differ from the background are an encoder's noise.
-    Inside, the colour is also compared with the background's nearby: a photographed sheet is darker
-    towards its edges, and all of its pockets are to be found wherever it was flooded.
+    White teeth in an open mouth must stay although a thin channel between the lips leads to them,
+    yet a thin gap between two legs is background. So the flood runs through wide places only (a
+    morphological opening). Then the adjoining thin remains are added, without the places behind
+    them. Pictures above 1,400 pixels are flooded in blocks and then refined to pixels. Islands of a
+    few pixels that hardly differ from the background are an encoder's noise. Inside, the colour is
+    also compared with the background's nearby: a photographed sheet is darker towards its edges,
+    and all of its pockets count.
     """
     wanted = _border_colour(rgb) if colour is None else np.array(colour, dtype=np.uint8)
     alike = _alike(rgb, wanted, tolerance)
@@ -81,7 +79,7 @@ def flood_background(
         flooded = _refined(flooded, factor, alike)
     flooded |= _noise(flooded, rgb, wanted)
     enclosed = _pockets(rgb, wanted, tolerance, flooded, alike)
-    del alike  # large pictures leave little room
+    del alike  # large pictures leave little memory
     if enclosed.any():
         enclosed |= _noise(flooded | enclosed, rgb, wanted)
     if _is_vivid(wanted):
@@ -94,7 +92,7 @@ def _is_vivid(colour: Bytes) -> bool:
 
 
 def _refined(blocks: Booleans, factor: int, alike: Booleans) -> Booleans:
-    """Return those of the pixels `alike` that are in blocks or beside them."""
+    """Return the pixels `alike` in blocks or beside them."""
     near = repeat_blocks(ndimage.binary_dilation(blocks, WITH_CORNERS), factor, alike.shape)
     near &= alike
     return near
@@ -106,7 +104,7 @@ def _border(values: np.ndarray) -> np.ndarray:
 
 
 def _border_colour(rgb: Bytes) -> Bytes:
-    """Return the colour that most of the border has: the median of its fullest bin."""
+    """Return the most frequent colour of the border: the median of its fullest bin."""
     border = _border(rgb)
     bins, members = np.unique(border // COLOUR_BIN, axis=0, return_inverse=True)
     fullest = np.bincount(members.ravel(), minlength=len(bins)).argmax()
@@ -114,7 +112,7 @@ def _border_colour(rgb: Bytes) -> Bytes:
 
 
 def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
-    """Tell which pixels are within `tolerance` of `colour` in every channel."""
+    """Mark the pixels within `tolerance` of `colour` in every channel."""
     alike = np.ones(rgb.shape[:2], dtype=np.bool_)
     for channel, level in enumerate(colour.astype(int)):
         values = rgb[..., channel]
@@ -127,8 +125,8 @@ def _alike(rgb: Bytes, colour: Bytes, tolerance: int) -> Booleans:
 def _noise(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
     """Return the islands in a background that are an encoder's noise."""
     noise = np.zeros_like(background)
-    # Labels take as much memory as pictures do, and no island leaves the rows that are added to a
-    # band: what does has more pixels within it already.
+    # In bands, since labels take as much memory as pictures do. No island leaves the rows added to
+    # a band: an area that does has too many pixels within it already.
     for top in range(0, len(noise), BAND):
         band = slice(max(0, top - SMALLEST_ISLAND), top + BAND + SMALLEST_ISLAND)
         inner = slice(top - band.start, top - band.start + BAND)
@@ -151,7 +149,7 @@ def _noise_in(background: Booleans, rgb: Bytes, colour: Bytes) -> Booleans:
 
 
 def _flood(alike: Booleans) -> Booleans:
-    """Flood pixels `alike` from the border, past no narrow channel."""
+    """Flood pixels `alike` from the border, through no narrow channel."""
     radius = max(1.0, CHANNEL_WIDTH / 2 * float(np.hypot(*alike.shape)))
     wide = _opened(alike, radius)
     frame = np.ones_like(wide)
@@ -164,10 +162,11 @@ def _flood(alike: Booleans) -> Booleans:
 def _pockets(
     rgb: Bytes, colour: Bytes, tolerance: int, flooded: Booleans, alike: Booleans
 ) -> Booleans:
-    """Return the places that are no part of the flood, but look like it."""
+    """Return the places outside the flood that look like it."""
     pockets = alike & ~flooded
     if flooded.any():
-        # What is within the tolerance of a flooded pixel is within twice that of the colour.
+        # A pixel within the tolerance of a flooded pixel is within twice the tolerance of the
+        # colour.
         near = _alike(rgb, colour, 2 * tolerance) & ~flooded & ~pockets
         rows, columns = np.nonzero(near)
         apart = np.abs(rgb[rows, columns] - _nearby(rgb, flooded, rows, columns))
@@ -196,7 +195,10 @@ def _nearby(rgb: Bytes, flooded: Booleans, rows: Indices, columns: Indices) -> I
 
 
 def _opened(area: Booleans, radius: float) -> Booleans:
-    """Return what discs of `radius` reach without leaving the area; it goes on past the border."""
+    """Return the points that discs of `radius` reach inside the area.
+
+    The area extends past the border of the picture.
+    """
     padding = int(np.ceil(radius)) + 1
     padded = np.pad(area, padding, constant_values=True)
     core = ndimage.distance_transform_edt(padded) > radius

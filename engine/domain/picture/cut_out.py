@@ -1,4 +1,4 @@
-"""How a subject is told from its picture: by its background's colour, by a mask, and by hand."""
+"""Settings of a cut-out: background colour, mask, and strokes by hand."""
 
 from dataclasses import dataclass, field
 from math import sqrt
@@ -15,21 +15,21 @@ HOLES: tuple[Holes, ...] = get_args(Holes)
 Enclosed = Literal["auto", "keep", "remove"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke
-FARTHEST_STROKE = 1e5  # pixels from the picture's corner that a stroke may go
-# Of all strokes together: points, and rows of pixels of the discs that they are drawn as, which
+FARTHEST_STROKE = 1e5  # pixels: farthest point of a stroke from the picture's corner
+# Of all strokes together: most points, and most rows of pixels of the discs that draw them, which
 # take a minute.
 MOST_STROKE_POINTS, MOST_ROWS = 1_000_000, 1e9
-AT_ONCE = 1 << 20  # rows that are drawn at once
+AT_ONCE = 1 << 20  # rows in one step of drawing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Mask:
-    """Which pixels of a picture are kept, eight to a byte.
+    """The kept pixels of a picture, eight to a byte.
 
     Parameters
     ----------
     bits : uint8, shape (ceil(w h / 8),)
-        Row after row, first row on top, the first pixel in the highest bit; set where it is kept.
+        Row after row, first row on top, the first pixel in the highest bit; set for kept pixels.
     size : tuple of int
         Width and height in pixels.
     """
@@ -46,12 +46,12 @@ class Mask:
 
     @classmethod
     def of(cls, kept: Booleans) -> Self:
-        """Return the mask of the pixels (h, w) that are kept."""
+        """Return the mask of the kept pixels (h, w)."""
         return cls(bits=readonly(np.packbits(kept)), size=(kept.shape[1], kept.shape[0]))
 
     @property
     def kept(self) -> Booleans:
-        """The pixels (h, w) that are kept."""
+        """The kept pixels (h, w)."""
         width, height = self.size
         flat = np.unpackbits(self.bits, count=width * height)
         return flat.view(np.bool_).reshape(height, width)
@@ -64,17 +64,17 @@ class Stroke:
     Parameters
     ----------
     points : complex128, shape (n,)
-        The way of its centre, in pixels of the picture, y up; at least one.
+        Path of its centre, in pixels of the picture, y up; at least one.
     radius : float
         In pixels.
     keeps : bool
-        Whether what it covers belongs to the subject, or does not.
+        Whether the stroke adds pixels to the subject; else it removes them.
     """
 
     points: Complexes
     radius: float
     keeps: bool
-    rows: float = field(init=False, repr=False)  # of pixels of the discs that it is drawn as
+    rows: float = field(init=False, repr=False)  # of pixels of the discs that draw it
 
     def __post_init__(self) -> None:
         points = as_points(self.points, "stroke", at_least=1)
@@ -91,12 +91,9 @@ class Stroke:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CutLine:
-    """A line along which a knife parts what touches.
+    """A line along which the knife separates touching parts.
 
-    Parameters
-    ----------
-    points : complex128, shape (n,)
-        Its way, in pixels of the picture, y up; at least two.
+    `points` (n,), at least two, are in pixels of the picture, y up.
     """
 
     points: Complexes
@@ -109,30 +106,30 @@ class CutLine:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CutOut:
-    """What tells a subject from its picture.
+    """How a subject is separated from its picture.
 
     Parameters
     ----------
     tolerance : int
         Levels, 0 to 255, by which the background of an opaque picture may vary.
     background : {"auto", "none"} or tuple of int
-        Whether a background is removed from an opaque picture: where most of its border has one
-        colour, never, or what has this colour, be it opaque or not.
+        "auto" removes the colour of most of the border from an opaque picture, "none" removes
+        nothing. A given colour is removed from opaque and transparent pictures alike.
     enclosed : {"auto", "keep", "remove"}
-        Whether parts inside the subject that show the background's colour go too, such as the gap
-        between an arm and the body; "auto" removes vivid colours, but not white, grey and black,
-        which eyes, teeth and paper have as well.
+        Whether inner parts with the background's colour are removed too, such as the gap between an
+        arm and the body. "auto" removes vivid colours, but not white, grey and black, the colours
+        of eyes, teeth and paper.
     mask : Mask, optional
-        What is kept instead; then no background is looked for.
+        The kept pixels; then no background is searched.
     strokes : tuple of Stroke
-        What is kept and removed by hand after that, one stroke over the other.
+        Pixels kept and removed by hand afterwards, one stroke over the other.
     holes : {"keep", "fill"}
         Whether large holes of the subject stay holes.
-    swapped : tuple of complex
+    toggled_holes : tuple of complex
         Points in holes, and in enclosed parts, that are treated the other way, in pixels of the
         picture, y up.
-    slits : tuple of CutLine
-        Where it is parted by a knife, and shows the picture all the same.
+    cut_lines : tuple of CutLine
+        Lines along which the knife separates it; the picture shows no gap there.
     """
 
     tolerance: int = 18
@@ -166,18 +163,16 @@ class CutOut:
 
     @property
     def is_by_hand(self) -> bool:
-        """Whether there is a mask, a stroke or a line of the knife."""
+        """Whether there is a mask, a stroke or a cut line."""
         return self.mask is not None or bool(self.strokes) or bool(self.cut_lines)
 
     @property
     def nbytes(self) -> int:
-        """Bytes of its arrays."""
         mask = 0 if self.mask is None else self.mask.bits.nbytes
         return mask + sum(line.points.nbytes for line in self.lines)
 
     @property
     def lines(self) -> "tuple[Stroke | CutLine, ...]":
-        """All that was drawn by hand."""
         return (*self.strokes, *self.cut_lines)
 
 
@@ -189,9 +184,9 @@ def _require_near(points: Complexes, name: str) -> None:
 
 
 def paint(kept: Booleans, stroke: Stroke) -> None:
-    """Draw a stroke on the pixels (h, w) that are kept, first row on top, in place.
+    """Draw a stroke on the kept pixels (h, w), first row on top, in place.
 
-    A pixel belongs to it whose centre is within its radius of its way, up to a quarter of a pixel.
+    A pixel is covered if its centre is within the radius of the path, up to a quarter of a pixel.
     """
     centres = _close_together(stroke.points, stroke.radius)
     centres = centres.real + 1j * (len(kept) - centres.imag)
@@ -223,13 +218,13 @@ def _paint_discs(kept: Booleans, centres: Complexes, stroke: Stroke) -> None:
 
 
 def _spacing(radius: float) -> float:
-    """Return how far apart discs may be that leave a quarter of a pixel between them."""
+    """Return the spacing of discs that leaves at most a quarter of a pixel uncovered."""
     # Two circles whose centres are s apart meet about s² / 8 r within their common tangent.
     return min(radius, sqrt(2 * radius))
 
 
 def _close_together(points: Complexes, radius: float) -> Complexes:
-    """Return points along the way that are no farther apart than discs may be."""
+    """Return points along the path no farther apart than the spacing of discs."""
     along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
     count = int(np.ceil(along[-1] / _spacing(radius))) + 1
     places = np.union1d(along, np.linspace(0, along[-1], count))

@@ -1,7 +1,7 @@
-"""Grids of cells over a picture's pixels, neither too coarse nor too fine to work with.
+"""Grids of cells over a picture's pixels, neither too coarse nor too fine for the algorithms.
 
-Large masks are worked on in square blocks of pixels, so that no pixel is lost; the pixels of small
-ones are enlarged.
+Large masks are reduced to square blocks of pixels, without loss of any pixel; the pixels of small
+masks are enlarged.
 """
 
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ import numpy as np
 from engine.arrays import Booleans, Complexes
 from engine.errors import EngineError
 
-LONGEST = 1024  # cells along the subject's longer side: larger subjects are worked on in blocks
-ENLARGED = 640  # cells that small subjects are enlarged to, at most
+LONGEST = 1024  # cells along the subject's longer side: larger subjects are reduced to blocks
+ENLARGED = 640  # cells to which small subjects are enlarged, at most
 MOST_ENLARGED = 16  # cells per pixel
 EMPTY_MASK = "The mask has no pixel of a subject; give one with a drawing."
 PADDING = 0.06  # of the diagonal: free space around the subject
@@ -50,10 +50,10 @@ class WorkingGrid:
 
 
 def working_grid(mask: Booleans) -> WorkingGrid:
-    """Cut the subject out of its mask, first row on top, and bring it to a size to work with.
+    """Cut the subject out of its mask, first row on top, and bring it to a good size.
 
-    Large subjects are taken in blocks that count as soon as one of their pixels does, so that
-    the grid's subject covers the picture's; each pixel of small ones becomes several cells.
+    A block of a large subject counts if one of its pixels does, so that the grid's subject covers
+    the picture's. Each pixel of a small subject becomes several cells.
     """
     if not mask.any():
         raise EngineError(EMPTY_MASK)
@@ -85,8 +85,8 @@ def block_factor(shape: tuple[int, ...], longest: int) -> int:
 def reduce_blocks(mask: Booleans, factor: int, combine: np.ufunc) -> Booleans:
     """Combine the pixels (h, w) of each block into one (ceil(h / factor), ceil(w / factor)).
 
-    Blocks at the end of a row or column may be cut off. `combine` is `np.logical_or` for any pixel
-    of a block, `np.logical_and` for all.
+    Blocks at the end of a row or column may be incomplete. `combine` is `np.logical_or` for any
+    pixel of a block, `np.logical_and` for all.
     """
     missing = [(0, -side % factor) for side in mask.shape]
     whole = np.pad(mask, missing, constant_values=combine.identity)

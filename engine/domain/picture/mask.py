@@ -15,14 +15,14 @@ from engine.domain.picture.background import Background, flood_background
 from engine.domain.picture.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
 from engine.errors import EngineError
 
-VISIBLE_ALPHA = 8  # of 255: what is fainter may be left out, what is not must be kept
+VISIBLE_ALPHA = 8  # of 255: pixels with less may be left out, others are kept
 FAINT_GROWTH = 1.10  # fainter pixels are kept if the subject grows by no more than this
-OPAQUE_SHARE = 0.998  # visible pixels from which on the picture counts as opaque
+OPAQUE_SHARE = 0.998  # share of visible pixels from which the picture counts as opaque
 SMALLEST_SIDE = 8  # pixels
-LEAST_AGREEMENT = 0.80  # of the border with the background's colour
-SUBJECT_SHARES = (0.01, 0.97)  # of the picture, between which a removed background is believed
-MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more of it
-NOTICED_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: what is larger is told
+LEAST_AGREEMENT = 0.80  # share of the border with the background's colour
+SUBJECT_SHARES = (0.01, 0.97)  # of the picture: range in which a background is removed
+MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more
+NOTICED_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: larger parts are reported
 PICTURE_TYPE = "A picture must be uint8 (h, w, 4), not {dtype} {shape}."
 TRANSPARENT = "The picture is fully transparent; give one with a visible drawing."
 ALL_REMOVED = "The brush has removed all of the picture; keep a part of it."
@@ -34,23 +34,22 @@ SMALL_SUBJECT = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Subject:
-    """The part of a picture that is animated.
+    """The animated part of a picture.
 
     Parameters
     ----------
     mask : bool, shape (h, w)
         True on the subject, first row on top.
     cut : bool
-        Whether something was removed that the picture itself shows.
+        Whether visible pixels of the picture were removed.
     enclosed : bool, shape (h, w), optional
-        True on parts inside that have the colour of a removed background, kept or not; None where
-        there are none.
+        True on inner parts with the colour of a removed background, kept or not; None without any.
     opens : bool
-        Whether such parts are removed where nothing else was said.
-    swapped : tuple of complex
-        Those points of the cut-out that are in other holes.
+        Whether such parts are removed by default.
+    toggled_holes : tuple of complex
+        The cut-out's points in other holes.
     notices : tuple of str
-        What had to be done to the picture, in words.
+        Every remedy that was applied, in words.
     """
 
     mask: Booleans
@@ -62,20 +61,19 @@ class Subject:
 
 
 def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
-    """Find the subject of a picture: what is not transparent, or stands on a plain background.
+    """Find the subject of a picture: the opaque part, or the part before a plain background.
 
     Parameters
     ----------
     rgba : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
     cut_out : CutOut, optional
-        What tells it from the rest; None is `CutOut()`.
+        How the subject is separated from the background; None is `CutOut()`.
 
     Returns
     -------
     Subject
-        Every pixel with alpha ≥ 8 belongs to it, except a removed background, and what is removed
-        by hand.
+        It has every pixel with alpha ≥ 8, except a removed background, and pixels removed by hand.
 
     Raises
     ------
@@ -95,7 +93,7 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
         raise EngineError(TRANSPARENT)
     notices: tuple[str, ...] = ()
     background: Background | None = None
-    # A mask takes a quarter of a picture's memory: none is held that can be had again.
+    # A mask takes a quarter of a picture's memory: free each one that can be computed again.
     if cut_out.mask is not None:
         subject = _masked(_of_alpha(rgba, 1), cut_out.mask)
     elif isinstance(cut_out.background, tuple):
@@ -128,7 +126,7 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
 
 
 class _Within(NamedTuple):
-    """What is left of a subject without the enclosed parts that are removed, and the rest of it."""
+    """A subject without the removed enclosed parts, and all enclosed parts."""
 
     subject: Booleans
     area: Booleans | None
@@ -138,7 +136,7 @@ class _Within(NamedTuple):
 
 
 def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut) -> _Within:
-    """Decide which parts inside a subject go with the background that they have the colour of."""
+    """Decide which inner parts of the background's colour are removed with the background."""
     if background is None or not (area := background.enclosed & subject).any():
         return _Within(subject, None, opens=False, toggled_holes=cut_out.toggled_holes, notices=())
     labels, count = ndimage.label(area)
@@ -156,7 +154,7 @@ def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut)
         number = int(labels[row, column]) if inside else 0
         if number:
             opened[number] = cut_out.holes == "fill" or not opens
-        # Where holes are filled, those that are not have to be named.
+        # If holes are filled, only named ones stay open.
         if not number or cut_out.holes == "fill":
             others.append(point)
     opened[0] = False
@@ -173,7 +171,7 @@ def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut)
 
 
 def _masked(visible: Booleans, mask: Mask) -> Booleans:
-    """Return what a mask keeps of a picture."""
+    """Return the visible pixels that a mask keeps."""
     if mask.size != visible.shape[::-1]:
         height, width = visible.shape
         raise EngineError(
@@ -199,7 +197,7 @@ def _brushed(subject: Booleans, strokes: Sequence[Stroke]) -> Booleans:
 def _without_colour(
     rgba: Bytes, tolerance: int, colour: BackgroundColour
 ) -> tuple[Booleans, tuple[str, ...], Background | None]:
-    """Return what is left where a colour has flooded the picture from its border."""
+    """Return the pixels outside the flood of a colour from the picture's border."""
     visible = rgba[..., 3] > 0
     rgb = np.where(visible[..., None], rgba[..., :3], np.array(colour, dtype=np.uint8))
     background = flood_background(rgb, tolerance, colour)
@@ -222,9 +220,9 @@ def _of_alpha(rgba: Bytes, least: int) -> Booleans:
 
 
 def _without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
-    """Return all that is not fully transparent; a wide and nearly invisible haze is left out.
+    """Return all pixels that are not fully transparent, without a wide and nearly invisible haze.
 
-    So are nearly invisible islands: what scaling by a sharp filter leaves around edges.
+    Nearly invisible islands are left out too: a sharp scaling filter leaves them around edges.
     """
     present = _of_alpha(rgba, 1)
     if np.count_nonzero(present) == np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)):
@@ -238,7 +236,7 @@ def _without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
 
 
 def _seen_parts(rgba: Bytes) -> Booleans:
-    """Return all parts that are not fully transparent and have something visible."""
+    """Return all parts that are not fully transparent and have a visible pixel."""
     present = _of_alpha(rgba, 1)
     labels, count = _labelled(present)
     seen = np.zeros(count + 1, dtype=np.bool_)
@@ -250,11 +248,11 @@ def _seen_parts(rgba: Bytes) -> Booleans:
 
 
 def _labelled(mask: Booleans) -> tuple[npt.NDArray[Any], int]:
-    """Return the number of the part that each pixel is in, 0 outside, and how many there are."""
-    # Most pictures have few parts, and wider numbers would take as much memory as they do.
+    """Return the number of each pixel's part, 0 outside, and the number of parts."""
+    # Most pictures have few parts; wider numbers would take as much memory as the picture.
     for dtype in (np.uint16, np.int32):
         labels: npt.NDArray[Any] = np.empty(mask.shape, dtype=dtype)
-        with suppress(RuntimeError):  # there are more
+        with suppress(RuntimeError):  # more parts than the type can count
             return labels, int(ndimage.label(mask, np.ones((3, 3)), output=labels))
     raise EngineError("The picture has too many parts; scale it down.")
 
@@ -262,7 +260,7 @@ def _labelled(mask: Booleans) -> tuple[npt.NDArray[Any], int]:
 def _without_background(
     rgb: Bytes, tolerance: int
 ) -> tuple[Booleans, tuple[str, ...], Background | None]:
-    """Return what stands before a plain background, or the whole picture."""
+    """Return the subject before a plain background, or the whole picture."""
     background = flood_background(rgb, tolerance)
     share = 1 - float(background.mask.mean())
     least, most = SUBJECT_SHARES

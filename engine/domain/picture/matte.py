@@ -1,11 +1,11 @@
-"""The matte of a subject that was cut out of its picture: how opaque each of its pixels is.
+"""The matte of a subject that was cut out of its picture: the opacity of each pixel.
 
 A pixel at the subject's edge shows the colour C = α F + (1 − α) B, a mixture of the subject's F and
-the background's B (T. Porter and T. Duff, "Compositing digital images", 1984). B is what the
-background shows nearby, F what the subject shows where its edge ends; α is the mixture on the way
-from B to F that is nearest to C, each channel weighed by its noise. Where there is more noise than
-difference, as in a busy photograph, the distance from the mask's border tells α instead. F takes
-the place of C, so that nothing of B is left.
+the background's B (T. Porter and T. Duff, "Compositing digital images", 1984). B is the colour of
+the background nearby, F the colour of the subject where its edge ends. α is the mixture on the line
+from B to F that is nearest to C, with each channel weighted by its noise. Where there is more noise
+than difference, as in a busy photograph, α follows from the distance to the mask's border instead.
+F replaces C, so that nothing of B remains.
 """
 
 from collections.abc import Iterator
@@ -24,23 +24,24 @@ from engine.domain.picture.soft_edge import (
     weigh_hues,
 )
 
-TILE = 256  # pixels: side of the squares that are worked on one after the other
-ROOM = WIDEST_EDGE + NEARBY + 4  # pixels around a tile that are looked at
-FAINTEST = 1 / 64  # α from which on a pixel's own colour is unmixed
-# Standard deviation of what the distance from the mask's border tells of α in the middle of the
-# edge; at its ends, it is surer.
+TILE = 256  # pixels: side of the square tiles
+ROOM = WIDEST_EDGE + NEARBY + 4  # pixels of context around a tile
+FAINTEST = 1 / 64  # α from which a pixel's own colour is unmixed
+# Standard deviation of the α that follows from the distance to the mask's border, in the middle of
+# the edge; at its ends the distance is more certain.
 GEOMETRY, SURER = 0.25, 0.6
-MOST_NOISE = 0.25  # of α that is taken away at the most
-# Levels within which a pixel at the edge of a subject that clearly differs is background: so faint.
+MOST_NOISE = 0.25  # largest part of α that is removed as noise
+# Levels within which an edge pixel of a clearly different subject counts as background, and the α
+# up to which it does.
 ALIKE, FAINT = 20, 0.049
-PLAIN = 0.12  # standard deviation of α up to which that is believed
-# Levels between subject and background below which a subject that is no wider than its edge is
-# taken for what an encoder leaves around one; and the share of the usual contrast.
+PLAIN = 0.12  # largest standard deviation of α for that rule
+# A subject no wider than its edge is an encoder's artefact below so many levels from the
+# background, or below this share of the usual contrast.
 CLEAREST_THIN, THIN_SHARE = 30.0, 0.2
 
 
 def matte_picture(rgba: Bytes, subject: Booleans) -> Bytes:
-    """Make what is not the subject of a picture transparent.
+    """Make the background of a picture transparent.
 
     Parameters
     ----------
@@ -52,14 +53,15 @@ def matte_picture(rgba: Bytes, subject: Booleans) -> Bytes:
     Returns
     -------
     uint8, shape (h, w, 4)
-        Straight alpha: 0 well outside the subject, the picture's own well inside, and at the edge
-        in between, where the colours are the subject's alone. Transparent pixels beside the edge
-        have its colours too, so that none bleeds in where the texture is interpolated.
+        Straight alpha: 0 well outside the subject, the picture's own well inside, and mixed at the
+        edge in between, where the colours are the subject's alone. Transparent pixels beside the
+        edge have its colours too, so that no background bleeds in where the texture is
+        interpolated.
 
     Notes
     -----
-    The edge's width is measured, up to 6 pixels, and one for the whole picture. Cost: some filters
-    of the tiles through which the edge runs, 10 ms for each 256 × 256 pixels.
+    The edge's width, up to 6 pixels, is measured once for the whole picture. Cost: some filters of
+    the tiles with a part of the edge, 10 ms for each 256 × 256 pixels.
     """
     if subject.all() or not subject.any():
         return readonly(rgba)
@@ -77,7 +79,7 @@ def matte_picture(rgba: Bytes, subject: Booleans) -> Bytes:
 
 
 def _parts(subject: Booleans) -> Iterator[tuple[Part, Part]]:
-    """Yield the tiles at or through which the edge runs, without and with the room around them."""
+    """Yield the tiles with a part of the edge, without and with the context around them."""
     height, width = subject.shape
     for top in range(0, height, TILE):
         for left in range(0, width, TILE):
@@ -92,7 +94,7 @@ def _parts(subject: Booleans) -> Iterator[tuple[Part, Part]]:
 
 
 def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Part, edge: SoftEdge) -> None:
-    """Unmix the edge in a tile of the result, in place; `inner` is where it lies in the others."""
+    """Unmix the edge in a tile of the result, in place; `inner` is the tile in the pictures."""
     tile = Tile.of(rgba[..., :3], subject, edge.paper)
     mixture = Mixture.of(tile, edge.width)
     if not len(mixture.band):
@@ -103,11 +105,11 @@ def _mix(result: Bytes, rgba: Bytes, subject: Booleans, inner: Part, edge: SoftE
     behind = colours_of(tile.background.reshape(-1, 3)[mixture.band])
     off = mixture.off
     if edge.gain > 1:
-        # Blurred hues are mixed by an α of their own: by that, no background is left in them.
+        # Blurred hues are mixed by a separate α; with it no background remains in them.
         off = mix_hues(mixture.way, off, mixture.noise, alpha)
     share = np.maximum(alpha, FAINTEST)[:, None]
     unmixed = np.clip(behind + colours_of(off) / share, 0, 255)
-    # The fainter the subject, the less does its own pixel tell of it.
+    # The fainter the subject, the less its own pixel counts.
     colour = alpha[:, None] * unmixed + (1 - alpha[:, None]) * front
     whole = rgba.copy()
     whole[~subject, 3] = 0
@@ -142,13 +144,13 @@ def _alpha(tile: Tile, mixture: Mixture, edge: SoftEdge) -> Floats:
 
 
 def _levels_between(colours: Floats, others: Floats) -> Floats:
-    """Return by how many levels colours (n, 3) differ from others in their most different one."""
+    """Return the largest difference of a channel between colours (n, 3) and others, in levels."""
     levels: Floats = np.abs(colours - others).max(axis=1)
     return levels
 
 
 def _without_noise(alpha: Floats, least: Floats) -> Floats:
-    """Return α (n,) from 0 to 1, and either of them where it differs by no more than noise."""
+    """Return α (n,) in 0 to 1, rounded to 0 or 1 where the difference is noise."""
     alpha = np.where(alpha < 2 * least, 2 * (alpha - least), alpha)
     alpha = np.where(alpha > 1 - 2 * least, 1 - 2 * (1 - alpha - least), alpha)
     return np.clip(alpha, 0, 1)

@@ -11,13 +11,13 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
 
-SPECK = 2e-4  # of the subject's area: smaller parts are dropped, smaller holes are none
+SPECK = 2e-4  # of the subject's area: smaller parts are dropped, smaller holes are filled
 MOST_PARTS = 150
 MOST_DROPPED = 0.05  # of the subject's area
-CLOUD = 6  # parts from which on gaps are closed as well as bridged
-CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed in a cloud of parts
+CLOUD = 6  # number of parts from which gaps are closed as well as bridged
+CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed between many parts
 BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
-WITH_CORNERS = ((1, 1, 1), (1, 1, 1), (1, 1, 1))  # which neighbours of a pixel are one with it
+WITH_CORNERS = ((1, 1, 1), (1, 1, 1), (1, 1, 1))  # neighbours that are connected to a pixel
 FRAGMENTED = (
     "The subject is too fragmented: {count:,} parts, of which {dropped:.0%} of the area are "
     "specks; give a picture with at most {most} parts."
@@ -33,11 +33,11 @@ class WholePiece:
     mask : bool, shape (h, w)
         The subject with its holes filled.
     holes : int32, shape (h, w)
-        The number of the hole that a pixel belongs to, from 1, the largest hole first; 0 elsewhere.
+        The number of each pixel's hole, from 1, the largest hole first; 0 elsewhere.
     hole_areas : float64, shape (m,)
         Of the holes, in pixels.
     notices : tuple of str
-        What was joined and dropped.
+        Reports of joined and dropped parts.
     """
 
     mask: Booleans
@@ -46,7 +46,7 @@ class WholePiece:
     notices: tuple[str, ...]
 
     def numbers_at(self, points: Complexes) -> Indices:
-        """Return the numbers of the holes that points (n,) are in, in cells, y along the rows."""
+        """Return the numbers of the holes at points (n,) in cells, y along the rows."""
         rows, columns = np.floor(points.imag), np.floor(points.real)
         height, width = self.holes.shape
         inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
@@ -55,7 +55,7 @@ class WholePiece:
         return found[found > 0].astype(np.intp)
 
     def filled_notice(self, numbers: Sequence[int] | Indices, reason: str = "") -> tuple[str, ...]:
-        """Return a notice, in words, that holes with these numbers are filled, if there are any."""
+        """Return a notice that holes with these numbers are filled, or none without holes."""
         if not len(numbers):
             return ()
         largest = self.hole_areas[np.asarray(numbers) - 1].max() / np.count_nonzero(self.mask)
@@ -71,14 +71,14 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     Parameters
     ----------
     mask : bool, shape (h, w)
-        With at least one free pixel all round.
+        With at least one free pixel all around.
     diagonal : float
         Of the subject's box, in pixels of the mask.
 
     Raises
     ------
     EngineError
-        If the mask falls into too many parts to be joined.
+        If the mask has too many parts to be joined.
     """
     labels, count = ndimage.label(mask, WITH_CORNERS)
     areas = np.bincount(labels.ravel(), minlength=count + 1)[1:].astype(np.float64)
@@ -102,7 +102,7 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
 
 
 def keep_touching(area: Booleans, seeds: Booleans) -> Booleans:
-    """Return the components of `area`, joined by edges, that have a seed."""
+    """Return the components of `area`, connected by edges, that have a seed."""
     labels, count = ndimage.label(area)
     chosen = np.zeros(count + 1, dtype=np.bool_)
     chosen[labels[seeds]] = True
@@ -111,7 +111,6 @@ def keep_touching(area: Booleans, seeds: Booleans) -> Booleans:
 
 
 def remove_specks(mask: Booleans) -> Booleans:
-    """Return a mask without its specks: what is no part of a subject."""
     labels, count = ndimage.label(mask, WITH_CORNERS)
     areas = np.bincount(labels.ravel(), minlength=count + 1)
     kept = areas >= SPECK * areas[1:].sum()
@@ -120,7 +119,7 @@ def remove_specks(mask: Booleans) -> Booleans:
 
 
 def _counted(number: int, noun: str) -> str:
-    """Return a number with its noun, in the plural where it is one."""
+    """Return a number with its noun, in the plural if needed."""
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
@@ -132,7 +131,7 @@ def _require_few_parts(areas: Floats, kept: Booleans) -> None:
 
 
 def _bridged(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> Booleans:
-    """Join the labelled parts; gaps of a cloud of many parts are closed as well."""
+    """Join the labelled parts; if there are many, gaps between them are closed as well."""
     starts, ends, widths = _shortest_bridges(mask, labels, areas, diagonal)
     joined = mask.copy()
     for start, end, width in zip(starts.tolist(), ends.tolist(), widths.tolist(), strict=True):
@@ -176,7 +175,7 @@ def _shortest_bridges(
 
 
 def _central_shortest(keys: Indices, starts: Complexes, ends: Complexes) -> Indices:
-    """Return, for each key, one of its nearly shortest segments: that in the middle of them.
+    """Return, for each key, one of its nearly shortest segments: the middle one.
 
     Between parallel sides all segments are equally short; a bridge belongs in their middle.
     """
@@ -208,7 +207,7 @@ def _draw_capsule(mask: Booleans, start: complex, end: complex, width: float) ->
 
 
 def _closed(mask: Booleans, radius: float) -> Booleans:
-    """Close the gaps that no disc of `radius` fits into."""
+    """Close the gaps too narrow for a disc of `radius`."""
     padding = int(np.ceil(radius)) + 1
     padded = np.pad(mask, padding)
     grown = ndimage.distance_transform_edt(~padded) <= radius
@@ -218,7 +217,7 @@ def _closed(mask: Booleans, radius: float) -> Booleans:
 
 
 def _filled(mask: Booleans) -> tuple[Booleans, Integers, Floats]:
-    """Fill everything that the outside, found at pixel (0, 0), does not reach.
+    """Fill everything that a flood from the outside, pixel (0, 0), does not reach.
 
     Return the filled mask, the number (h, w) of each pixel's hole, the largest first and 0 where
     there is none or one that is smaller than a speck, and the area of each hole.

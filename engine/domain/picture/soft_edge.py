@@ -1,4 +1,4 @@
-"""How a subject fades into the background of its picture, measured along its edge."""
+"""Measurements of the fading of a subject into its background, along its edge."""
 
 from typing import NamedTuple
 
@@ -11,20 +11,20 @@ from engine.domain.picture.mixture import HUES, SURE, Mixture, Tile, fit_alpha
 Part = tuple[slice, slice]  # of a picture: rows and columns
 
 NARROWEST_EDGE, WIDEST_EDGE = 2, 6  # pixels over which the subject fades into the background
-PLATEAU = 0.08  # where the next pixel inwards differs by a smaller share, the edge ends
-MOST_PLACES = 0.8  # of the rim: where the edge is at most as wide as is measured
-MOST_MEASURED = 8  # tiles on which the edge is measured
-MOST_SAMPLED = 4000  # pixels of the rim likewise
-# Beside the edge, α is noise: standard deviations of it that are taken away at least, the share of
-# pixels that lies within what is taken away, and a margin.
+PLATEAU = 0.08  # the edge ends where the next pixel inwards differs by a smaller share
+MOST_PLACES = 0.8  # of the rim: share of places where the edge is at most as wide as the result
+MOST_MEASURED = 8  # tiles in which the edge is measured
+MOST_SAMPLED = 4000  # pixels of the rim that are measured
+# Beside the edge, α is noise: least number of standard deviations that are removed, the share of
+# pixels within the removed range, and a margin.
 LEAST_NOISE, MOST_BESIDE, MARGIN = 2.5, 0.99, 1.0
-# JPEG stores the last two tones at half the resolution: how much they are blurred, if clearly, is
-# measured where α is about one half, if brightness tells it well enough.
+# JPEG stores the last two tones at half the resolution. Their blur counts if it is clear. It is
+# measured around α of one half, where brightness determines α well.
 MIDDLE, BLURRED, SHARPEST = 0.25, 1.05, 4.0
 
 
 class SoftEdge(NamedTuple):
-    """What is measured of the edge of a whole subject.
+    """Measurements of the edge of a whole subject.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ class SoftEdge(NamedTuple):
     disparity : float
         Standard deviation of α by blueness and redness from α by brightness, beyond their noise.
     noise : float
-        Standard deviations of α beyond which it is none.
+        Standard deviations of α up to which it counts as noise.
     contrast : float
-        Levels between subject and background that are usual.
+        Usual difference between subject and background, in levels.
     paper : float64, shape (3,)
         The background's colour where none is nearby.
     """
@@ -53,7 +53,7 @@ class SoftEdge(NamedTuple):
 def measure_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part]]) -> SoftEdge:
     """Measure the edge of a subject (h, w) of a picture (h, w, 4) on some of the `windows`.
 
-    They are the parts through which the edge runs, without and with room around them.
+    These are the tiles with a part of the edge, without and with the context around them.
     """
     step = max(1, len(rgba) * rgba.shape[1] // (MOST_SAMPLED * 25))
     paper = np.median(rgba[..., :3][~subject][::step], axis=0).astype(np.float64)
@@ -88,9 +88,9 @@ def measure_edge(rgba: Bytes, subject: Booleans, windows: list[tuple[Part, Part]
 def weigh_hues(
     way: Floats, off: Floats, noise: Floats, edge: SoftEdge
 ) -> tuple[Floats, Floats, Floats]:
-    """Return the parts of a mixture with its hues made as sharp as brightness, and less trusted."""
+    """Return a mixture's parts with hues as sharp as brightness, and with less weight."""
     if edge.gain > 1:
-        # Around the middle of the way, and no farther than its ends.
+        # Around the middle of the way, and limited to its ends.
         own, _ = fit_alpha(way[:, HUES], off[:, HUES], noise[:, HUES])
         off = mix_hues(way, off, noise, np.clip(0.5 + edge.gain * (own - 0.5), 0, 1))
     noise = noise.copy()
@@ -99,7 +99,7 @@ def weigh_hues(
 
 
 def mix_hues(way: Floats, off: Floats, noise: Floats, alpha: Floats) -> Floats:
-    """Return where pixels are off the background if their hues were mixed by α (n,)."""
+    """Return the differences from the background if the hues were mixed by α (n,)."""
     own, _ = fit_alpha(way[:, HUES], off[:, HUES], noise[:, HUES])
     moved = off.copy()
     moved[:, HUES] += (alpha - own)[:, None] * way[:, HUES]
@@ -107,9 +107,9 @@ def mix_hues(way: Floats, off: Floats, noise: Floats, alpha: Floats) -> Floats:
 
 
 def _fading(tile: Tile) -> Indices:
-    """Return over how many pixels the subject fades, inwards from each pixel of its rim.
+    """Return the number of pixels over which the subject fades, inwards from each rim pixel.
 
-    That is where the colour ceases to move away from the background's.
+    The fading ends where the colour ceases to move away from the background's.
     """
     rim = np.argwhere((tile.depth > 0) & (tile.depth < 1.5))
     rim = rim[:: max(1, len(rim) * MOST_MEASURED // MOST_SAMPLED)]
@@ -124,14 +124,14 @@ def _fading(tile: Tile) -> Indices:
 
 
 def _sharpening(way: Floats, off: Floats, noise: Floats) -> tuple[float, float]:
-    """Return how much steeper α is in brightness than in hue, and how far they differ then."""
+    """Return how much steeper α is in brightness than in hue, and their remaining difference."""
     bright, _ = fit_alpha(way[:, :1], off[:, :1], noise[:, :1])
     hue, _ = fit_alpha(way[:, HUES], off[:, HUES], noise[:, HUES])
     trust = way[:, 0] ** 2 / noise[:, 0]
     middle = np.abs(hue - 0.5) < MIDDLE
     weight = np.where(middle, trust, 0.0)
     spread = (weight * (hue - 0.5) ** 2).sum()
-    if spread < 1.0:  # brightness tells less than one value of α
+    if spread < 1.0:  # brightness determines α no better than to one unit
         return 1.0, 0.0
     slope = (weight * (hue - 0.5) * (bright - 0.5)).sum() / spread
     gain = float(min(slope, SHARPEST)) if slope > BLURRED else 1.0
@@ -140,7 +140,7 @@ def _sharpening(way: Floats, off: Floats, noise: Floats) -> tuple[float, float]:
     total = weight.sum()
     if total < 1.0:
         return gain, 0.0
-    # What is left beyond brightness's own noise, whose variance is 1 / trust.
+    # The difference beyond brightness's own noise, whose variance is 1 / trust.
     error = (weight * (np.clip(bright, 0, 1) - sharp) ** 2).sum() / total
     own = np.count_nonzero(weight) / total
     return gain, float(np.sqrt(max(error - own, 0.0)))

@@ -1,7 +1,7 @@
-"""Single places that move, whatever they are places of.
+"""Motions of single places.
 
-In: where a place is at frames, or was recorded at any times.
-Out: how a spring swings about it, at any time; few keys for what was recorded.
+In: places at frames, or recorded at any times.
+Out: a spring's offsets from a place, at any time; few keys for a recording.
 Imports: `engine.arrays`, `engine.errors`.
 """
 

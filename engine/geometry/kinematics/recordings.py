@@ -1,4 +1,4 @@
-"""Recorded drags: few keys whose motion stays near what a hand did."""
+"""Recorded drags: few keys whose motion stays near the recording."""
 
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
@@ -11,16 +11,17 @@ from engine.arrays import Complexes, Floats, Indices, as_number, as_points, as_r
 from engine.errors import EngineError
 from engine.geometry.kinematics.springs import FARTHEST
 
-# Frames between two places beyond which the way from one to the other counts as recorded.
+# Longest gap in frames between two recorded places; in longer gaps the straight way counts as
+# recorded.
 GAP = 1.0
-EARLY = 0.1  # frames that the first key may be before the recording, and the last one after it
-# Of a sample's weight: how strongly a key that nothing else decides is held on the recording.
+EARLY = 0.1  # frames between the recording and a first key before it, or a last key after it
+# Of a sample's weight: how strongly an otherwise undetermined key is held on the recording.
 TIE = 1e-6
-# Keys that are so many apart hardly know of each other.
+# Keys this far apart hardly influence each other.
 APART = 8
-SLACK = 1.05  # by what factor more may be missed where the tolerance cannot be kept
-REACH = 3  # intervals on either side of a key that is dropped in which much changes
-# Frames that a recording may span, whose memory grows with them, and the last one that it may have.
+SLACK = 1.05  # factor of the largest error where the tolerance cannot be kept
+REACH = 3  # intervals on either side of a dropped key that change much
+# Most frames of a recording, as memory grows with them, and its last possible frame.
 MOST_FRAMES, LATEST = 1_000_000, 1e9
 TOO_LONG = (
     "A recording spans at most {most:,} frames, not those from {first:g} to {last:g}; give it in "
@@ -30,7 +31,7 @@ TOLERANCE = "The tolerance of a recording, in pixels,"
 
 
 class FittedKeys(NamedTuple):
-    """Keys (k,), k ≥ 1, that a motion passes at velocities of their own."""
+    """Keys (k,), k ≥ 1, with the velocities of the motion there."""
 
     frames: Indices
     places: Complexes
@@ -44,39 +45,39 @@ def fit_keys(
     *,
     required: Collection[int] = (),
 ) -> FittedKeys:
-    """Return few keys on whole frames whose motion stays near recorded places; none could go.
+    """Return few keys on whole frames whose motion stays near recorded places; none is superfluous.
 
     Parameters
     ----------
     times : array_like of float, shape (n,)
-        When each place was recorded, in frames, n ≥ 1; in no even steps, and never going back. Of
-        places at one time the last one counts.
+        Time of each recorded place, in frames, n ≥ 1; unevenly spaced, never decreasing. Of places
+        at one time the last one counts.
     places : array_like of complex, shape (n,)
         Pixels. Between two that are more than a frame apart the way counts as straight.
     tolerance : float
-        Pixels, 0 or more, that a recorded place may be beside the motion; 0 for a key in each
-        frame, unless fewer miss nothing.
+        Largest distance in pixels of a recorded place from the motion, 0 or more; 0 for a key in
+        each frame, unless fewer keys are exact.
     required : collection of int
-        Frames that have a key in any case, if they are between the first and the last.
+        Frames that get a key, if they are between the first and the last.
 
     Returns
     -------
     FittedKeys
-        From the first whole frame of the recording to its last one; one key, at rest, where there
-        are not two. The tolerance is kept where keys in all frames around can keep it.
+        From the first whole frame of the recording to its last one; one key, at rest, if there is
+        only one whole frame. The tolerance is kept where keys in all frames around can keep it.
 
     Raises
     ------
     EngineError
-        If something is not finite, if times go back or are too far apart, or if the tolerance is
+        If a value is not finite, if times decrease or are too far apart, or if the tolerance is
         below 0.
 
     Notes
     -----
     The motion is a cubic Hermite polynomial between two keys. It is linear in the places and the
-    velocities of the keys, which are found all at once by least squares. Keys are put where the
-    motion misses most, until it is within the tolerance; then the one that is least needed goes,
-    again and again, far from each other many at once.
+    velocities of the keys, which are found all at once by least squares. Keys are added where the
+    error is largest, until it is within the tolerance. Then the least needed key is dropped, again
+    and again; keys far from each other are dropped together.
     """
     when = as_reals(times, "The times of a recording")
     where = as_points(places, "Recorded places", most=FARTHEST)
@@ -109,13 +110,13 @@ def fit_keys(
 
 
 def evaluate_keys(keys: FittedKeys, times: Floats) -> Complexes:
-    """Return where the motion through two keys or more is at times (t,) from first to last."""
+    """Return the motion through two or more keys at times (t,) from first to last."""
     interval, rows = _rows(keys.frames, times)
     return _motion(rows, keys.places, keys.velocities, interval)
 
 
 class _Recording:
-    """Places (n,) by their times, from the first frame to the last, and how near keys stay."""
+    """Places (n,) by their times, from first to last frame, and the errors that keys may have."""
 
     def __init__(
         self, times: Floats, places: Complexes, first: int, last: int, tolerance: float
@@ -127,12 +128,13 @@ class _Recording:
         self.tolerance = tolerance
 
     def fitted(self, frames: Indices) -> tuple[FittedKeys, Floats]:
-        """Return the best keys at some frames, and by how much each recorded place is missed.
+        """Return the best keys at these frames, and the error at each recorded place.
 
-        The normal equations are solved in bands: a key knows of its neighbours only.
+        The normal equations are banded: a key depends on its neighbours only.
         """
         interval, rows = _rows(frames, self.times)
-        # The unknowns are how far keys are beside the recording, where nothing else holds them.
+        # The unknowns are offsets of the keys from the recording, which hold undetermined keys
+        # there.
         at = frames - frames[0]
         near, ways = self.at_frames[at], self.ways[at]
         rest = self.places - _motion(rows, near, ways, interval)
@@ -140,11 +142,11 @@ class _Recording:
         end = 2 * len(frames) - 2
 
         def of_intervals(products: Floats) -> Floats:
-            # None of them is empty.
+            # No group is empty.
             sums: Floats = np.add.reduceat(products, starts)
             return sums
 
-        # Of each key its place, and then its velocity.
+        # For each key its place, and then its velocity.
         bands, right = np.zeros((4, end + 2)), np.zeros((end + 2, 2))
         for i in range(4):
             right[i : i + end : 2, 0] += of_intervals(rows[i] * rest.real)
@@ -158,12 +160,13 @@ class _Recording:
         return keys, np.abs(motion - self.places)
 
     def refine(self, keys: Indices) -> Indices:
-        """Put keys where the motion misses most, half way between two, until it is near."""
+        """Add keys half way between two where the error is largest, until it is small."""
         while True:
             missed = self.fitted(keys)[1]
             most = np.zeros(len(keys) - 1)
             np.maximum.at(most, _intervals(keys, self.times), missed)
-            # Where there is no frame between two keys, those beside may tell how they are passed.
+            # Where no frame lies between two keys, neighbouring intervals may help their
+            # velocities.
             is_short = np.diff(keys) == 1
             most = np.where(is_short, 0.0, np.maximum(most, _around(np.where(is_short, most, 0.0))))
             worst = np.flatnonzero((most > self.tolerance) & (most == _around(most)))
@@ -172,8 +175,8 @@ class _Recording:
             keys = np.sort(np.append(keys, (keys[worst] + keys[worst + 1]) // 2))
 
     def simplify(self, keys: Indices, fixed: Sequence[int]) -> Indices:
-        """Drop keys that need not be there, the one first without which it misses least."""
-        needed = [*fixed]  # and those without which too much is missed far from them
+        """Drop superfluous keys, first the key without which the error is smallest."""
+        needed = [*fixed]  # and keys without which errors far from them are too large
         missed = self.fitted(keys)[1]
         allowed = np.where(missed > self.tolerance, SLACK * missed, self.tolerance)
         while True:
@@ -190,13 +193,13 @@ class _Recording:
                     break
                 if len(dropped) == 1:
                     needed.append(int(keys[dropped[0]]))
-                # Those that are nearest to where too much is missed stay, or one of them.
+                # Of the dropped keys, those nearest to too large errors stay.
                 near = np.unique(np.abs(keys[dropped][:, None] - beyond).argmin(axis=0))
                 dropped = np.delete(dropped, near if len(near) < len(dropped) else near[:1])
 
     @staticmethod
     def _far_apart(excesses: Floats) -> Indices:
-        """Return keys that may go, the least needed ones first, and none near another."""
+        """Return keys that may go, the least needed ones first, and no two near each other."""
         dropped, is_near = [], excesses > 0
         for key in np.argsort(excesses, kind="stable").tolist():
             if not is_near[key]:
@@ -205,7 +208,7 @@ class _Recording:
         return np.array(dropped, dtype=np.intp)
 
     def _excesses(self, keys: Indices, allowed: Floats) -> Floats:
-        """Return by how much too much is missed around each key without it, the ends aside."""
+        """Return the excess error around each key without it, except at the ends."""
         excesses = np.full(len(keys), np.inf)
         for start in range(1, min(APART, len(keys) - 2) + 1):
             without = np.arange(start, len(keys) - 1, APART)
@@ -218,7 +221,7 @@ class _Recording:
 
 
 def _filled(times: Floats, places: Complexes) -> tuple[Floats, Complexes]:
-    """Return a recording with places at the frames in its gaps, straight across."""
+    """Return a recording with places at the frames in its gaps, on straight lines."""
     frames = np.arange(np.ceil(times[0]), times[-1])
     following = np.searchsorted(times, frames, side="right")
     frames = frames[times[following] - times[following - 1] > GAP]
@@ -227,28 +230,28 @@ def _filled(times: Floats, places: Complexes) -> tuple[Floats, Complexes]:
 
 
 def _along(frames: Indices | Floats, times: Floats, places: Complexes) -> Complexes:
-    """Return where a recording is at frames, straight between its places."""
+    """Return the places of a recording at frames, linear in between."""
     return np.asarray(
         np.interp(frames, times, places.real) + 1j * np.interp(frames, times, places.imag)
     )
 
 
 def _intervals(keys: Indices, times: Floats) -> Indices:
-    """Return the interval (t,) between keys in which each time is."""
+    """Return the interval (t,) between keys of each time."""
     return np.clip(np.searchsorted(keys, times, side="right") - 1, 0, len(keys) - 2)
 
 
 def _around(values: Floats) -> Floats:
-    """Return the largest of each value and two on either side."""
+    """Return the largest of each value and its two neighbours on either side."""
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(values, 2), 5)
     largest: Floats = windows.max(axis=1)
     return largest
 
 
 def _rows(keys: Indices, times: Floats) -> tuple[Indices, Floats]:
-    """Return in which intervals times are, and the weights (4, t) there of the keys around them.
+    """Return the intervals of times, and the weights (4, t) of the keys at their ends.
 
-    They are those of the place and of the velocity of the key before, and of the key after.
+    The weights are of place and velocity of the key before, and of the key after.
     """
     interval = _intervals(keys, times)
     length = np.diff(keys)[interval].astype(float)
@@ -266,7 +269,7 @@ def _rows(keys: Indices, times: Floats) -> tuple[Indices, Floats]:
 
 
 def _motion(rows: Floats, places: Complexes, velocities: Complexes, interval: Indices) -> Complexes:
-    """Return the motion (t,) of keys by the weights of those around intervals."""
+    """Return the motion (t,) from the weights of the keys at the ends of intervals."""
     after = interval + 1
     numbers = places[interval], velocities[interval], places[after], velocities[after]
     motion: Complexes = sum(row * number for row, number in zip(rows, numbers, strict=True))

@@ -1,4 +1,4 @@
-"""Springs: a place that follows another one late, and swings about it."""
+"""Springs: a place that follows another place late, and swings about it."""
 
 from dataclasses import dataclass
 from math import hypot
@@ -10,37 +10,37 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, Indices, as_number, as_points, freeze
 from engine.errors import EngineError
 
-FARTHEST = 1e100  # pixels: the squares of farther places are no numbers
-INVISIBLE = 0.01  # pixels: a swing that stays below is not seen, and ends
-FADE_FRAMES = 6  # frames in which it ends
-# Pixels to which a jump of the base's velocity would make it swing: less is what rounding leaves.
+FARTHEST = 1e100  # pixels: the squares of larger values overflow
+INVISIBLE = 0.01  # pixels: a smaller swing is invisible, and ends
+FADE_FRAMES = 6  # frames in which it fades out
+# Swing in pixels caused by a jump of the base's velocity: smaller jumps are rounding errors.
 NEGLIGIBLE_DRIVE = 1e-9
 SETTLED_SHARE = 1e-12  # share of a swing that is left when it has settled
 LONGEST = 2**20  # frames in which a spring may settle
-CLOSED = 1e-12  # smallest singular value of the equation of a loop that can be solved
-WIDEST = np.pi / 2  # to which side an arm turns at most, in radians
+CLOSED = 1e-12  # smallest singular value of a solvable equation of a loop
+WIDEST = np.pi / 2  # largest rotation of an arm to one side, in radians
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SpringResponse:
-    """By how much a place is beside the one that it follows, at any time; made by `swing`.
+    """Offsets of a spring's place from its base, at any time; made by `simulate_spring`.
 
     Parameters
     ----------
     angle : float
-        ω/fps, by how much a swing without damping would turn in a frame, in radians.
+        ω/fps, the phase that a swing without damping advances in a frame, in radians.
     damping : float
         ζ; 1 is critical.
     lag : float
-        Frames by which it is late.
+        Delay in frames.
     limit : float
-        Pixels that it never reaches.
+        Pixels that the offset never reaches.
     loop : bool
-        Whether it comes round after as many frames as there are states.
+        Whether it repeats after as many frames as there are states.
     states : complex128, shape (n, 2)
         o and ȯ/ω right after each frame, in pixels.
     fading : float64, shape (n,)
-        Part of the fade that is over at each frame; negative where it does not fade.
+        Finished part of the fade at each frame; negative without a fade.
     """
 
     angle: float
@@ -52,14 +52,14 @@ class SpringResponse:
     fading: Floats
 
     def at(self, times: npt.ArrayLike) -> Complexes:
-        """Return the offsets at some times.
+        """Return the offsets at times.
 
         Parameters
         ----------
         times : array_like of float
-            In frames from the first place on, of any shape, not rounded: the flow from the frame
-            before leads there. Before the first frame nothing swings; what is after the last one
-            is as it is there. In a loop times come round.
+            In frames from the first place on, of any shape, not rounded: the exact flow leads there
+            from the frame before. Before the first frame the offset is 0; after the last frame it
+            stays the same. In a loop times repeat.
 
         Returns
         -------
@@ -99,35 +99,30 @@ def simulate_spring(
     loop: bool = False,
     roots: npt.ArrayLike | None = None,
 ) -> SpringResponse:
-    """Return how a spring swings about a place whose motion drives it.
+    """Return the swing of a spring about a place whose motion drives it.
 
     Parameters
     ----------
     places : array_like of complex, shape (n,)
-        q, where the place is at n ≥ 1 consecutive frames, in pixels of the world. In a loop the
-        last frame is the first one again.
+        q, the place at n ≥ 1 consecutive frames, in pixels of the world. In a loop the last frame
+        is the first one again.
     fps : float
         Frames a second, above 0.
     frequency : float
         Of the swing without damping, in Hz, above 0.
     damping : float
-        ζ, 0 or more: 1 is critical, above it nothing swings over. In a loop it is above 0.
+        ζ, 0 or more: 1 is critical, above it nothing overshoots. In a loop it is above 0.
     lag : float
-        Frames, 0 or more, also parts of one, by which all of it is late; in a loop it comes round.
+        Delay in frames, 0 or more, also fractional; in a loop it is cyclic.
     strength : float
         Factor of the offsets.
     limit : float
-        Pixels, above 0. Offsets o are o/√(1 + |o/limit|²), so that they stay below it.
+        Pixels, above 0. Offsets o become o/√(1 + |o/limit|²), so that they stay below it.
     loop : bool
-        Whether the motion comes round.
+        Whether the motion repeats.
     roots : array_like of complex, shape (n,), optional
-        r, where the root is at these frames. With it the spring turns the arm from the root to the
-        place, q − r, and what the swing returns are arcs: see `turn_arm`.
-
-    Returns
-    -------
-    Swing
-        To be asked for offsets from q, or for arcs, at any time.
+        r, the root at these frames. With it the spring rotates the arm from the root to the place,
+        q − r, and the response returns arcs: see `turn_arm`.
 
     Raises
     ------
@@ -137,19 +132,20 @@ def simulate_spring(
     Notes
     -----
     The offset o obeys ö + 2ζωȯ + ω²o = −q̈. Between frames q is linear, so that q̈ is an impulse at
-    each frame, where ȯ jumps by −Δq̇, and between frames the exact flow of the free oscillator does:
-    every frame rate of an export sees one motion. q stands still before its first frame, and the
-    spring is at rest there: where q sets out at once, what follows it does not.
+    each frame, where ȯ jumps by −Δq̇; between frames the exact flow of the free oscillator applies.
+    So every frame rate of an export shows one motion. q stands still before its first frame, and
+    the spring is at rest there. So a sudden start of q does not move the offset at once.
 
-    In a loop it is the periodic motion, s = (I − Mᴺ)⁻¹c, with the flow M of a frame and what one
-    round c from rest leads to.
+    In a loop it is the periodic motion, s = (I − Mᴺ)⁻¹c, with the flow M of a frame and the state c
+    after one round from rest.
 
-    An arm's angle φ obeys φ̈ + 2ζωφ̇ + ω²φ = −Im(q̈ ē)/L, with its length L and its direction e: the
-    part of −q̈ across the arm, in axes that turn with it. The arc o = Lφ is found in place of φ.
+    An arm's angle φ obeys φ̈ + 2ζωφ̇ + ω²φ = −Im(q̈ ē)/L, with its length L and its direction e:
+    the part of −q̈ across the arm, in axes that rotate with it. The arc o = Lφ is computed in place
+    of φ.
 
-    A swing ends where its amplitude, √(|o|² + |ȯ/ω|²), which never grows by itself, is below `GONE`
-    and nothing drives it for `FADE` frames: in so many it fades by a cubic, and is exactly 0 until
-    q's velocity changes again. A cost of some microseconds a frame is paid once.
+    The amplitude √(|o|² + |ȯ/ω|²) never grows by itself. A swing ends where it is below `INVISIBLE`
+    and no jump drives it for `FADE_FRAMES`: in these frames it fades by a cubic, and is exactly 0
+    until q's velocity changes again. The cost, some microseconds a frame, is paid once.
     """
     q = as_points(places, "The places that drive a spring", at_least=1, most=FARTHEST)
     fps = as_number(fps, "The frames a second of a spring", above=0)
@@ -184,7 +180,7 @@ def simulate_spring(
 
 
 def turn_arm(arm: complex, arc: float) -> complex:
-    """Return by how much the end of an arm moves that turns about its root by an arc, in pixels.
+    """Return the displacement in pixels of an arm's end that moves by an arc about the root.
 
     The arm keeps its length, and its angle φ = arc/length becomes φ/√(1 + (φ/`WIDEST`)²).
     """
@@ -194,9 +190,9 @@ def turn_arm(arm: complex, arc: float) -> complex:
 
 
 def frames_to_settle(fps: float, frequency: float, damping: float) -> float:
-    """Return after how many frames a free swing is over but for `FORGOTTEN`; ∞ if it never is.
+    """Return the frames until a free swing has decayed to `SETTLED_SHARE`; ∞ if it never does.
 
-    The norm of the flow never grows, so that it stays over.
+    The norm of the flow never grows, so the swing stays below.
     """
     frames = np.ceil(np.geomspace(1, LONGEST, 200))
     left = np.linalg.norm(
@@ -241,7 +237,7 @@ def oscillator_flow(angles: Floats, damping: float) -> Floats:
 
 
 class _Run(NamedTuple):
-    """The states after each frame, what part of a fade is over, and the state after the last."""
+    """The states after each frame, the finished part of fades, and the last state."""
 
     states: Complexes
     fading: Floats
@@ -251,7 +247,10 @@ class _Run(NamedTuple):
 def _run(
     jumps: Complexes, step: Floats, until_next: Indices, start: tuple[complex, complex] = (0j, 0j)
 ) -> _Run:
-    """Run through frames with jumps (n,) of q̇/ω, that many frames before the next one each."""
+    """Run through frames with jumps (n,) of q̇/ω.
+
+    `until_next` counts the frames from each one to the next jump.
+    """
     (a, b), (c, d) = step.tolist()
     o, v = start
     over, states, fading = -1, [], []
@@ -270,14 +269,14 @@ def _run(
 
 
 def _round(jumps: Complexes, step: Floats) -> _Run:
-    """Run once round a loop, periodically."""
+    """Run once around a loop, periodically."""
     until_next = _until_next(jumps, again=True)
 
     def rolled(first: int, until_next: Indices, start: tuple[complex, complex] = (0j, 0j)) -> _Run:
         run = _run(np.roll(jumps, -first), step, np.roll(until_next, -first), start)
         return _Run(np.roll(run.states, first, axis=0), np.roll(run.fading, first), run.end)
 
-    # No fade goes on at a jump.
+    # No fade continues across a jump.
     first, never = int(np.argmax(jumps != 0)), np.zeros_like(until_next)
     left = np.eye(2) - np.linalg.matrix_power(step, len(jumps))
     _require(
@@ -289,14 +288,14 @@ def _round(jumps: Complexes, step: Floats) -> _Run:
     fades = np.roll(rolled(first, until_next, start).fading >= 0, -first)
     if not fades.any():
         return plain
-    # From rest at the first jump after a fade, if a round leads there to rest again.
+    # From rest at the first jump after a fade, if a round leads to rest there again.
     faded = (first + int(fades.argmax())) % len(jumps)
     run = rolled((faded + int(until_next[faded])) % len(jumps), until_next)
     return plain if run.end.any() else run
 
 
 def _jumps(places: Complexes, *, loop: bool) -> Complexes:
-    """Return by how much the velocity changes at each frame, in pixels a frame; for a round."""
+    """Return the velocity jump at each frame, in pixels a frame; for a loop, of one round."""
     velocities = np.diff(places)
     if not loop:
         return np.diff(velocities, prepend=0, append=0)
@@ -314,7 +313,7 @@ def _across(jumps: Complexes, arms: Complexes) -> Complexes:
 
 
 def _until_next(jumps: Complexes, *, again: bool = False) -> Indices:
-    """Return how many frames there are from each one to the next one with a jump, more if none."""
+    """Return the number of frames from each frame to the next jump, larger if there is none."""
     count = len(jumps)
     frames = np.flatnonzero(jumps)
     frames = np.append(frames, frames + count if again else [])

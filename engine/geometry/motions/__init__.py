@@ -1,7 +1,7 @@
-"""Ready motions: what a body does over a cycle, for whatever body it is.
+"""Motion presets: cycles of joint motion, independent of the body.
 
 In: the joints of a drawing by name, and a motion with its parameters.
-Out: where each joint is at each moment.
+Out: the position of each joint at each moment.
 Imports: `engine.arrays`, `engine.errors`.
 """
 

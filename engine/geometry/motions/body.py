@@ -1,4 +1,4 @@
-"""A drawing as motions see it: its joints at rest, its lengths, and which way it looks."""
+"""A drawing as motions see it: joints at rest, lengths, and facing."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -17,13 +17,12 @@ SIDES = {"L": "R", "R": "L"}
 
 
 def other_side(joint: str) -> str:
-    """Return the joint on the other side; one without a side is its own."""
+    """Return the joint on the other side; a joint without a side is returned itself."""
     name, dot, side = joint.rpartition(".")
     return f"{name}.{SIDES[side]}" if dot and side in SIDES else joint
 
 
 def without_side(joint: str) -> str:
-    """Return a joint's name without its side."""
     name, dot, side = joint.rpartition(".")
     return name if dot and side in SIDES else joint
 
@@ -34,19 +33,18 @@ class Body:
 
     Parameters
     ----------
-    kind : BodyKind
     joints : mapping of str to complex
-        Places at rest, y up; of a kind without joints, any points of it by any names.
+        Places at rest, y up; for a kind without joints, any points by any names.
     box : tuple of complex
         The lower left and the upper right corner of the drawing.
     facing : int
-        1 where it looks to the right, -1 to the left; from the front 1.
+        1 if the drawing faces right or the viewer, -1 if it faces left.
 
     Raises
     ------
     EngineError
-        If the kind has no such joint, a place is not finite, two joints of a limb are at one place,
-        or the box of a kind without joints has no width or no height.
+        If the kind has no such joint, a place is not finite, two joints of a limb coincide, or the
+        box of a kind without joints has no width or no height.
     """
 
     kind: BodyKind
@@ -73,18 +71,18 @@ class Body:
         object.__setattr__(self, "parents", MappingProxyType(parents))
 
     def require_joints(self, names: Iterable[str], what: str) -> None:
-        """Raise an `EngineError` where joints that something needs are not there."""
+        """Raise an `EngineError` if a joint that `what` needs is missing."""
         missing = [name for name in names if name not in self.joints]
         if missing:
             raise EngineError(f"{what} needs {', '.join(missing)} of {self.kind.name!r}")
 
     def mirrored(self) -> Self:
-        """Return it with its sides swapped, looking the other way."""
+        """Return the body with its sides swapped, facing the other way."""
         joints = {other_side(name): place for name, place in self.joints.items()}
         return replace(self, joints=joints, facing=-self.facing)
 
     def limb_joints(self, tip: str) -> tuple[str, ...]:
-        """Return the joints of an arm or a leg from its root, which is on the trunk, to its tip."""
+        """Return the joints of an arm or a leg from its root on the trunk to its tip."""
         self.require_joints([tip], "A limb")
         path = [tip]
         while path[-1] and without_side(path[-1]) not in {"hip", "shoulder", "hips", "chest"}:
@@ -92,7 +90,6 @@ class Body:
         return tuple(name for name in reversed(path) if name)
 
     def path_length(self, joints: Iterable[str]) -> float:
-        """Return how long the way is from joint to joint."""
         names = list(joints)
         self.require_joints(names, "A length")
         places = np.array([self.joints[name] for name in names])

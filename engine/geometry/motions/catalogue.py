@@ -6,7 +6,7 @@ from engine.geometry.motions.motion import Motion
 
 
 def find_motion(name: str) -> Motion:
-    """Return the motion of a name; raise an `EngineError` where there is none."""
+    """Return the motion with this name; raise an `EngineError` if there is none."""
     if name not in MOTIONS:
         raise EngineError(f"there is no motion {name!r}; the motions are {', '.join(MOTIONS)}")
     return MOTIONS[name]

@@ -1,4 +1,4 @@
-"""Quantities that come round: smooth functions of the phase of a cycle."""
+"""Periodic functions of the phase of a cycle."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -8,24 +8,22 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-Periodic = Callable[[float], float]  # of the phase, which comes round at 1
+Periodic = Callable[[float], float]  # of the phase, with period 1
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
     """A periodic C² curve through a few values, each at its phase in [0, 1)."""
 
-    values: tuple[tuple[float, float], ...]  # phases, ascending, and what it is there
+    values: tuple[tuple[float, float], ...]  # ascending phases, and the value at each
 
     def __call__(self, phase: float) -> float:
-        """Return the value at a phase, which comes round at 1."""
         first = self.values[0][0]
         return float(_spline(self)(first + (phase - first) % 1.0))
 
 
 @lru_cache(maxsize=1024)
 def _spline(curve: Curve) -> CubicSpline:
-    """Return what a curve is in between."""
     phases, heights = zip(*curve.values, strict=True)
     if len(phases) == 1:
         phases, heights = (phases[0], phases[0] + 0.5), 2 * heights
@@ -33,7 +31,7 @@ def _spline(curve: Curve) -> CubicSpline:
 
 
 def even_curve(*values: float) -> Curve:
-    """Return a curve through values at even phases, the first one at 0."""
+    """Return a curve through values at evenly spaced phases, the first one at 0."""
     return Curve(tuple((number / len(values), value) for number, value in enumerate(values)))
 
 
@@ -47,30 +45,29 @@ def bump(share: float) -> float:
 
 
 def covering_curve(heights: Sequence[float]) -> Curve:
-    """Return a smooth curve that is nowhere below some heights at even phases."""
+    """Return a smooth curve that is never below these heights at evenly spaced phases."""
     count = len(heights)
     width = 2 * (count // 32) + 1
     most = maximum_filter1d(np.asarray(heights), 2 * width + 1, mode="wrap")
-    # A mean of what is largest around is at least as high as what is in the middle.
+    # A mean of the maxima around a phase is at least as high as the value there.
     smooth = uniform_filter1d(uniform_filter1d(most, width, mode="wrap"), width, mode="wrap")
     return even_curve(*smooth.tolist())
 
 
 def hermite(share: float, start: float, end: float, slope: float) -> float:
-    """Return a quintic from one value to another, with one slope and no bend at both ends."""
+    """Return a quintic from one value to another, with one slope and no curvature at both ends."""
     rest = end - start - slope
     return start + slope * share + rest * share**3 * (10 - 15 * share + 6 * share**2)
 
 
 @dataclass(frozen=True, slots=True)
 class Leap:
-    """A C¹ leap from one phase to another, with nothing before and after."""
+    """A C¹ leap from one phase to another, 0 before and after."""
 
     first: float
     last: float
     height: float
 
     def __call__(self, phase: float) -> float:
-        """Return the value at a phase, which comes round at 1."""
         share = (phase % 1.0 - self.first) / (self.last - self.first)
         return self.height * 16 * (share * (1 - share)) ** 2 if 0 < share < 1 else 0.0

@@ -1,4 +1,4 @@
-"""Which way a drawing looks, told from its joints and its outline."""
+"""Guess the facing of a drawing from its joints and its outline."""
 
 from collections.abc import Mapping
 
@@ -8,17 +8,16 @@ from engine.arrays import Complexes, as_points
 from engine.geometry.motions.body import other_side
 from engine.geometry.motions.kinds import BodyKind
 
-# How much each sign counts for a kind seen from the side. Heads are ahead of hips, tails behind;
-# knees bend ahead; toes and noses are ahead of the joints in feet and heads.
-AROUND = 0.12  # of the height: how far around a joint the outline is looked at
+# Weights of the signs for a kind seen from the side. Heads are ahead of hips, tails behind; knees
+# bend ahead; toes and noses are ahead of the joints in feet and heads.
+AROUND = 0.12  # of the height: radius around a joint in which the outline counts
 
 
 def guess_facing(kind: BodyKind, joints: Mapping[str, complex], outline: Complexes) -> int:
-    """Return 1 where a drawing looks to the right, -1 to the left.
+    """Return 1 for a drawing that faces right, -1 for left.
 
     Parameters
     ----------
-    kind : BodyKind
     joints : mapping of str to complex
         Places at rest, y up.
     outline : complex128, shape (n,)
@@ -27,11 +26,11 @@ def guess_facing(kind: BodyKind, joints: Mapping[str, complex], outline: Complex
     outline = as_points(outline, "outline", at_least=3)
     as_points(list(joints.values()), "The joints of a body")
     if kind.name == "chain" and len(joints) > 1:
-        # The first joint leads.
+        # The first joint is in front.
         places = [joints[name] for name in kind.parents if name in joints]
         return 1 if places[0].real > places[-1].real else -1
     if kind.name == "biped-front":
-        # Which way is ahead there is a matter of names: to where the left side is.
+        # For these kinds names decide: ahead is where the left side is.
         sides = [
             (at - joints[other_side(name)]).real
             for name, at in joints.items()
@@ -53,7 +52,7 @@ def guess_facing(kind: BodyKind, joints: Mapping[str, complex], outline: Complex
 
 
 def _between(joints: Mapping[str, complex], behind: str, ahead: str) -> list[float]:
-    """Return how far one joint is ahead of another, where both are there."""
+    """Return how far one joint is ahead of another, if both exist."""
     if behind in joints and ahead in joints:
         return [(joints[ahead] - joints[behind]).real]
     return []

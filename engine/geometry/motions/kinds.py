@@ -1,4 +1,4 @@
-"""Kinds of bodies: which joints they have, and what hangs on what."""
+"""Kinds of bodies: their joints and the parent of each joint."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -48,27 +48,27 @@ _LINKS: Mapping[str, str] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodyKind:
-    """What joints a body may have; any of them may be left out that no motion needs.
+    """The joints that a body may have; joints that no motion needs may be missing.
 
-    Of four legs, the front ones are the arms of a biped: shoulder, elbow, hand. Seen from the side
-    `.L` and `.R` are the two legs of a pair, whichever is nearer.
+    The front legs of four-legged bodies use the names of a biped's arm: shoulder, elbow, hand. Seen
+    from the side `.L` and `.R` are the two legs of a pair, whichever is nearer.
     """
 
     name: str
     label: str
     hint: str
-    parents: Mapping[str, str]  # of each joint in their order; that of the root is ""
-    usual: tuple[str, ...]  # those that are suggested, as far as they are found
+    parents: Mapping[str, str]  # of each joint in order; "" for the root
+    usual: tuple[str, ...]  # joints that are suggested if they are found
 
     def parent(self, joint: str, present: Collection[str]) -> str:
-        """Return the nearest joint before one that is there; "" where there is none."""
+        """Return the nearest ancestor of a joint that is present; "" if there is none."""
         before = self.parents[joint]
         while before and before not in present:
             before = self.parents[before]
         return before
 
     def require_joints(self, joints: Collection[str]) -> None:
-        """Raise an `EngineError` where there is a joint that the kind does not have."""
+        """Raise an `EngineError` for a joint that the kind does not have."""
         for joint in joints:
             if joint not in self.parents:
                 known = ", ".join(self.parents) or "none: it moves as a whole"
@@ -126,7 +126,7 @@ KINDS: Mapping[str, BodyKind] = MappingProxyType(
 
 
 def find_kind(name: str) -> BodyKind:
-    """Return the kind of a name; raise an `EngineError` where there is none."""
+    """Return the kind with this name; raise an `EngineError` if there is none."""
     if name not in KINDS:
         raise EngineError(f"there is no kind {name!r}; the kinds are {', '.join(KINDS)}")
     return KINDS[name]

@@ -1,4 +1,4 @@
-"""Motions of bodies with limbs: turning joints, and feet that step."""
+"""Motions of bodies with limbs: rotating joints and stepping feet."""
 
 import cmath
 import math
@@ -15,66 +15,65 @@ from engine.geometry.motions.steps import Gait, required_drop, solve_leg_ik
 
 FEET = (("foot.L", 0.0), ("foot.R", 0.0))
 STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=0.998)
-SAMPLES = 96  # of a cycle, at which the lowest place of the hips is looked for
+SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimbMotion(MotionTemplate):
-    """Angles of bones over a cycle, and where feet are set.
+    """Angles of bones over a cycle, and steps of the feet.
 
-    Angles are in degrees, beside the drawing's own pose: by how much the bone that ends at a joint
-    turns against what it hangs on. Of the trunk, and of all limbs from the side, they are forwards
-    where positive: legs and arms swing ahead, heads and chests lean back. From the front limbs go
-    up and out. Those of the left side hold for both; the right one is later by `lag` cycles.
+    Angles are in degrees, relative to the drawing's own pose: the rotation of the bone that ends at
+    a joint against its parent bone. On the trunk, and on limbs from the side, positive is forwards:
+    legs and arms swing ahead, heads and chests lean back. From the front limbs go up and out.
+    Angles of the left side apply to both sides; the right side is later by `lag` cycles.
     """
 
     turns: Mapping[str, Periodic] = field(default_factory=dict)
-    # Those that are ahead or back, and so are not seen from the front.
+    # Rotations ahead or back, which are invisible from the front.
     leans: Mapping[str, Periodic] = field(default_factory=dict)
-    # Instead of those above, of joints of one side alone, such as the hand that waves.
+    # Replace the angles above for joints of one side only, such as a waving hand.
     single: Mapping[str, Periodic] = field(default_factory=dict)
     lag: float = 0.5
     rise: Periodic = STEADY  # of the hips, in lengths of a leg
-    shift: Periodic = STEADY  # of the hips, forwards, likewise
+    shift: Periodic = STEADY  # of the hips, forwards, in lengths of a leg
     gait: Gait | None = None
     needed: tuple[str, ...] = ()
     either: tuple[str, ...] = ()
 
     @property
     def can_travel(self) -> bool:
-        """Whether it has steps by which a body gets on."""
+        """Whether its steps move the body forward."""
         return self.gait is not None and self.gait.stride > 0
 
     def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
-        """Return what it does with a body."""
         return _LimbInstance(self, body, parameters)
 
 
 class _LimbInstance(MotionInstance):
-    """Turning joints and stepping feet of one body."""
+    """Rotating joints and stepping feet of one body."""
 
     def __init__(self, course: LimbMotion, body: Body, parameters: Parameters) -> None:
         self.template, self.body, self.parameters = course, body, parameters
         gait = course.gait or STANDING
         self.steps = FootSteps(body, gait, parameters)
         self.hips = next(iter(body.joints))
-        # What one side does alone, the other one does where the first is not there.
+        # A motion of one side is done by the other side if the first side is missing.
         self.is_first_side = not course.either or course.either[0] in body.joints
         tall = (body.box[1] - body.box[0]).imag
         self.reach = self.steps.reach or tall / 3
         self.lowered = STEADY
         if self.steps.legs:
-            # Feet are within reach of their legs at all times, so that these keep their lengths.
+            # Feet are within reach of their legs at all times, so that legs keep their lengths.
             phases = np.arange(SAMPLES) / SAMPLES
             self.lowered = covering_curve([self._room(phase) for phase in phases.tolist()])
 
     @property
     def stride(self) -> float:
-        """How far the body gets on over a cycle, to the right."""
+        """Distance that the body moves to the right in a cycle."""
         return self.body.facing * self.steps.stride if self.template.can_travel else 0.0
 
     def pose_at(self, phase: float) -> JointPose:
-        """Return where the joints are, and how far those turn at which limbs and the trunk end."""
+        """Return the positions of the joints, and the rotations at the ends of limbs and trunk."""
         places, turned = self._trunk_and_arms(phase)
         gait, standing = self.steps.gait, set()
         inner = {before for name, before in self.body.parents.items()}
@@ -90,7 +89,7 @@ class _LimbInstance(MotionInstance):
         return JointPose(places, turns, frozenset(standing))
 
     def _room(self, phase: float) -> float:
-        """Return by how much the hips are too high at a moment."""
+        """Return how much the hips are too high at a moment."""
         places, _ = self._trunk_and_arms(phase)
         return max(
             (
@@ -106,7 +105,7 @@ class _LimbInstance(MotionInstance):
         )
 
     def _trunk_and_arms(self, phase: float) -> tuple[dict[str, complex], dict[str, float]]:
-        """Return where all joints are that no step moves, and by how much their bones turn."""
+        """Return the positions of all joints that no step moves, and their bones' rotations."""
         body, course = self.body, self.template
         amount = self.parameters.size * self.parameters.energy * self.reach
         moved = body.facing * course.shift(phase) + 1j * course.rise(phase)
@@ -123,7 +122,7 @@ class _LimbInstance(MotionInstance):
         return places, turned
 
     def _turn(self, name: str, phase: float) -> float:
-        """Return by how much a joint's bone turns against what it hangs on, in radians."""
+        """Return the rotation of a joint's bone against its parent bone, in radians."""
         course, kept = self.template, without_side(name)
         has_side = kept != name
         late = course.lag if name.endswith(".R") else 0.0

@@ -1,4 +1,4 @@
-"""Motions: what a body does over a cycle, told apart from whose body it is."""
+"""Motions over a cycle, independent of the body."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from engine.arrays import as_number
 from engine.errors import EngineError
 from engine.geometry.motions.body import Body, other_side
 
-# How far each parameter goes.
+# Range of each parameter.
 RANGES: Mapping[str, tuple[float, float]] = {
     "speed": (0.1, 4.0),
     "size": (0.05, 2.0),
@@ -20,20 +20,20 @@ LEAST_FRAMES = 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameters:
-    """How a motion is given.
+    """Parameters of a motion.
 
     Raises
     ------
     EngineError
-        If one of them is out of its range.
+        If a parameter is out of its range.
     """
 
-    speed: float = 1.0  # how many times as fast as usual
-    size: float = 1.0  # how far limbs swing, and how far steps go
-    energy: float = 1.0  # how much it bounces and sways, beside what limbs do
-    mirrored: bool = False  # as in a mirror: the other arm waves, a walk goes the other way
-    start: float = 0.0  # the share of the cycle at which it begins
-    travel: bool = False  # whether it gets on in the picture, and does not stay on the spot
+    speed: float = 1.0  # factor of the usual speed
+    size: float = 1.0  # factor of limb swings and steps
+    energy: float = 1.0  # factor of bounce and sway, independent of the limbs
+    mirrored: bool = False  # swaps the sides: the other arm waves, a walk goes the other way
+    start: float = 0.0  # phase at which the motion begins
+    travel: bool = False  # whether the body moves across the picture instead of staying in place
 
     def __post_init__(self) -> None:
         for name, (least, most) in RANGES.items():
@@ -47,93 +47,90 @@ class Parameters:
 
 
 class JointPose(NamedTuple):
-    """Where joints are at one moment, how far some turn from rest, and which stand."""
+    """Positions of joints at one moment, rotations from rest, and standing joints."""
 
     places: Mapping[str, complex]
-    turns: Mapping[
-        str, float
-    ]  # in radians, counter-clockwise; joints that are not named turn freely
+    turns: Mapping[str, float]  # in radians, counter-clockwise; other joints rotate freely
     standing: frozenset[str]
 
 
 class MotionInstance(ABC):
-    """What a motion does with one body, on the spot."""
+    """A motion of one body, in place."""
 
     @abstractmethod
     def pose_at(self, phase: float) -> JointPose:
-        """Return a moment at a phase in [0, 1)."""
+        """Return the joint positions at a phase in [0, 1)."""
 
     @property
     def stride(self) -> float:
-        """How far the body gets on over a cycle, to the right, in pixels; 0 without steps."""
+        """Distance that the body moves to the right in a cycle, in pixels; 0 without steps."""
         return 0.0
 
 
 class MotionTemplate(ABC):
-    """What a motion does with any body of a kind."""
+    """A motion for any body of a kind."""
 
-    needed: tuple[str, ...] = ()  # joints without which it cannot be
-    either: tuple[str, ...] = ()  # joints of which it needs one, the first one rather
+    needed: tuple[str, ...] = ()  # required joints
+    either: tuple[str, ...] = ()  # joints of which one is required, the first preferred
 
     @property
     def can_travel(self) -> bool:
-        """Whether it has steps by which a body gets on."""
+        """Whether its steps move the body forward."""
         return False
 
     @abstractmethod
     def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
-        """Return what it does with a body."""
+        pass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """One ready motion.
+    """One motion preset.
 
-    Its courses are by the kinds of bodies that it fits; what looks different from the front and
-    from the side has a course for each.
+    It has a template for each kind of body that it fits. A motion that looks different from the
+    front and from the side has a template for each.
     """
 
     name: str
     label: str
     hint: str
-    seconds: float  # that a cycle takes at the usual speed
-    keys: int  # poses by which a cycle is keyed
+    seconds: float  # of a cycle at the usual speed
+    keys: int  # poses with which a cycle is keyed
     templates: Mapping[str, MotionTemplate] = field(repr=False)
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds of bodies that it fits."""
         return tuple(self.templates)
 
     @property
     def can_travel(self) -> bool:
-        """Whether it has steps by which a body gets on."""
+        """Whether its steps move the body forward."""
         return any(course.can_travel for course in self.templates.values())
 
     def template_for(self, kind: str) -> MotionTemplate:
-        """Return what it does with bodies of a kind; raise an `EngineError` if it does not fit."""
+        """Return the template for bodies of a kind; raise an `EngineError` if there is none."""
         if kind not in self.templates:
             fitting = " or ".join(repr(each) for each in self.templates)
             raise EngineError(f"{self.name!r} is a motion of {fitting}, and not of {kind!r}")
         return self.templates[kind]
 
     def frames(self, parameters: Parameters, fps: float) -> int:
-        """Return how many frames a cycle takes."""
+        """Return the number of frames of a cycle."""
         fps = as_number(fps, "The speed of a motion", above=0)
         return max(LEAST_FRAMES, round(self.seconds * fps / parameters.speed))
 
     def poses_at(
         self, body: Body, parameters: Parameters, shares: Sequence[float]
     ) -> tuple[JointPose, ...]:
-        """Return where a body's joints are after shares of the cycle, from where it begins.
+        """Return the joint positions after shares of the cycle, from its start.
 
-        With `travel` they are farther by that share of a stride, also beyond 1.
+        With `travel` the positions move on by this share of a stride, also beyond 1.
 
         Raises
         ------
         EngineError
-            If the motion does not fit the kind, needs joints that are not there, or has no steps
-            to travel by; if a share is not finite.
+            If the motion does not fit the kind, a required joint is missing, there are no steps to
+            travel by, or a share is not finite.
         """
         for share in shares:
             as_number(share, "A share of a motion's cycle")
@@ -153,12 +150,10 @@ class Motion:
 
 
 def _moved(moment: JointPose, way: float) -> JointPose:
-    """Return a moment farther to the right."""
     return moment._replace(places={name: at + way for name, at in moment.places.items()})
 
 
 def _swapped(moment: JointPose) -> JointPose:
-    """Return a moment with its sides swapped."""
     places = {other_side(name): place for name, place in moment.places.items()}
     turns = {other_side(name): turn for name, turn in moment.turns.items()}
     return JointPose(places, turns, frozenset(map(other_side, moment.standing)))

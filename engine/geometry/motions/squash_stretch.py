@@ -1,4 +1,4 @@
-"""Motions of anything: it stretches, squashes, leans and leaves the ground as a whole."""
+"""Motions of whole bodies without joints: stretch, squash, lean and jump."""
 
 import cmath
 import math
@@ -8,7 +8,7 @@ from engine.geometry.motions.body import Body
 from engine.geometry.motions.curves import STEADY, Periodic
 from engine.geometry.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
 
-# What is lower than such a share of the height stands where it is, and does not spread.
+# Points below this share of the height stay in place, and do not spread.
 FOOT = 0.12
 
 
@@ -16,22 +16,19 @@ FOOT = 0.12
 class SquashStretch(MotionTemplate):
     """Shares of the height by which a body stretches and rises, and degrees by which its top leans.
 
-    What it gains in height it loses in width, so that its area stays, but for what it swells.
+    Stretch keeps the area: width shrinks as height grows. Only `swell` changes the area.
     """
 
     stretch: Periodic = STEADY
     swell: Periodic = STEADY
     rise: Periodic = STEADY
-    lean: Periodic = STEADY  # of the top, to the right
+    lean: Periodic = STEADY  # of the top, to the right, in degrees
 
     def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
-        """Return what it does with a body."""
         return _SquashStretchInstance(self, body, parameters)
 
 
 class _SquashStretchInstance(MotionInstance):
-    """One body as a whole."""
-
     def __init__(self, course: SquashStretch, body: Body, parameters: Parameters) -> None:
         self.template, self.body, self.parameters = course, body, parameters
         low, high = body.box
@@ -39,7 +36,6 @@ class _SquashStretchInstance(MotionInstance):
         self.base = complex((low + high).real / 2, low.imag)
 
     def pose_at(self, phase: float) -> JointPose:
-        """Return where points of it are."""
         course, size = self.template, self.parameters.size
         stretch = 1 + size * self.parameters.energy * course.stretch(phase)
         swell = size * course.swell(phase)

@@ -1,4 +1,4 @@
-"""Where the feet of one body are over a cycle, and how high that lets its hips be."""
+"""Positions of the feet of one body over a cycle, and the height of its hips."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,25 +9,16 @@ from engine.geometry.motions.body import Body, other_side
 from engine.geometry.motions.motion import Parameters
 from engine.geometry.motions.steps import BodyLeg, Gait, find_leg, required_drop
 
-GROUND = 0.15  # of a leg's length: feet that are drawn no higher above the lowest one stand
-# Legs of one drawing cannot pass through each other: so near, in lengths of a leg, feet of a pair
-# come at most, and by so much they are set farther apart than they are drawn.
+GROUND = 0.15  # of a leg's length: feet drawn no higher than this above the lowest foot stand
+# Legs of one drawing cannot pass through each other. Feet of a pair come at most this near, in
+# lengths of a leg, and are set this much farther apart than they are drawn.
 CLEAR, SPREAD = 0.14, 0.22
-# Of a leg's length: so much the hips come down at most for a long step, or it becomes shorter; they
-# would crouch, with all legs bent below them.
+# Of a leg's length: the hips come down at most this much for a long step, else the step becomes
+# shorter. Without the limit the body would crouch, with all legs bent.
 LOWERED, SHORTER = 0.05, 0.9
 
 
 class FootSteps:
-    """Feet of one body.
-
-    Parameters
-    ----------
-    body : Body
-    gait : Gait
-    parameters : Parameters
-    """
-
     def __init__(self, body: Body, gait: Gait, parameters: Parameters) -> None:
         if not (gait.is_treadmill or parameters.travel):
             gait = replace(gait, stride=0.0)
@@ -36,7 +27,7 @@ class FootSteps:
         self.legs: dict[str, BodyLeg] = {foot: find_leg(body, foot) for foot in feet}
         self.reach = min(leg.length for leg in self.legs.values()) if feet else 0.0
         lowest = min((body.joints[foot].imag for foot in feet), default=0.0)
-        # A foot that is drawn lifted, as in a stride, comes down to the others.
+        # A foot that is drawn lifted, as in a stride, comes down to the ground.
         self.ground = {
             foot: lowest if body.joints[foot].imag - lowest >= GROUND * self.reach else y
             for foot, y in ((foot, body.joints[foot].imag) for foot in feet)
@@ -49,15 +40,15 @@ class FootSteps:
 
     @property
     def stride(self) -> float:
-        """How far the body gets on over a cycle, forwards, in pixels."""
+        """Distance that the body moves forwards in a cycle, in pixels."""
         return self.step / self.gait.stance
 
     @property
     def raised(self) -> float:
-        """By how much the hips are higher over a foot below them than they are drawn.
+        """Height of the hips over a foot below them, above the drawn height.
 
-        Legs that are drawn apart are longer than the hips are high; those that are drawn bent stay
-        so.
+        Legs that are drawn apart are longer than the hips are high; legs that are drawn bent stay
+        bent.
         """
         if not self.legs or not self.gait.stride:
             return 0.0
@@ -69,14 +60,13 @@ class FootSteps:
         return float(np.mean(up))
 
     def foot(self, foot: str, phase: float) -> complex:
-        """Return where a foot is."""
         gait = self.gait
         ahead = self.body.facing * gait.ahead(foot, phase) * self.stride
         height = gait.lifted(foot, phase) * gait.lift * self.size * self.reach
         return complex(self.middles[foot] + ahead, self.ground[foot] + height)
 
     def _pairs(self) -> Iterator[tuple[str, str]]:
-        """Yield the feet that pass each other, the one behind first."""
+        """Yield the pairs of feet that pass each other, the rear foot first."""
         falls = dict(self.gait.landings)
         for foot in self.legs:
             other = other_side(foot)
@@ -87,17 +77,17 @@ class FootSteps:
                 yield foot, other
 
     def _apart(self, pair: tuple[str, str]) -> float:
-        """Return how far the feet of a pair are drawn apart."""
+        """Return the distance of a pair of feet as drawn."""
         return abs((self.body.joints[pair[0]] - self.body.joints[pair[1]]).real)
 
     def _step(self) -> float:
-        """Return how far a foot goes while it stands: no farther than leaves room for the other."""
+        """Return the distance that a foot covers while it stands, within its room."""
         wanted = self.gait.stride * self.gait.stance * self.size * self.reach
         rooms = [self._apart(pair) + (SPREAD - CLEAR) * self.reach for pair in self._pairs()]
         return min([wanted, *rooms])
 
     def _most_lowered(self) -> float:
-        """Return by how much hips come down to reach the ends of a step, in lengths of a leg."""
+        """Return how much the hips come down to reach the ends of a step, in lengths of a leg."""
         lowered = [0.0]
         for foot, leg in self.legs.items():
             root = self.body.joints[leg.joints[0]]
@@ -107,7 +97,7 @@ class FootSteps:
         return max(lowered) / self.reach
 
     def _middles(self) -> dict[str, float]:
-        """Return around where each foot goes to and fro."""
+        """Return the centre of each foot's movement."""
         joints, gathered = self.body.joints, self.gait.gathered
         middles = {}
         for foot, leg in self.legs.items():

@@ -1,4 +1,4 @@
-"""Steps: where a foot is over a cycle, and how the joints of its leg bend."""
+"""Steps: the position of a foot over a cycle, and the bend of its leg."""
 
 import cmath
 import math
@@ -9,31 +9,30 @@ from typing import NamedTuple
 from engine.geometry.motions.body import Body, without_side
 from engine.geometry.motions.curves import bump, hermite
 
-# A leg that is drawn bent by so much bends that way; a straighter one as its kind does.
+# A leg drawn with at least this bend keeps its side; a straighter leg bends as usual for its kind.
 BENT = 0.21  # radians
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Gait:
-    """How feet are set: for a share of the cycle each stands, then it swings ahead."""
+    """Pattern of steps: each foot stands for a share of the cycle, then it swings ahead."""
 
-    stance: float  # the share of the cycle that a foot stands
-    stride: float  # how far the body gets on in a cycle, in lengths of a leg
-    lift: float  # how high a foot is lifted in the middle of its swing, in lengths of a leg
-    # When each foot comes down, as shares of the cycle.
+    stance: float  # share of the cycle that a foot stands
+    stride: float  # distance that the body moves in a cycle, in lengths of a leg
+    lift: float  # height of a foot in the middle of its swing, in lengths of a leg
+    # Phase at which each foot comes down.
     landings: tuple[tuple[str, float], ...]
-    gathered: float = 0.2  # how far feet are set below the hips, rather than where they are drawn
-    # Of a leg's length: so near to straight it comes, so that the knee does not snap.
+    gathered: float = 0.2  # share by which feet move from their drawn places to below the hips
+    # Of a leg's length: its largest reach, short of straight, so that the knee does not snap.
     straight: float = 0.985
-    is_treadmill: bool = True  # whether, on the spot, feet go back on the ground as under who walks
-    roll: float = 0.0  # degrees by which a foot points down as it leaves the ground
+    is_treadmill: bool = True  # whether, in place, feet slide back on the ground as on a treadmill
+    roll: float = 0.0  # degrees by which a foot points down when it leaves the ground
 
     def phase(self, foot: str, phase: float) -> float:
-        """Return how far a foot is in its own cycle, which begins as it comes down."""
+        """Return the phase of a foot's own cycle, which begins when the foot comes down."""
         return (phase - dict(self.landings)[foot]) % 1.0
 
     def stands(self, foot: str, phase: float) -> bool:
-        """Tell whether a foot is on the ground."""
         return self.phase(foot, phase) <= self.stance
 
     def ahead(self, foot: str, phase: float) -> float:
@@ -45,22 +44,22 @@ class Gait:
         return hermite((own - self.stance) / swing, -half, half, -swing)
 
     def lifted(self, foot: str, phase: float) -> float:
-        """Return how high a foot is, as a share of the most."""
+        """Return the height of a foot as a share of its greatest height."""
         return bump(self._swung(foot, phase))
 
     def rolled(self, foot: str, phase: float) -> float:
-        """Return by how many degrees a foot points down; before it comes down, up."""
+        """Return by how many degrees a foot points down; negative, up, before it comes down."""
         share = self._swung(foot, phase)
         return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
 
     def _swung(self, foot: str, phase: float) -> float:
-        """Return how much of its swing a foot has done, 0 while it stands."""
+        """Return the finished share of a foot's swing, 0 while the foot stands."""
         own = self.phase(foot, phase)
         return 0.0 if own <= self.stance else (own - self.stance) / (1 - self.stance)
 
 
 class BodyLeg(NamedTuple):
-    """A leg at rest: its joints from root to tip, how long it is, and to which side it bends."""
+    """A leg at rest: joints from root to tip, lengths, and the side to which it bends."""
 
     joints: tuple[str, ...]
     lengths: tuple[float, ...]
@@ -68,12 +67,12 @@ class BodyLeg(NamedTuple):
 
     @property
     def length(self) -> float:
-        """How far it reaches."""
+        """Reach of the straight leg."""
         return sum(self.lengths)
 
 
 def find_leg(body: Body, tip: str) -> BodyLeg:
-    """Return the leg that ends at a foot; or at a hand, of what walks on them."""
+    """Return the leg that ends at a foot, or at a hand of a body that walks on its hands."""
     joints = body.limb_joints(tip)
     places = [body.joints[name] for name in joints]
     lengths = tuple(abs(b - a) for a, b in pairwise(places))
@@ -87,7 +86,7 @@ def find_leg(body: Body, tip: str) -> BodyLeg:
 
 
 def _usual_bend(body: Body, tip: str) -> int:
-    """Return to which side the middle of a leg goes: 1 is counter-clockwise from root to tip."""
+    """Return the side to which a leg bends: 1 is counter-clockwise from root to tip."""
     if body.kind.name == "biped-front":
         middle = body.joints[next(iter(body.joints))].real
         return -1 if body.joints[tip].real < middle else 1
@@ -97,9 +96,9 @@ def _usual_bend(body: Body, tip: str) -> int:
 
 
 def solve_leg_ik(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
-    """Return where the joints between a root and a tip are, at the leg's own lengths.
+    """Return the positions of the joints between a root and a tip, at the leg's own lengths.
 
-    Where the tip is out of reach the middle is on the straight way to it.
+    If the tip is out of reach, the leg is straight towards it.
     """
     if len(leg.lengths) < 2:
         return {}
@@ -112,7 +111,7 @@ def solve_leg_ik(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex
 
 
 def required_drop(leg: BodyLeg, root: complex, tip: complex, straight: float) -> float:
-    """Return by how much a root must come down, so that its leg reaches the tip."""
+    """Return how much a root must come down so that its leg reaches the tip."""
     reach = straight * leg.length if len(leg.lengths) > 1 else leg.length
     beside = min(abs((root - tip).real), reach)
     return max(0.0, (root - tip).imag - math.sqrt(reach**2 - beside**2))

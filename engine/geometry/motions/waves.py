@@ -1,4 +1,4 @@
-"""Motions of chains: waves that run along them."""
+"""Motions of chains: waves along the chain."""
 
 import cmath
 import math
@@ -12,31 +12,27 @@ from engine.geometry.motions.motion import JointPose, MotionInstance, MotionTemp
 class Wave(MotionTemplate):
     """Links that swing one after the other, from the first joint to the last one."""
 
-    degrees: float  # by which links swing to either side
-    waves: float  # that are on the chain at a time
-    # How much the first link swings, as a share of the last one.
+    degrees: float  # amplitude of each link
+    waves: float  # number of waves on the chain at a time
+    # Amplitude of the first link, as a share of the last link's.
     first: float = 1.0
-    held: bool = False  # whether the first joint stays where it is; else the middle of all does
+    held: bool = False  # whether the first joint stays in place; else the mean of all joints
     needed: tuple[str, ...] = ("joint.1", "joint.2", "joint.3")
 
     def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
-        """Return what it does with a chain."""
         return _WaveInstance(self, body, parameters)
 
 
 class _WaveInstance(MotionInstance):
-    """A wave along one chain."""
-
     def __init__(self, course: Wave, body: Body, parameters: Parameters) -> None:
         self.template, self.parameters, self.facing = course, parameters, body.facing
         self.names = tuple(body.joints)
         self.rest = tuple(body.joints.values())
 
     def pose_at(self, phase: float) -> JointPose:
-        """Return where the joints are."""
         course, links = self.template, len(self.rest) - 1
         most = self.facing * math.radians(course.degrees) * self.parameters.size
-        # The rest of the swing is of the tip, more of it with more energy.
+        # The amplitude grows towards the tip, faster with more energy.
         growth = (1 - course.first) * self.parameters.energy
         places = [self.rest[0]]
         for number in range(links):

@@ -1,9 +1,9 @@
-"""Ready motions, as data: angles of bones in degrees, and steps in lengths of a leg.
+"""Motion presets as data: angles of bones in degrees, steps in lengths of a leg.
 
 In: nothing.
-Out: motions by name, made by us from what every textbook of animation teaches; in the public
+Out: motions by name. They are our own, after the common textbooks of animation, and in the public
 domain (CC0).
-Imports: the forms of motions beside it.
+Imports: the templates of motions in `engine.geometry.motions`.
 """
 
 from engine.geometry.motions.library.bipeds import JUMP, NOD, RUN, WALK, WAVE

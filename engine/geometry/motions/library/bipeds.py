@@ -1,4 +1,4 @@
-"""What goes on two legs; and how all walk."""
+"""Motions of bipeds, and the walk of all kinds."""
 
 from engine.geometry.motions.curves import Curve, even_curve
 from engine.geometry.motions.leg_chains import STANDING, LimbMotion
@@ -8,10 +8,10 @@ from engine.geometry.motions.steps import Gait
 
 LEFT_RIGHT = (("foot.L", 0.0), ("foot.R", 0.5))
 FEET = ("hips", "foot.L", "foot.R")
-LEAPERS = ("hips",)  # from the side both legs may be one
+LEAPERS = ("hips",)  # from the side both legs may be one joint chain
 
 # Contact, down, passing, up, for each foot: the body is lowest after a foot came down, and highest
-# as the other one swings past it. Arms go against legs.
+# as the other foot passes it. Arms swing against legs.
 WALK = Motion(
     name="walk",
     label="Walk",
@@ -146,7 +146,7 @@ NOD = Motion(
             },
             needed=("hips", "head"),
         ),
-        # From the front a head that nods comes down and up again.
+        # From the front a nodding head comes down and up again.
         "biped-front": LimbMotion(
             turns={"head": even_curve(0, 1, 2, 1, 0, -1, -2, -1)},
             rise=even_curve(0, -0.02, -0.06, -0.02, 0.01, -0.02, -0.05, -0.02, 0.005, 0, 0, 0),
@@ -208,7 +208,7 @@ JUMP = Motion(
     templates={"biped-side": _LEAP, "biped-front": _LEAP},
 )
 
-# As a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
+# Like a kangaroo: both feet land together, the body sinks and is thrown ahead, the tail against it.
 LEAPING = LimbMotion(
     gait=Gait(
         stance=0.42,

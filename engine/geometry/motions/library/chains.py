@@ -1,4 +1,4 @@
-"""What bends like a snake, a fish, a tail or a scarf."""
+"""Motions of chains, such as snakes, fish, tails and scarves."""
 
 from engine.geometry.motions.motion import Motion
 from engine.geometry.motions.waves import Wave

@@ -1,4 +1,4 @@
-"""What goes on four legs."""
+"""Motions of four-legged bodies."""
 
 from engine.geometry.motions.curves import even_curve
 from engine.geometry.motions.leg_chains import LimbMotion
@@ -12,7 +12,7 @@ _TRUNK = {
     "tail": even_curve(0, 8, 0, -8),
 }
 
-# Four beats: a hind foot, then the front one of its side.
+# Four beats: a hind foot, then the front foot of its side.
 WALK_ON_FOUR = LimbMotion(
     gait=Gait(
         stance=0.64,
@@ -27,7 +27,7 @@ WALK_ON_FOUR = LimbMotion(
     needed=FEET,
 )
 
-# Two beats: the feet that are across from each other go together.
+# Two beats: diagonal feet move together.
 TROT = Motion(
     name="trot",
     label="Trot",

@@ -1,4 +1,4 @@
-"""What needs no joints."""
+"""Motions of bodies without joints."""
 
 from engine.geometry.motions.curves import Curve, Leap, even_curve
 from engine.geometry.motions.library.bipeds import LEAPING
