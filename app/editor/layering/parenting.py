@@ -33,7 +33,7 @@ PARENT_IS_DESCENDANT = (
 
 
 def is_same_or_descendant(project: Project, identity: int, carrier: int) -> bool:
-    """Return whether `identity` is `carrier` or its descendant at any time."""
+    """Return whether a layer is another layer, or its descendant at any time."""
     others = project.document.all_ancestors(identity)
     return identity == carrier or any(each.id == carrier for each in others)
 

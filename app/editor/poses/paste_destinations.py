@@ -82,7 +82,8 @@ def find_paste_destinations(
     """Return the layers that take the copied keys, each of them once.
 
     Keys of several layers go to the layers of the same names, or to their partners. Keys of one
-    layer go to the active layer or to all selected layers. A swap goes to the partner layer.
+    layer go to the active layer or to all selected layers. A swap on the copied layer goes to its
+    partner.
     """
     found = _find_paste_destinations(session, project, way)
     return [each for each in found if not each.disabled_reason]
@@ -146,8 +147,8 @@ def match_handles(
 ) -> Mapping[int, int]:
     """Match a layer's handles to another layer's handles by their names.
 
-    In a swap, a handle gets its partner on the other side. So it does between layers without a
-    common handle name.
+    In a swap, a handle gets its partner on the other side. Layers without a common handle name are
+    matched by partners as well.
     """
     theirs = {handle.name: handle.id for handle in source.handles}
     ours = {handle.name: handle.id for handle in layer.handles}

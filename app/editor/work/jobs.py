@@ -1,8 +1,8 @@
 """Worker threads for long computations.
 
-Four lanes of one thread each: "hand" for awaited results such as a dragged pose, "export",
-"display" for slower results such as in-betweens, and "keep" for writing to disk. No lane blocks
-another. A job that never ends can be abandoned.
+There are four lanes of one thread each. "hand" is for awaited results such as a dragged pose,
+"export" for exports. "display" is for slower results such as in-betweens, "keep" for writing to
+disk. No lane blocks another. A job that never ends can be abandoned.
 """
 
 import atexit

@@ -287,7 +287,7 @@ def _moved(
     start: DragStart,
     targets: Mapping[int, Target],
 ) -> Mapping[int, Target]:
-    """Return what is wished, moved as far as hands, and joints beside them, have given in."""
+    """Return the targets of a change, moved to the places that the drag reached."""
     joints = {i: targets[i] for i in moves if i in targets}
     return _moved_targets({**joints, **wish(start, targets)}, moves)
 

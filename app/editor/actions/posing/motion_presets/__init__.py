@@ -1,4 +1,4 @@
-"""Motion presets: choosing one for a layer, placing its joints, and applying it.
+"""Motion presets: choosing one for a layer, positioning its joints, and applying it.
 
 In: a session with a project.
 Out: a draft of a motion; then the layer with its keys, in one undo step.
