@@ -120,7 +120,6 @@ def keep_fault_report(session: Session) -> None:
 
 
 def show_problem_report(session: Session) -> None:
-    """Show a report of this session."""
     session.dialog = ProblemReport(
         text=problem_report_text(session), is_kept=False, behind=_behind(session)
     )
@@ -173,7 +172,6 @@ def save_report(session: Session, report: ProblemReport, path: Path) -> None:
 
 
 def discard_report(session: Session, report: ProblemReport) -> None:
-    """Delete a kept report."""
     remove_report(session.folder)
     session.dialog = report.behind
     session.show_notice("The report was discarded.")

@@ -188,7 +188,6 @@ class Project:
 
     @property
     def layer(self) -> Layer:
-        """The active layer."""
         return self.document.layer(self.active)
 
     @property
@@ -261,7 +260,6 @@ class Project:
 
     @property
     def sources(self) -> tuple[Path, ...]:
-        """Source files of the project."""
         return (*self.drawings, *([] if self.path is None else [self.path]))
 
     def keys_with(self, row: KeyRow, frame: int) -> KeysByRow:

@@ -70,7 +70,6 @@ def _note_place(project: Project, name: str, out: Path) -> None:
 
 
 def start_export_at(session: Session, out: Path) -> None:
-    """Export to the chosen destination."""
     set_export_destination(session, out)
     start_export(session, out)
 
@@ -343,7 +342,6 @@ def preview_export_frame(session: Session, box: BoundingBox) -> None:
 
 
 def open_folder(session: Session, folder: Path) -> None:
-    """Show a folder in the system's file manager."""
     try:
         if sys.platform == "win32":
             os.startfile(folder)  # noqa: S606 - the folder of the export

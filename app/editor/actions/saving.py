@@ -180,12 +180,10 @@ def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
 
 
 def ask_curves_csv(session: Session) -> None:
-    """Ask where to save the curves of the distortion as numbers."""
     _ask_curves(session, ".csv")
 
 
 def ask_curves_png(session: Session) -> None:
-    """Ask where to save the curves of the distortion as a picture."""
     _ask_curves(session, ".png")
 
 

@@ -1,4 +1,4 @@
-"""How the window looks: camera, overlays, theme, dialogs."""
+"""The look of the window: camera, overlays, theme, dialogs."""
 
 import os
 import webbrowser
@@ -40,7 +40,6 @@ def set_view(_: Session, project: Project, camera: View | None) -> None:
 
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
-    """Show all layers as they are in this frame."""
     shown = [puppet.shown for puppet in project.layer_runtimes.values()]
     boxes = [
         bounding_box(each.placement.apply(each.positions)) for each in shown if each is not None
@@ -218,12 +217,10 @@ def use_own_file_browser(session: Session) -> None:
 
 
 def show_tab(session: Session, title: str) -> None:
-    """Bring a side tab to the front."""
     session.panel_to_focus = title
 
 
 def show_shortcuts(session: Session) -> None:
-    """Open the sheet of all shortcuts."""
     session.dialog = ShortcutSheet()
 
 

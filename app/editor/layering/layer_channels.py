@@ -62,14 +62,12 @@ def delete_camera_key(session: Session, frame: int) -> None:
 
 @with_project
 def key_opacity(session: Session, project: Project, identity: int, opacity: float) -> None:
-    """Key a layer's opacity at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.key_opacity(identity, frame, opacity))
 
 
 @with_project
 def delete_opacity_key(session: Session, project: Project, identity: int) -> None:
-    """Delete a layer's opacity key at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.delete_opacity_key(identity, frame))
 
@@ -78,14 +76,12 @@ def delete_opacity_key(session: Session, project: Project, identity: int) -> Non
 def key_transform(
     session: Session, project: Project, identity: int, shift: complex, turn: float
 ) -> None:
-    """Key a layer's transform at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.key_movement(identity, frame, shift, turn))
 
 
 @with_project
 def delete_transform_key(session: Session, project: Project, identity: int) -> None:
-    """Delete a layer's transform key at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.delete_movement_key(identity, frame))
 
@@ -106,6 +102,5 @@ def key_draw_order(
 
 @with_project
 def delete_draw_order_key(session: Session, project: Project, identity: int) -> None:
-    """Delete a layer's draw order key at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.unplace_at(identity, frame))

@@ -10,7 +10,6 @@ from app.editor.session import Session, with_project
 def create_switch(
     session: Session, project: Project, *identities: int, name: str = "choice"
 ) -> None:
-    """Create a switch from layers."""
     taken = {choice.name for choice in project.document.switch_groups}
     free = layer_commands.unique_name(name, taken)
     editing.edit_document(session, switch_group_commands.create_switch_group(free, identities))
@@ -30,12 +29,10 @@ def dismiss_switch_suggestion(_: Session, project: Project, group: str) -> None:
 
 
 def add_to_switch(session: Session, name: str, *identities: int) -> None:
-    """Add layers to a switch."""
     editing.edit_document(session, switch_group_commands.add_to_switch_group(name, identities))
 
 
 def remove_from_switch(session: Session, identity: int) -> None:
-    """Remove a layer from its switch."""
     editing.edit_document(session, switch_group_commands.remove_from_switch_group(identity))
 
 

@@ -221,7 +221,6 @@ class Pull(Promise):
 
     @property
     def layer(self) -> int:
-        """The id of the layer."""
         return self.clip.layer.id
 
     @property

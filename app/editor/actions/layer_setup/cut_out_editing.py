@@ -65,7 +65,6 @@ def set_brush_radius(_: Session, project: Project, radius: float) -> None:
 
 
 def brush_radius(project: Project) -> float:
-    """Return the radius of the brush, in pixels of the picture."""
     if project.brush is not None:
         return project.brush
     return max(4.0, FIRST_BRUSH * max(project.layer.picture.size))
@@ -73,7 +72,6 @@ def brush_radius(project: Project) -> float:
 
 @with_project
 def change_cut_out(session: Session, project: Project, /, **changes: Any) -> None:
-    """Change fields of the cut-out."""
     cut_out = replace(project.layer.cut_out, **changes)
     editing.edit_layer(session, shape_commands.set_cut_out, cut_out)
 

@@ -56,7 +56,6 @@ def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) ->
 
 
 def fit_timeline(session: Session) -> None:
-    """Show all frames."""
     set_time_range(session, None)
 
 

@@ -98,7 +98,6 @@ def include_joint(session: Session, project: Project, name: str) -> None:
 
 @with_project
 def reset_joints(_: Session, project: Project) -> None:
-    """Put all joints back where they were found."""
     if project.motion_setup is not None:
         project.motion_setup = project.motion_setup.with_joints(project.motion_setup.suggested)
 
