@@ -1,7 +1,7 @@
-"""The state of one window, and everything that changes it.
+"""The state of one window, and all changes of it.
 
 In: actions of the person, and the clock.
-Out: a `Session`: the document, what is shown of it, and what is under way.
+Out: a `Session`: the document, the shown frame, and background work.
 Imports: every room below but the command line and the panels.
 """
 

@@ -1,4 +1,4 @@
-"""An action as a value: a verb and what it is done with."""
+"""An action as a value: a verb and its arguments."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,28 +10,27 @@ State = TypeVar("State")
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """Something that the person asked for."""
+    """A request of the person."""
 
     # A function of `app.editor.actions` whose first parameter is the session.
     verb: Callable[..., None]
-    arguments: tuple[Any, ...] = ()  # the others
-    keywords: tuple[tuple[str, Any], ...] = ()  # those that are given by name
+    arguments: tuple[Any, ...] = ()  # the other arguments
+    keywords: tuple[tuple[str, Any], ...] = ()  # keyword arguments
 
     @property
     def name(self) -> str:
-        """What it does, and not what with; an action that it leads to is named, too."""
+        """The verb's name without its arguments, and the name of an action among them."""
         module = getattr(self.verb, "__module__", "").rpartition(".")[2]
         verb = getattr(self.verb, "__qualname__", type(self.verb).__name__)
         then = [each.name for each in self.arguments if isinstance(each, Action)]
         return " → ".join([f"{module}.{verb}", *then])
 
     def apply(self, session: object) -> None:
-        """Do it."""
         self.verb(session, *self.arguments, **dict(self.keywords))
 
 
 def do(
     verb: Callable[Concatenate[State, P], None], *arguments: P.args, **keywords: P.kwargs
 ) -> Action:
-    """Return the action of a verb; its arguments are checked like those of a call."""
+    """Return the action of a verb; arguments are type-checked like those of a call."""
     return Action(verb, arguments, tuple(keywords.items()))

@@ -1,4 +1,4 @@
-"""What the person is asked before anything is done."""
+"""Dialogs: questions to the person before an action."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,27 +15,26 @@ def _no_file(_: str) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FileDialog:
-    """A question for a file: the system's own dialog, or our file browser where it has none."""
+    """A request for a file: the system's dialog, or Lissom's file browser if there is none."""
 
     title: str
-    folder: Path  # where it begins; in our browser, whose contents it lists
-    name: str = ""  # of the file to write, or what was typed
-    # Of the files that it lists, such as ".png"; none where a folder is to be written.
+    folder: Path  # initial folder; in Lissom's browser, the listed folder
+    name: str = ""  # name of the file to write, or the typed name
+    # Suffixes of the listed files, such as ".png"; none if it asks for a folder to write to.
     suffixes: tuple[str, ...]
-    writes: bool  # whether it asks for a file to write, and not for one to read
-    verb: str = "Save"  # on the button of one that writes
+    writes: bool  # whether the file is written; otherwise it is read
+    verb: str = "Save"  # label of the button if it writes
     chosen: Callable[[Path], Action]  # returns the action for a path
-    marked: str = ""  # the entry of our browser's list that is marked
-    # Tells by its name whether a file that is there may lie in the folder to write to.
+    marked: str = ""  # the marked entry in Lissom's browser
+    # Returns whether an existing file of this name may be in the folder to write to.
     is_frame: Callable[[str], bool] = _no_file
 
     @property
     def wants_folder(self) -> bool:
-        """Whether it asks for a folder to write to."""
         return self.writes and not self.suffixes
 
     def path_of(self, name: str) -> Path:
-        """Return the path that a name stands for; one to write gets its suffix if it has none."""
+        """Return the path for a name; a missing suffix is added to a file to write."""
         path = self.folder / name
         if self.writes and self.suffixes and path.suffix.lower() not in self.suffixes:
             return path.with_name(path.name + self.suffixes[0])
@@ -44,7 +43,7 @@ class FileDialog:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Question:
-    """A question with some answers; another one that is always there is to do nothing."""
+    """A question with its answers; the answer "do nothing" is always there."""
 
     title: str
     text: str
@@ -53,11 +52,11 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class ShortcutSheet:
-    """The list of all keys."""
+    """The list of all shortcuts."""
 
 
 class RecoverableFile(NamedTuple):
-    """Unsaved work of an earlier time: its file, its origin, when it was kept, and its bytes."""
+    """Unsaved work of an earlier session: file, origin, time and size in bytes."""
 
     path: Path
     origin: SourceInfo
@@ -67,18 +66,18 @@ class RecoverableFile(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class RecoveryDialog:
-    """A choice among all unsaved work of earlier times; what is not chosen stays."""
+    """A choice among unsaved work of earlier sessions; work that is not chosen stays."""
 
     candidates: tuple[RecoverableFile, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ProblemReport:
-    """A text about a problem, to be looked through and saved; nothing sends it."""
+    """A text about a problem that the person can read and save; it is never sent."""
 
     text: str
-    is_kept: bool  # whether it is of an earlier time, and stays until it is saved or discarded
-    behind: RecoveryDialog | None = None  # what is asked next: one question at a time
+    is_kept: bool  # whether it is of an earlier session; it stays until saved or discarded
+    behind: RecoveryDialog | None = None  # the dialog that is shown next
 
 
 Dialog = FileDialog | Question | ShortcutSheet | RecoveryDialog | ProblemReport

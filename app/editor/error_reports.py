@@ -1,4 +1,4 @@
-"""What fails is told, and how; of a surprise the person can have a report."""
+"""Notices of failures, and problem reports about unexpected errors."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,12 +23,12 @@ from app.storage import (
 )
 
 Result = TypeVar("Result")
-MOST_NOTED = 40  # actions
-TIMES = " × "  # between an action's name and how often it came in a row
+MOST_NOTED = 40  # most logged actions
+TIMES = " × "  # between an action's name and its number of repetitions
 
 
 def as_sentence(text: str) -> str:
-    """Return a text as a sentence; that of an exception begins in lower case, and does not end."""
+    """Turn an exception's text into a sentence: an upper-case start and a full stop."""
     begins_with_name = not text.partition(" ")[0].isalpha()
     text = text if begins_with_name else text[:1].upper() + text[1:]
     return text if text.endswith((".", "?", "…")) else f"{text}."
@@ -41,25 +41,25 @@ def run_job(
     done: Callable[[Result], None],
     failed: Callable[[Exception], None] | None = None,
 ) -> None:
-    """Let a worker do something in place of an unfinished job of its kind; tell where it fails."""
+    """Run a job in place of an unfinished job of its kind; show a notice if it fails."""
     complain = partial(report_failure, session, kind.complaint)
     session.jobs.put(Job(kind=kind, work=work, done=done, failed=failed or complain))
 
 
 def report_first_failure(session: Session, what: str, error: Exception) -> None:
-    """Show what failed that is tried again and again; `mended` lets it be shown anew."""
+    """Report the failure of a repeated attempt once, until `clear_reported_failure`."""
     if what not in session.reported_failures:
         session.reported_failures.add(what)
         report_failure(session, what, error)
 
 
 def clear_reported_failure(session: Session, what: str) -> None:
-    """Take note that something works that may have failed before."""
+    """Note that a repeated attempt has succeeded."""
     session.reported_failures.discard(what)
 
 
 def report_failure(session: Session, what: str, error: Exception) -> None:
-    """Show what failed, and why; a surprise comes with details to copy."""
+    """Show which work failed and why; an unexpected error comes with details to copy."""
     if isinstance(error, EXPECTED_ERRORS):
         session.show_notice(as_sentence(f"{what}: {error}"), tone="error")
     else:
@@ -69,7 +69,7 @@ def report_failure(session: Session, what: str, error: Exception) -> None:
 def report_unexpected_error(
     session: Session, text: str, error: Exception, *, topic: str = ""
 ) -> None:
-    """Tell that the program itself failed, with details to copy and a report to save."""
+    """Report a fault of the program, with details to copy and a report to save."""
     session.last_error_trace = error_trace(session, error)
     session.show_notice(
         text,
@@ -82,12 +82,12 @@ def report_unexpected_error(
 
 
 def error_trace(session: Session, error: Exception) -> str:
-    """Return the traceback of a surprise, without what a report does not name."""
+    """Return the traceback of an unexpected error, without the person's paths."""
     return format_trace(error, _hidden(session))
 
 
 def log_action(session: Session, action: Action) -> None:
-    """Remember an action by its name, and none of what it is done with."""
+    """Log an action's name without its arguments."""
     last, _, times = (session.logged_actions or [""])[-1].partition(TIMES)
     if action.name == last:
         session.logged_actions[-1] = f"{last}{TIMES}{int(times or 1) + 1}"
@@ -97,14 +97,14 @@ def log_action(session: Session, action: Action) -> None:
 
 
 def problem_report_text(session: Session) -> str:
-    """Return the text of a report about what went on here, and about what failed last."""
+    """Return the text of a report about the session and its last error."""
     return format_problem_report(
         graphics=session.graphics, actions=session.logged_actions, trace=session.last_error_trace
     )
 
 
 def keep_crash_report(session: Session, error: Exception) -> str:
-    """Keep a report of what ends the window beside unsaved work, and return it."""
+    """Write a report of a fatal error beside unsaved work, and return it."""
     session.last_error_trace = error_trace(session, error)
     text = problem_report_text(session)
     write_report(session.folder, text)
@@ -112,7 +112,7 @@ def keep_crash_report(session: Session, error: Exception) -> str:
 
 
 def keep_fault_report(session: Session) -> None:
-    """Keep a report of what Python told when it crashed before, as in a driver, if it did."""
+    """Write a report of an earlier crash of Python, for example in a driver, if there was one."""
     told = read_fault_log(session.folder)
     if told:
         trace = redact_names(told, _hidden(session))
@@ -120,14 +120,13 @@ def keep_fault_report(session: Session) -> None:
 
 
 def show_problem_report(session: Session) -> None:
-    """Show a report of what went on here."""
     session.dialog = ProblemReport(
         text=problem_report_text(session), is_kept=False, behind=_behind(session)
     )
 
 
 def show_kept_or_new_report(session: Session) -> None:
-    """Show the report of what ended Lissom before, or else one of what went on here."""
+    """Show the kept report of an earlier crash, or else a report of this session."""
     text = load_report(session.folder)
     if text:
         session.dialog = ProblemReport(text=text, is_kept=True, behind=_behind(session))
@@ -136,7 +135,7 @@ def show_kept_or_new_report(session: Session) -> None:
 
 
 def offer_kept_report(session: Session) -> None:
-    """Tell once of a report of what ended Lissom before, unless something is asked now."""
+    """Offer the kept report of an earlier crash once, unless a dialog is open."""
     if session.dialog is None and mark_report_seen(session.folder):
         session.show_notice(
             "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
@@ -147,12 +146,11 @@ def offer_kept_report(session: Session) -> None:
 
 
 def edit_report_text(session: Session, report: ProblemReport, text: str) -> None:
-    """Go on with a report that the person has changed."""
+    """Set the text of the report after an edit by the person."""
     session.dialog = replace(report, text=text)
 
 
 def ask_report_path(session: Session, report: ProblemReport) -> None:
-    """Ask where to save a report."""
     session.dialog = FileDialog(
         title="Save the report",
         folder=session.usual_folder,
@@ -164,7 +162,7 @@ def ask_report_path(session: Session, report: ProblemReport) -> None:
 
 
 def save_report(session: Session, report: ProblemReport, path: Path) -> None:
-    """Save a report in a file; one that was kept until then is not kept any more."""
+    """Save a report to a file; a kept report is deleted then."""
     check_writable(path, sources=())
     write_atomically(path, lambda file: file.write(report.text.encode()))
     if report.is_kept:
@@ -174,14 +172,13 @@ def save_report(session: Session, report: ProblemReport, path: Path) -> None:
 
 
 def discard_report(session: Session, report: ProblemReport) -> None:
-    """Delete a report that was kept."""
     remove_report(session.folder)
     session.dialog = report.behind
     session.show_notice("The report was discarded.")
 
 
 def _behind(session: Session) -> RecoveryDialog | None:
-    """Return the question that comes back once a report was looked at."""
+    """Return the dialog that follows a report."""
     dialog = session.dialog
     if isinstance(dialog, ProblemReport):
         return dialog.behind
@@ -189,7 +186,7 @@ def _behind(session: Session) -> RecoveryDialog | None:
 
 
 def _hidden(session: Session) -> set[Path]:
-    """Return the files that a report does not name."""
+    """Return the paths that a report hides."""
     project, preferences = session.project, session.preferences
     known = {*preferences.recent, *preferences.written}
     if project is not None:

@@ -1,8 +1,8 @@
-"""Promises: what is on its way to the document, and the one verb that waits for it.
+"""Pending changes of the document, and the one verb that waits for them.
 
-Whatever the worker is to bring into the document is promised here first, and stays promised until
-it is there, has failed or is given up. Saving, closing, exporting and all else that needs the
-document as the person sees it coming asks `once_settled`.
+Each worker result for the document is first noted here as pending, until it arrives, fails or is
+cancelled. Saving, closing, exporting and other actions that need the final document use
+`run_when_idle`.
 """
 
 from collections.abc import Callable
@@ -29,20 +29,14 @@ def begin_pending_change(
     *,
     promise: Promise | None = None,
 ) -> Promise:
-    """Let the worker bring something into the document, which is promised until it is there.
+    """Start a job that changes the document, and note it as pending until it ends.
 
     Parameters
     ----------
-    kind : JobKind
-        Of the job.
-    work : callable
-        Runs on the worker's thread.
     done : callable
-        Takes the result, unless it was given up or the project was closed.
+        Takes the result, unless the change was cancelled or the project was closed.
     failed : callable, optional
-        Takes the error where that fails; by default it is told.
-    promise : Promise, optional
-        By default a new one.
+        Takes the error of a failure; by default it is reported.
     """
     promised = promise or Promise(label=kind.label)
     project.pending.append(promised)
@@ -60,7 +54,7 @@ def begin_pending_change(
 
 
 def _end_pending_change(session: Session, project: Project, promise: Promise) -> bool:
-    """End a promise; tell whether anybody still waits for what it was about."""
+    """Remove a pending change; return whether its result is still needed."""
     if promise not in project.pending:
         return False
     project.pending.remove(promise)
@@ -68,16 +62,16 @@ def _end_pending_change(session: Session, project: Project, promise: Promise) ->
 
 
 def is_document_idle(project: Project, *, after_saves: bool = False) -> bool:
-    """Tell whether nothing is on its way to the document any more.
+    """Return whether no change of the document is pending.
 
-    With `after_saves`, a save that is under way counts, too.
+    With `after_saves`, a running save counts as well.
     """
     if project.stale_layer is not None:
         return False
 
     def is_over(promise: Promise) -> bool:
         if isinstance(promise, Pull):
-            # One that was taken back goes on only for the case that it is done again.
+            # An undone drag is solved on only in case it is redone.
             return promise.is_settled or not promise.is_in(project.history)
         return not (promise.changes or after_saves)
 
@@ -95,19 +89,18 @@ def run_when_idle(
     after_saves: bool = False,
     patience: float = inf,
 ) -> None:
-    """Do something as soon as nothing is on its way to the document any more; at once if so.
+    """Run an action as soon as no change of the document is pending; at once if none is.
 
     Parameters
     ----------
-    then : Action
     what : str
-        The same in words, for the status bar.
+        The action's label, for the status bar.
     changes : bool
-        Whether it changes the document, and undo takes it back as long as it waits.
+        Whether it changes the document, so that undo cancels it while it waits.
     after_saves : bool
-        Whether it also waits for a save that is under way.
+        Whether it also waits for a running save.
     patience : float
-        Seconds after which it is done whatever is still on its way.
+        Seconds after which it runs even if changes are pending.
     """
     until = session.clock() + patience
     position = project.history.position if changes else None
@@ -120,21 +113,21 @@ def run_when_idle(
 
 @with_project
 def run_deferred_actions(session: Session, project: Project) -> None:
-    """Do what has waited for the document, in order, as far as that has settled or time is up."""
+    """Run waiting actions in order, while the document is idle or their time is up."""
     for waiting in tuple(project.afterwards):
         is_due = session.clock() >= waiting.until
         if not (is_due or is_document_idle(project, after_saves=waiting.after_saves)):
             continue
-        # What was done just now may have done this, too, or closed the project.
+        # The action before may have run this action as well, or closed the project.
         if waiting in project.afterwards and session.project is project:
             project.afterwards.remove(waiting)
             waiting.then.apply(session)
 
 
 def cancel_deferred_action(project: Project) -> str | None:
-    """Take back the change that waits and was asked for last, if nothing was done since.
+    """Cancel the last waiting action that changes the document, if no edit came since.
 
-    Returns it in words, for the person to be told; None if there is none.
+    Return its label for a notice; None if there is none.
     """
     position = project.history.position
     since = [each for each in project.afterwards if each.position == position]
@@ -145,14 +138,14 @@ def cancel_deferred_action(project: Project) -> str | None:
 
 
 def deferred_label(project: Project) -> str:
-    """Return in words what is done once the document has settled; empty where there is nothing."""
+    """Return the label of the first waiting action; empty if there is none."""
     if not project.afterwards:
         return ""
     return f"{pending_label(project)}, then: {project.afterwards[0].what}"
 
 
 def pending_label(project: Project) -> str:
-    """Return in words what is on its way to the document or the disk."""
+    """Return the label of a pending change or save."""
     labels = [promise.label for promise in project.pending]
     if project.stale_layer is not None:
         labels.append("Cutting out")

@@ -1,4 +1,4 @@
-"""The project that is open: its document, what the window has of it, and what is under way."""
+"""The open project: its document, its runtime values, and the person's view of it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -54,17 +54,17 @@ from app.storage import FileLock, Picture, SourceInfo
 from engine.geometry import RigidMotion
 from engine.maps import Bounds
 
-EXTENTS = 32  # of the motion, which are remembered for undo and redo
-# Bytes of what layers that nobody edits may be prepared with, once series show them.
+EXTENTS = 32  # extents of the motion that are remembered for undo and redo
+# Most bytes of intermediate values that inactive layers keep, once they have series.
 MOST_RELEASABLE_BYTES = 64 * 2**20
-FIT_MARGIN = 0.08  # of the viewport, left free around what is fitted into it
+FIT_MARGIN = 0.08  # of the viewport: margin around a fitted box
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LastFlip:
-    """What was flipped last.
+    """The last flip.
 
-    The `keys` are as they were copied; `poses` took their place in a layer, at its `frames`.
+    `keys` are the copied keys; `poses` are the flipped poses at the layer's `frames`.
     """
 
     layer: int
@@ -75,9 +75,9 @@ class LastFlip:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BlendPreview:
-    """A pose of a layer's library, by its name, that is mixed into the one at a frame.
+    """A library pose that is blended into the pose at a frame.
 
-    Its `share` goes from 0 to 1; all that is mixed in one gesture is one step of undo.
+    `share` is from 0 to 1. Blends of one gesture are one undo step.
     """
 
     name: str
@@ -88,114 +88,111 @@ class BlendPreview:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Project:
-    """The document that is open, and how the person looks at it."""
+    """The open document, and the person's view of it."""
 
     history: History
-    name: str  # of the picture or the project, without its suffix
-    path: Path | None  # of the project file; None for a new one
-    # The files that its pictures were read from, which nothing is written over.
+    name: str  # file name of the picture or the project, without suffix
+    path: Path | None  # the project file; None for a new project
+    # Source files of the pictures; they are never overwritten.
     drawings: set[Path] = field(default_factory=set)
-    is_import_log_open: bool = False  # whether the panel of layers shows what was told of them
-    file_lock: FileLock | None = None  # by which other windows see that the file is open here
-    # What the file held when it was opened or saved here last; None for a new one.
+    is_import_log_open: bool = False  # in the panel of layers
+    file_lock: FileLock | None = None  # lock against other windows
+    # Digest of the file when it was last opened or saved here; None for a new project.
     read_as: str | None = None
-    # Whether it is unsaved work of an earlier time, not saved before the person has seen where.
+    # Whether it is recovered work, whose first save asks for the file.
     is_recovered: bool = False
-    # The document and the pose that no key holds, as the autosave has them, and the clock's seconds
-    # when it got them, and when what is here was first seen to differ.
+    # The document and the unkeyed pose in the autosave, the seconds of the clock then, and the
+    # seconds when a later change was first seen.
     autosaved: tuple[Document, PreviewPose | None] | None = None
     autosaved_at: float = 0.0
     changed_at: float | None = None
 
-    layer_runtimes: dict[int, LayerRuntime]  # one for each layer, by its id
-    # Those that are decoded, of layers that come back by undo among them.
+    layer_runtimes: dict[int, LayerRuntime]  # by layer id
+    # Decoded pictures, also of layers that undo may bring back.
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
-    active: int  # the id of the layer whose handles and keys are shown and changed
-    pending: list[Promise] = field(default_factory=list)  # all on its way to the document
-    # What decided which jobs are due, when that was looked at last.
+    active: int  # id of the active layer
+    pending: list[Promise] = field(default_factory=list)  # pending changes of the document
+    # The inputs of the last poll for due jobs.
     polled: tuple[object, ...] = ()
-    # On what it depended what is drawn, when that was settled last.
+    # The inputs of the shown frame at its last update.
     settled: tuple[object, ...] = ()
-    afterwards: list[Afterwards] = field(default_factory=list)  # what is done once it is there
-    # Commands given during a gesture make one step of undo together; it is that of a widget.
+    afterwards: list[Afterwards] = field(default_factory=list)  # deferred actions
+    # Commands of one gesture, a single use of a widget, are one undo step.
     gesture: object | None = None
     used_widget: int = 0
 
-    # Distortion over time, of the active layer and of its twin.
+    # Distortion over time, of the active layer and of the compared method.
     curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
     comparison_curves: Derived[Clip, Curves | None] = field(default_factory=lambda: Derived(None))
-    # Of the active layer's handles; they are traced while they are shown.
+    # Motion paths of the active layer's handles, computed while they are shown.
     paths: Derived[Clip, MotionPaths | None] = field(default_factory=lambda: Derived(None))
-    # Of the layers that hang on others; `hung` has those of the document as it is now.
+    # Of attached layers; `current_parent_transforms` has those of the present document.
     parent_transforms: Derived[tuple[object, ...], ParentTransforms | None] = field(
         default_factory=lambda: Derived(None)
     )
-    # Of the motion; where the settings of an export are shown it is measured first, else last.
+    # Extent of the motion; measured first if export settings are shown, else last.
     extent: Derived[tuple[object, ...], BoundingBox | None] = field(
         default_factory=lambda: Derived(None, remembers=EXTENTS)
     )
 
-    # What the domain will be rebuilt with; None as long as that is what it has.
+    # Meshing of the next rebuild; None if it is the present meshing.
     meshing: Meshing | None = None
-    previewed_limits: Bounds | None = None  # what the person drags them to
-    # The layer whose domain is older than its cut-out, and the clock's seconds when it was seen.
+    previewed_limits: Bounds | None = None  # limits during a drag of their knob
+    # The layer with a domain older than its cut-out, and the clock's seconds when this was seen.
     stale: tuple[Layer, float] | None = None
-    unbuildable: Layer | None = None  # one whose cut-out is known to give no domain
-    brush: float | None = None  # radius in pixels of the picture; None until somebody chooses it
-    # Where the next export of a format goes: as its last one, or as was told; the newest last.
+    unbuildable: Layer | None = None  # a layer whose cut-out gives no domain
+    brush: float | None = None  # radius in pixels of the picture; None before it is set
+    # Destination of the next export by format, the newest last.
     export_destinations: dict[str, Path] = field(default_factory=dict)
-    # The format and the place of one that may take the place of other files: the person agreed, or
-    # they are an export's.
+    # Format and destination of an export that may replace files: the person agreed, or the files
+    # are of an export.
     replaceable: tuple[str, Path] | None = None
 
     playhead: Playhead = field(default_factory=Playhead)
-    moved_at: float = -inf  # the clock's seconds when the playhead was last seen to move
+    moved_at: float = -inf  # the clock's seconds when the playhead last moved
     timeline: TimelineState = field(default_factory=TimelineState)
-    selected_handles: frozenset[int] = frozenset()  # ids of handles
-    # The chosen keys; rows without any are not in it.
+    selected_handles: frozenset[int] = frozenset()  # ids
+    # Rows without selected keys are left out.
     selected_keys: KeysByRow = field(default_factory=dict)
-    track_row: TrackRow | None = None  # that of a track which is chosen
-    motion_setup: MotionSetup | None = None  # a motion that is about to be given
-    last_motion_setup: MotionSetup | None = None  # that was put away, or was given
-    recording: Recording | None = None  # a drag that is recorded, until that is kept or given up
+    track_row: TrackRow | None = None  # the selected track row
+    motion_setup: MotionSetup | None = None  # the draft of a motion
+    last_motion_setup: MotionSetup | None = None  # the last closed or applied draft
+    recording: Recording | None = None  # until accepted or discarded
     camera: View | None = None  # None fits the picture into the viewport
-    is_camera_view: bool = False  # whether the viewport shows what the scene's camera does
-    awaits_extent: bool = False  # whether the camera fits the motion once that is measured
+    is_camera_view: bool = False  # whether the viewport shows the camera's view
+    awaits_extent: bool = False  # whether the view fits the motion once it is measured
     last_flip: LastFlip | None = None
     blend_preview: BlendPreview | None = None
-    picked_pose: tuple[int, str] | None = None  # whose, by its id, and its name in the library
-    # The ids of layers that are chosen beside the one that is posed, and of those that alone are
-    # looked at, if any.
+    picked_pose: tuple[int, str] | None = None  # layer id, and name in its library
+    # Ids of selected layers other than the active one, and of soloed layers.
     other_selected_layers: frozenset[int] = frozenset()
     solo: frozenset[int] = frozenset()
-    toggled_rows: frozenset[str] = frozenset()  # rows of the tree of layers, open or closed by hand
-    dismissed_suggestions: frozenset[str] = frozenset()  # groups of which no choice is to be made
-    # Layers that were posed, and whose rows stay until the pointer is over the drawing again.
+    toggled_rows: frozenset[str] = frozenset()  # layer tree rows opened or closed by hand
+    dismissed_suggestions: frozenset[str] = frozenset()  # groups without a switch suggestion
+    # Formerly active layers whose rows stay until the pointer is over the drawing again.
     lingering: frozenset[int] = frozenset()
-    last_listed_layer: int | None = None  # the layer that the list of layers was scrolled to
-    # Those of the list of layers; of a document, what is toggled in it, and what is kept in it.
+    last_listed_layer: int | None = None  # the layer to which the list was scrolled
+    # Rows of the layer list, by document, toggled rows, and ids whose rows stay.
     tree_rows: Derived[tuple[Document, frozenset[str], frozenset[int]], tuple[TreeRow, ...]] = (
         field(default_factory=lambda: Derived(()))
     )
 
     @property
     def document(self) -> Document:
-        """The document as it is now."""
         return self.history.document
 
     @property
     def origin(self) -> SourceInfo:
-        """What is kept with its changes, so that they are found again under their name."""
+        """Origin of autosaved changes, by which recovery finds them."""
         return SourceInfo(self.name, self.path)
 
     @property
     def layer(self) -> Layer:
-        """The layer that is posed, as it is now."""
         return self.document.layer(self.active)
 
     @property
     def tree(self) -> tuple[TreeRow, ...]:
-        """The rows of the layers that are listed, the one in front on top."""
+        """Rows of the layer list, the front layer on top."""
         source = self.document, self.toggled_rows, self.lingering | {self.active}
         if not self.tree_rows.follows(source):
             self.tree_rows.set(source, layer_tree(*source))
@@ -203,13 +200,13 @@ class Project:
 
     @property
     def selected_layers(self) -> tuple[int, ...]:
-        """The ids of the chosen layers, from front to back; the one that is posed is among them."""
+        """Ids of the selected layers from front to back, with the active layer."""
         chosen = self.other_selected_layers | {self.active}
         return tuple(each.id for each in reversed(self.document.layers) if each.id in chosen)
 
     @property
     def rows(self) -> list[KeyRow]:
-        """The rows of the timeline from top to bottom: the layer in front comes first."""
+        """Rows of the timeline from top to bottom, the front layer first."""
         rows: list[KeyRow] = []
         for layer in (row.layer for row in self.tree if row.layer):
             rows.append(layer.id)
@@ -218,16 +215,16 @@ class Project:
         return rows
 
     def track_in(self, row: KeyRow) -> Track | None:
-        """Return the track of a row; None where it is of poses, or not there any more."""
+        """Return the track of a row; None for a pose row or a missing track."""
         if not isinstance(row, TrackRow) or row.layer not in self.layer_runtimes:
             return None
         return self.document.layer(row.layer).track_of(row.handle)
 
     @property
     def selected_frames(self) -> frozenset[int]:
-        """The frames of the chosen keys of the active layer's poses.
+        """Frames of the selected pose keys of the active layer.
 
-        Setting them lets all others go.
+        Setting it deselects all other keys.
         """
         return self.selected_keys.get(self.active, frozenset())
 
@@ -237,9 +234,9 @@ class Project:
 
     @property
     def selected_track(self) -> int | None:
-        """The id of the handle whose track's row is chosen, of the layer that is posed.
+        """The handle id of the selected track row of the active layer.
 
-        None where its whole pose's row is. Setting it chooses a row.
+        None if the pose row is selected. Setting it selects a row.
         """
         row = self.track_row
         if row is None or row.layer != self.active or self.layer.track_of(row.handle) is None:
@@ -252,52 +249,51 @@ class Project:
 
     @property
     def row(self) -> KeyRow:
-        """The row that is chosen: of the poses of the layer that is posed, or of a track of it."""
+        """The selected row: of the active layer's poses, or of one of its tracks."""
         handle = self.selected_track
         return row_of(self.layer, None if handle is None else self.layer.track_of(handle))
 
     @property
     def selected_key_count(self) -> int:
-        """How many keys are chosen, in all rows."""
+        """The number of selected keys in all rows."""
         return sum(map(len, self.selected_keys.values()))
 
     @property
     def sources(self) -> tuple[Path, ...]:
-        """The files that it was read from."""
         return (*self.drawings, *([] if self.path is None else [self.path]))
 
     def keys_with(self, row: KeyRow, frame: int) -> KeysByRow:
-        """Return the chosen keys of all rows, if a key is one of them, or else that key."""
+        """Return the selected keys of all rows if a key is one of them, or else only this key."""
         if frame in self.selected_keys.get(row, ()):
             return self.selected_keys
         return {row: frozenset({frame})}
 
     @property
     def clip(self) -> Clip:
-        """The layer that is posed, in the time of its scene."""
+        """The active layer in the time of its scene."""
         return clip_of(self.document, self.active)
 
     @property
     def layer_runtime(self) -> LayerRuntime:
-        """The layer that is posed, as the window has it."""
+        """The active layer's runtime."""
         return self.layer_runtimes[self.active]
 
     @property
     def samplers(self) -> dict[int, PoseSampler]:
-        """What is known of the layers' outlines, by their ids."""
+        """Pose samplers of the layers, by id."""
         samplers = {layer: puppet.store.sampler for layer, puppet in self.layer_runtimes.items()}
         return {layer: sampler for layer, sampler in samplers.items() if sampler is not None}
 
     @property
     def is_crowded(self) -> bool:
-        """Whether layers that nobody edits hold much that `Puppet.rest` lets go, or will."""
+        """Whether inactive layers hold, or will hold, much memory that can be freed."""
         return (
             sum(puppet.releasable_bytes(clip) for clip, puppet in self._unedited())
             > MOST_RELEASABLE_BYTES
         )
 
     def free_memory(self) -> None:
-        """Let go of what layers that nobody edits were made with, as long as that is much."""
+        """Free intermediate values of inactive layers while they take much memory."""
         unedited = self._unedited()
         held = {puppet: puppet.releasable_bytes(clip) for clip, puppet in unedited}
         for clip, puppet in unedited:
@@ -315,7 +311,7 @@ class Project:
 
     @property
     def unkeyed_pose(self) -> Pose | None:
-        """The pose that is shown though no key holds it; None where there is none at this frame."""
+        """The unkeyed pose of the active layer at this frame, if any."""
         unkeyed = self.history.preview_pose
         if unkeyed is None or unkeyed.layer != self.active or self.playhead.since is not None:
             return None
@@ -324,17 +320,17 @@ class Project:
 
     @property
     def pulls(self) -> list[Pull]:
-        """The poses that are on their way, in the order in which they were begun."""
+        """The unfinished pose drags, oldest first."""
         return [promise for promise in self.pending if isinstance(promise, Pull)]
 
     @property
     def track_drags(self) -> list[TrackDrag]:
-        """The handles that hands want elsewhere by their tracks, which have no such keys yet."""
+        """The track drags whose keys are pending."""
         return [promise for promise in self.pending if isinstance(promise, TrackDrag)]
 
     @property
     def pull(self) -> Pull | None:
-        """The one on its way that is shown of the layer that is posed."""
+        """The unfinished pose drag that is shown, of the active layer."""
         if self.playhead.since is not None:
             return None
         here = (self.active, self.layer.source_of(self.playhead.frame))
@@ -343,43 +339,43 @@ class Project:
 
     @property
     def is_posing(self) -> bool:
-        """Whether the document has a pose that is on its way, or is to have the first."""
+        """Whether the document has an unfinished pose, or will get one."""
         return any(pull.is_in(self.history) for pull in self.pulls)
 
     @property
     def key_resolver(self) -> KeyResolver | None:
-        """Keys that are being solved again, as far as that is."""
+        """Keys that are solved again, with progress."""
         return next(
             (promise.key_resolver for promise in self.pending if promise.key_resolver), None
         )
 
     @property
     def motion_job(self) -> MotionJob | None:
-        """A motion on its way to a layer."""
+        """The pending motion of a layer."""
         return next((promise.motion_job for promise in self.pending if promise.motion_job), None)
 
     @property
     def stale_layer(self) -> Layer | None:
-        """One whose domain is older than its cut-out, and will be built anew."""
+        """The layer with a domain older than its cut-out that will be rebuilt."""
         layers = self.document.layers
         stale = next((each for each in layers if each.is_stale and not each.still), None)
         return None if stale is self.unbuildable else stale
 
     @property
     def current_parent_transforms(self) -> ParentTransforms | None:
-        """The joints of the document as it is now; None where there are none, or not yet."""
+        """Joints of the present document; None without joints, or while they are unknown."""
         follows = self.parent_transforms.follows(parenting_key(self.document))
         return self.parent_transforms.value if follows else None
 
     def placements(self, frames: Iterable[int], unknown: RigidMotion) -> list[RigidMotion]:
-        """Return where the layer that is posed is at some frames: `unknown` till that is known."""
+        """Return the active layer's placements at some frames; `unknown` while they are unknown."""
         frames = list(frames)
         return self.placed_at(self.active, frames) or [unknown for _ in frames]
 
     def placed_at(self, layer: int, frames: Sequence[int]) -> list[RigidMotion] | None:
-        """Return where a layer, by its id, is at some frames; None till that is known.
+        """Return a layer's placements at some frames; None while they are unknown.
 
-        While it is posed itself, it hangs as before: its joint holds.
+        While the layer itself is posed, its earlier joints stay valid.
         """
         own, joints = self.document.layer(layer), self.current_parent_transforms
         if not own.attachments:
@@ -389,7 +385,7 @@ class Project:
         return None if joints is None else [joints.placement(layer, frame) for frame in frames]
 
     def _has_same_parents(self, before: Document, layer: Layer) -> bool:
-        """Tell whether a layer hangs on the very same others as in an earlier document."""
+        """Return whether a layer has the same parents as in an earlier document."""
         was = {each.id: each for each in before.layers}
         document, own = self.document, was.get(layer.id)
         return (
@@ -401,7 +397,7 @@ class Project:
         )
 
     def update_comparisons(self, method: Variant | Baseline | None) -> None:
-        """Let each layer have a twin by a method, or none."""
+        """Compare each layer with a method, or with none."""
         for layer in self.document.layers:
             puppet = self.layer_runtimes[layer.id]
             if method is None:
@@ -418,7 +414,7 @@ class Project:
             puppet.comparison = twin
 
     def view(self, screen: tuple[int, int]) -> View:
-        """Return what the viewport shows on a screen of this size in pixels."""
+        """Return the viewport's view on a screen of this size in pixels."""
         whole = fit_view_around(BoundingBox(0j, complex(*self.document.canvas)), screen)
         shown = self.layer_runtime.shown
         shot = camera_at(self.document, self.playhead.frame if shown is None else shown.frame)
@@ -429,5 +425,5 @@ class Project:
 
 
 def fit_view_around(box: BoundingBox, screen: tuple[int, int]) -> View:
-    """Return the view of a box on a screen of this size in pixels, with some room around it."""
+    """Return the view of a box with a margin, on a screen of this size in pixels."""
     return fit_view(*box, screen, margin=FIT_MARGIN * min(screen))

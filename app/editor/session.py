@@ -1,4 +1,4 @@
-"""The state of one window: everything that may change, and nothing that is drawn."""
+"""The state of one window: all values that may change, without drawing."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -25,31 +25,31 @@ Tint = Literal["depth", "stiffness"]
 MaterialTool = Literal["stiff", "soft", "normal", "bone"]
 Tone = Literal["info", "good", "error"]
 TutorialStage = Literal["handle", "time", "pose", "play", "export", "done"]
-CLICK = 3.0  # pixels of the screen that a click may wander
+CLICK = 3.0  # screen pixels that the pointer may move during a click
 P = ParamSpec("P")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Overlays:
-    """What the viewport shows besides the drawing."""
+    """Overlays of the viewport."""
 
     handles: bool = True
     wireframe: bool = False
     outline: bool = False
     cage: bool = False
     onion: bool = False
-    mirror: bool = False  # the axis at which poses are flipped
+    mirror: bool = False  # the mirror axis of poses
     paths: bool = False  # of the selected handles
     heat_map: HeatMap = "none"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CompareView:
-    """Another method beside the drawing's own: how the viewport is divided."""
+    """The compared method, and the division of the viewport."""
 
-    method: Variant | Baseline  # by which all layers are shown in the right part
-    divider: float = 0.5  # of the divider, as a share of the viewport's width
-    # Whether the two are side by side, each whole, and not under a divider over one place.
+    method: Variant | Baseline  # method of all layers in the right part
+    divider: float = 0.5  # place of the divider, as a share of the viewport's width
+    # Whether both methods are shown whole, side by side, instead of under a divider.
     is_side_by_side: bool = False
 
 
@@ -60,16 +60,16 @@ class Toast:
     text: str
     tone: Tone
     born: float  # the clock's seconds
-    place: int  # the first that no other one has: ImGui keeps a window for each for ever
-    topic: str = ""  # a later message about the same takes its place
-    details: str = ""  # what the person may copy, where there is anything to add
-    label: str = ""  # of a button that does the action, such as "Open folder"
+    place: int  # the lowest free number, since ImGui never frees a window
+    topic: str = ""  # a later message of the same topic replaces it
+    details: str = ""  # text that the person can copy
+    label: str = ""  # label of the action's button, such as "Open folder"
     action: Action | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoxOverlay:
-    """A box that the pointer spans in the plane, from corner to corner."""
+    """A selection box in the scene, from corner to corner."""
 
     corner: complex
     opposite: complex
@@ -77,7 +77,7 @@ class BoxOverlay:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RotationOverlay:
-    """By how many radians the shape is turned around a handle, and how many the pointer swept."""
+    """The rotation of the shape around a handle and the pointer's rotation, in radians."""
 
     handle: int
     angle: float
@@ -86,7 +86,7 @@ class RotationOverlay:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NumericEntryOverlay:
-    """What was typed during a drag, and the axis through a place that it keeps to, if any."""
+    """Text typed during a drag, and the locked axis through a place, if any."""
 
     place: complex
     direction: complex | None
@@ -95,23 +95,23 @@ class NumericEntryOverlay:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StrokeOverlay:
-    """A stroke of the brush, in the plane, that is not done yet."""
+    """An unfinished stroke of the brush, in the scene."""
 
     points: tuple[complex, ...]
     radius: float
-    keeps: bool | None  # None of one that neither keeps nor removes
+    keeps: bool | None  # None for a stroke that neither keeps nor removes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KnifeOverlay:
-    """A line of the knife, in the plane, that is not done yet."""
+    """An unfinished line of the knife, in the scene."""
 
     points: tuple[complex, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttachOverlay:
-    """The way from an anchor to the pointer, and the layer there, which may be refused."""
+    """The line from an anchor to the pointer, and the layer there, which may be refused."""
 
     start: complex
     end: complex
@@ -121,9 +121,9 @@ class AttachOverlay:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoneOverlay:
-    """The way from a handle to the pointer, or to another handle, between which there may be none.
+    """The line from a handle to the pointer or to another handle; the bone may be refused.
 
-    Ends are in the plane.
+    Ends are in the scene.
     """
 
     start: complex
@@ -144,16 +144,16 @@ Mark = (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedKeys:
-    """Keys of a layer to be pasted, or a pose as the only one, and the layer as it was then."""
+    """Copied keys or a single copied pose, with the layer at that time."""
 
     layer: Layer
     keys: tuple[Keyframe, ...]
-    is_pose: bool = False  # whether it is a pose, and no way to the next key comes with it
+    is_pose: bool = False  # whether it is a pose without easing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CopiedTrack:
-    """Keys of a track to be pasted, and the track and its layer as they were then."""
+    """Copied keys of a track, with the track and its layer at that time."""
 
     layer: Layer
     track: Track
@@ -162,7 +162,7 @@ class CopiedTrack:
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """What can be done with the pointer: how, which key is held for it, and to what end."""
+    """A hint about the pointer: gesture, effect, and the key to hold."""
 
     how: str
     what: str
@@ -170,34 +170,34 @@ class Hint:
 
 
 class ActiveTool(Protocol):
-    """A tool that has the pointer in the viewport; places are of the plane."""
+    """A tool that has the pointer in the viewport; places are in the scene."""
 
     def move(self, session: "Session", place: complex) -> None:
         """Follow the pointer to another place."""
 
     def type(self, session: "Session", characters: str) -> None:
-        """Take what is typed meanwhile."""
+        """Take characters that are typed during the drag."""
 
     def end(self, session: "Session", place: complex) -> None:
-        """End where the pointer is."""
+        """End at the pointer's place."""
 
     def cancel(self, session: "Session") -> None:
-        """End, and take back all that was done."""
+        """End, and undo all edits."""
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """What is drawn of it over the picture."""
+        """The tool's overlays over the drawing."""
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done meanwhile."""
+        """The hints until the release."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ExportRun:
-    """An export that is under way: what it draws, how, and how many frames are drawn.
+    """A running export: its plan, its settings, and the number of drawn frames.
 
-    Where it is for the clipboard, its file goes there and does not stay.
+    The file of an export to the clipboard is deleted afterwards.
     """
 
     document: Document
@@ -210,96 +210,91 @@ class ExportRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TutorialState:
-    """How far somebody has come who is led through a first animation.
+    """Progress of the tutorial.
 
-    Where the drawing is a sample, a handle is to be put at its `aim` and dragged to its `goal`.
+    In the sample, the person puts a handle at `aim` and drags it to `goal`.
     """
 
-    project: Project | None = None  # None while the drawing is chosen and opened
-    handles: frozenset[tuple[int, int]] = frozenset()  # those that were there, by layer and id
+    project: Project | None = None  # None until the drawing is opened
+    handles: frozenset[tuple[int, int]] = frozenset()  # earlier handles, by layer and id
     handle_place: complex | None = None
     target_place: complex | None = None
     stage: TutorialStage = "handle"
-    has_played: bool = False  # since it moves
-    exported: ExportPlan | None = None  # the last export before the one that is awaited
+    has_played: bool = False  # since the drawing moves
+    exported: ExportPlan | None = None  # the last export before the awaited one
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Session:
-    """Everything that one window changes while it runs."""
+    """All values that one window changes while it runs."""
 
     clock: Callable[[], float]
     jobs: Jobs
-    folder: Path  # for settings and unsaved work
+    folder: Path  # folder of settings and unsaved work
     preferences: Preferences = field(default_factory=Preferences)
-    saved_preferences: Preferences = field(init=False)  # as they are on the disk
+    saved_preferences: Preferences = field(init=False)  # as on the disk
     autosave: Autosave = field(init=False)
     project: Project | None = None
     overlays: Overlays = field(default_factory=Overlays)
     screen: tuple[int, int] = (640, 480)  # pixels of the viewport
-    full_detail: bool = True  # whether this machine draws the full mesh fast enough to move
+    full_detail: bool = True  # whether the full mesh is drawn fast enough in motion
     solver_seconds: float = 0.0
-    # Whether what nobody looks at yet is prepared meanwhile: in-betweens, corrections, series for
-    # smooth playback, measured distortion and the extent of the motion. Tests mostly go without.
+    # Whether values are prepared before they are shown: in-betweens, corrections, series for
+    # smooth playback, measured distortion and the extent of the motion. Most tests turn this off.
     prepares_ahead: bool = True
     meshing: Meshing = field(default_factory=Meshing)  # of new pictures
     toasts: list[Toast] = field(default_factory=list)
     dialog: Dialog | None = None
     system_dialogs: bool = False  # whether the system's own file dialogs are used
     export: ExportRun | None = None
-    exported: ExportPlan | None = None  # that was completed last
-    cancellation: Cancellation = field(default_factory=Cancellation)  # of an export
-    tutorial: TutorialState | None = None  # through a first animation
-    named_layer: int | None = None  # for which a name is asked
-    pointed_layer: int | None = None  # on whose row in the list the pointer is
-    panel_to_focus: str = ""  # is brought to the front by the next frame of the window
-    export_frame: BoundingBox | None = None  # shown in the viewport while the export's settings are
-    is_aspect_locked: bool = True  # of an export whose size is entered
+    exported: ExportPlan | None = None  # the last complete export
+    cancellation: Cancellation = field(default_factory=Cancellation)  # of the export
+    tutorial: TutorialState | None = None  # None without a tutorial
+    named_layer: int | None = None  # layer whose name is edited
+    pointed_layer: int | None = None  # layer whose list row is under the pointer
+    panel_to_focus: str = ""  # to be brought to the front in the next frame
+    export_frame: BoundingBox | None = None  # shown while export settings are shown
+    is_aspect_locked: bool = True  # of width and height of an export
     curves: CurveKind = "relative"
     compare_view: CompareView | None = None  # None shows the drawing alone
-    last_compare_view: CompareView = CompareView(
-        method=Variant.LINEAR
-    )  # as it was when it was put away
+    last_compare_view: CompareView = CompareView(method=Variant.LINEAR)  # before it was closed
     active_tool: ActiveTool | None = None
-    cutting: CutTool | None = None  # what is in hand that cuts out; None poses
-    material: MaterialTool | None = None  # what is in hand that makes parts stiff or soft
-    strength: float = 10.0  # how many times as stiff, or as soft, the brush makes what it covers
-    softness: float = 0.5  # over which part of the brush's radius that becomes less
-    moves: bool = False  # whether a drag, or an arrow, moves the whole layer
-    records: bool = False  # whether the next drag of a handle is recorded while it plays
-    recording_speed: float = 1.0  # times the animation's own
-    is_snapping: bool = False  # whether what the pointer does goes in steps
-    is_forcing_targets: bool = (
-        False  # whether what it pulls beyond its reach is wanted there all the same
-    )
-    # Whether the timeline has the pointer, or else the focus: what is chosen there is meant.
+    cutting: CutTool | None = None  # the selected cut-out tool; None poses
+    material: MaterialTool | None = None  # the selected stiffness tool
+    strength: float = 10.0  # factor of the stiffness brush
+    softness: float = 0.5  # part of the brush's radius over which it fades
+    moves: bool = False  # whether drags and arrow keys move the whole layer
+    records: bool = False  # whether the next drag of a handle is recorded
+    recording_speed: float = 1.0  # of the animation's speed
+    is_snapping: bool = False  # whether pointer moves snap to steps
+    is_forcing_targets: bool = False  # whether released targets beyond reach stay
+    # Whether actions on the selection mean the timeline: it has the pointer, or else the focus.
     is_timeline_focused: bool = False
-    copied: tuple[CopiedKeys, ...] = ()  # of each layer whose keys were copied together
-    copied_tracks: tuple[CopiedTrack, ...] = ()  # of each track, likewise
-    is_space_used: bool = False  # Space was held to move the view
+    copied: tuple[CopiedKeys, ...] = ()  # one for each copied layer
+    copied_tracks: tuple[CopiedTrack, ...] = ()  # one for each copied track
+    is_space_used: bool = False  # whether Space was held to pan the view
     hovered: int | None = None  # the handle under the pointer
-    hint: str = ""  # about what is under the pointer
-    tint: Tint | None = None  # what the drawing shows by colours while that is set
-    reported_failures: set[str] = field(default_factory=set)  # what cannot be kept, as was told
-    graphics: str = ""  # what draws the window; empty before its first frame
-    logged_actions: list[str] = field(default_factory=list)  # the names of the last actions
-    last_error_trace: str = ""  # where the program itself failed last
+    hint: str = ""  # about the item under the pointer
+    tint: Tint | None = None  # quantity that colours the drawing
+    reported_failures: set[str] = field(default_factory=set)  # repeated failures that were reported
+    graphics: str = ""  # graphics driver; empty before the first frame
+    logged_actions: list[str] = field(default_factory=list)  # names of the last actions
+    last_error_trace: str = ""  # of the last unexpected error
     is_quitting: bool = False
 
     def __post_init__(self) -> None:
-        """Take the preferences to be as they were read, and nothing to be kept yet."""
         self.saved_preferences = self.preferences
         self.autosave = Autosave(self.folder)
 
     @property
     def is_posing(self) -> bool:
-        """Whether drags pose, and nothing else is in hand."""
+        """Whether drags pose, and no other tool is selected."""
         drafts = self.project is not None and self.project.motion_setup is not None
         return not (drafts or self.moves) and self.cutting is None and self.material is None
 
     @property
     def usual_folder(self) -> Path:
-        """Where the person's files were last."""
+        """The person's last folder."""
         folder = self.preferences.folder
         return folder if folder is not None and folder.is_dir() else home_folder()
 
@@ -311,7 +306,7 @@ class Session:
         *,
         name: str = "",
     ) -> None:
-        """Ask for a file to read, or for one to write if there is a `name` that it has at first."""
+        """Ask for a file to read, or for a file to write if there is a suggested `name`."""
         self.dialog = FileDialog(
             title=title,
             folder=self.usual_folder,
@@ -331,7 +326,7 @@ class Session:
         label: str = "",
         action: Action | None = None,
     ) -> None:
-        """Show a message; one that shows already starts its time again."""
+        """Show a message; a message that is already shown starts its time again."""
         text, details = display_message(text), printable(details, keeps_lines=True)
         self.toasts = [
             toast
@@ -355,7 +350,7 @@ class Session:
 def with_project(
     verb: Callable[Concatenate[Session, Project, P], None],
 ) -> Callable[Concatenate[Session, P], None]:
-    """Hand a verb the project that is open; without one it does nothing."""
+    """Pass the open project to a verb; without a project the verb does nothing."""
 
     @wraps(verb)
     def given(session: Session, /, *args: P.args, **kwargs: P.kwargs) -> None:

@@ -1,4 +1,4 @@
-"""How the person looks at the timeline, and what the pointer does there."""
+"""The person's view of the timeline, and drags of the pointer in it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -18,37 +18,36 @@ from app.document import (
 )
 from app.editor.work import Derived
 
-SMALLEST, LARGEST = 0.002, 4.0  # em that a frame takes
-MARGIN = 1.4  # em left and right of frames that are fitted
-ROOM = 0.04  # of the width, right of the last frame: there keys can be dragged on
+SMALLEST, LARGEST = 0.002, 4.0  # em per frame
+MARGIN = 1.4  # em left and right of fitted frames
+ROOM = 0.04  # of the width: space right of the last frame for dragged keys
 Edge = Literal["preview start", "preview range", "preview end", "animation end"]
 
 
 class TrackRow(NamedTuple):
-    """The row of a track: the ids of its layer, and of the first of its handles."""
+    """The row of a track: the ids of its layer and of its first handle."""
 
     layer: int
     handle: int
 
 
-# The row of the poses of a layer, by its id, or that of a track.
+# The pose row of a layer, as its id, or a track row.
 KeyRow = int | TrackRow
-# The frames of some keys, by their rows.
+# Frames of keys, by row.
 KeysByRow = Mapping[KeyRow, frozenset[int]]
 
 
 def layer_of(row: KeyRow) -> int:
-    """Return the id of the layer whose keys are in a row."""
     return row.layer if isinstance(row, TrackRow) else row
 
 
 def row_of(layer: Layer, track: Track | None) -> KeyRow:
-    """Return the row of a track of a layer, or that of its poses."""
+    """Return the row of a layer's track, or its pose row."""
     return layer.id if track is None else TrackRow(layer.id, track.handles[0])
 
 
 def keys_in(document: Document, row: KeyRow) -> tuple[Keyframe, ...] | tuple[TrackKey, ...]:
-    """Return the keys of a row; none where it is not there any more."""
+    """Return the keys of a row; none if the row no longer exists."""
     layer = next((each for each in document.layers if each.id == layer_of(row)), None)
     if layer is None or not isinstance(row, TrackRow):
         return () if layer is None else layer.keys
@@ -57,14 +56,14 @@ def keys_in(document: Document, row: KeyRow) -> tuple[Keyframe, ...] | tuple[Tra
 
 
 def frames_in(document: Document, row: KeyRow) -> frozenset[int]:
-    """Return the frames that have a key in a row, of a track without its delay."""
+    """Return the frames of a row's keys, without the delay of a track."""
     return frozenset(key.frame for key in keys_in(document, row))
 
 
 def display_frame(document: Document, track: Track | None, frame: int) -> int:
-    """Return the frame at which a key is seen: a track's is late by its delay.
+    """Return the shown frame of a key; a track's delay is added.
 
-    In a loop it comes round, and so it does in a cycle that takes the track.
+    The frame wraps around in a loop, and in a cycle that repeats the track.
     """
     seen = frame + (0 if track is None else track.delay)
     cycle = None if track is None else _cycle_of(document, track)
@@ -75,14 +74,14 @@ def display_frame(document: Document, track: Track | None, frame: int) -> int:
 
 
 def _cycle_of(document: Document, track: Track) -> Cycle | None:
-    """Return the cycle with which a track repeats, if there is one."""
+    """Return the cycle that repeats a track, if there is one."""
     layer = next((each for each in document.layers if track in each.tracks), None)
     cycles = () if layer is None else layer.cycles
     return next((cycle for cycle in cycles if cycle.repeats_keys(track.keys)), None)
 
 
 def source_frame(document: Document, track: Track, seen: int) -> int | None:
-    """Return the frame of the key of a track that is seen at a frame; None where none can be."""
+    """Return the key frame for a shown frame of a track; None if none is possible."""
     first, last = document.frames.first, document.frames.last
     own, cycle = seen - track.delay, _cycle_of(document, track)
     if cycle is not None and cycle.covers(seen):
@@ -94,20 +93,20 @@ def source_frame(document: Document, track: Track, seen: int) -> int | None:
 
 @dataclass(frozen=True, slots=True)
 class TimeRangeView:
-    """The stretch of time that is on the screen."""
+    """The visible range of time."""
 
-    start: float  # the frame at its left edge
-    scale: float  # how many em a frame takes
+    start: float  # frame at the left edge
+    scale: float  # em per frame
 
     @classmethod
     def fitting(cls, frames: FrameRange, width: float) -> Self:
-        """Return the strip that shows all frames within a width in em."""
+        """Return the range that shows all frames in a width in em."""
         free = max(width * (1 - ROOM) - 2 * MARGIN, 1.0)
         scale = min(free / max(frames.last - frames.first, 1), LARGEST)
         return cls(frames.first - MARGIN / scale, scale)
 
     def place(self, frame: float) -> float:
-        """Return how many em a frame is from the left edge."""
+        """Return a frame's distance from the left edge, in em."""
         return (frame - self.start) * self.scale
 
     def frame(self, place: float) -> float:
@@ -115,29 +114,28 @@ class TimeRangeView:
         return self.start + place / self.scale
 
     def zoomed(self, factor: float, place: float) -> Self:
-        """Return the strip in which frames are wider by a factor, and the one at `place` stays."""
+        """Return the range with a frame width scaled by a factor, fixed at `place`."""
         scale = min(max(self.scale * factor, SMALLEST), LARGEST)
         return replace(self, start=self.frame(place) - place / scale, scale=scale)
 
     def panned(self, by: float) -> Self:
-        """Return the strip some em later."""
+        """Return the range moved by em to later frames."""
         return replace(self, start=self.start + by / self.scale)
 
     def kept_near(self, frames: FrameRange, width: float) -> Self:
-        """Return the strip moved so that it shows frames from its middle on, or up to there."""
+        """Return the range moved so that at least half of the width shows the frames' range."""
         half = width / 2 / self.scale
         return replace(self, start=min(max(self.start, frames.first - half), frames.last - half))
 
     def showing(self, frame: float, width: float, *, turns: bool) -> Self:
-        """Return the strip moved so that it shows a frame; this one if it does already.
+        """Return the range moved to show a frame; unchanged if it is visible.
 
         Parameters
         ----------
-        frame : float
         width : float
             In em.
         turns : bool
-            Whether to go on by a whole page, and not by as little as possible.
+            Whether to move by a whole page instead of the least distance.
         """
         place = self.place(frame)
         if 0 <= place <= width:
@@ -149,34 +147,34 @@ class TimeRangeView:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TimeDrag:
-    """The pointer moves something in time."""
+    """A drag in the timeline."""
 
-    start: float  # the pointer's frame at the press
+    start: float  # frame of the press
     before: Document  # at the press
-    after: Document  # with what is moved where it is now
+    after: Document  # with the drag applied
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyDrag(TimeDrag):
-    """The pointer moves keys, or copies of them."""
+    """Drag of keys, or of copies of them."""
 
-    keys: KeysByRow  # as they are in `before`
-    row: KeyRow  # of the one under the pointer, which is of the active layer
-    pressed: int  # its frame
+    keys: KeysByRow  # in `before`
+    row: KeyRow  # of the pressed key, in the active layer
+    pressed: int  # frame of the pressed key
     copies: bool
-    by: int = 0  # how far they are, in frames
+    by: int = 0  # offset in frames
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class EdgeDrag(TimeDrag):
-    """The pointer moves an end of the preview range, all of it, or the animation's end."""
+    """Drag of an end of the preview range, of the whole range, or of the animation's end."""
 
     edge: Edge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MarkerDrag(TimeDrag):
-    """The pointer moves a marker from a frame in `before` to where it is `at` now."""
+    """Drag of a marker from a frame in `before` to the frame `at`."""
 
     marker: int
     at: int
@@ -184,7 +182,7 @@ class MarkerDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CameraDrag(TimeDrag):
-    """The pointer moves a key of the camera from a frame in `before` to where it is `at` now."""
+    """Drag of a camera key from a frame in `before` to the frame `at`."""
 
     key: int
     at: int
@@ -192,7 +190,7 @@ class CameraDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SwitchDrag(TimeDrag):
-    """The pointer moves where a layer is shown or hidden: from a frame in `before` to `at`."""
+    """Drag of a visibility key from a frame in `before` to the frame `at`."""
 
     layer: int
     switch: int
@@ -201,16 +199,16 @@ class SwitchDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CycleDrag(TimeDrag):
-    """The pointer moves the end of what repeats from a frame on, or of its repeats."""
+    """Drag of the end of a cycle that begins at a frame, or of the end of its repeats."""
 
     layer: int
     first: int
-    is_stretch: bool  # whether it is its own end
+    is_stretch: bool  # whether it is the end of the first pass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TurnDrag(TimeDrag):
-    """The pointer moves where a layer of a choice comes to be seen, from `turn` to `at`."""
+    """Drag of a switch key from the frame `turn` to the frame `at`."""
 
     choice: str
     turn: int
@@ -219,16 +217,16 @@ class TurnDrag(TimeDrag):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
-    """The pointer spans a stretch of time and rows to choose the keys there."""
+    """A box of time and rows that selects keys."""
 
-    start: float  # the pointer's frame at the press
-    row: KeyRow  # that the pointer was on
-    keeps: KeysByRow  # the keys that are chosen besides
+    start: float  # frame of the press
+    row: KeyRow  # row of the press
+    keeps: KeysByRow  # other selected keys
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ScrubDrag:
-    """The pointer moves the playhead, which is `offset` frames later than the pointer."""
+    """Drag of the playhead, which is `offset` frames later than the pointer."""
 
     offset: float = 0.0
 
@@ -236,12 +234,12 @@ class ScrubDrag:
 TimeGesture = TimeDrag | KeyBox | ScrubDrag
 
 
-# By how many pixels handles, by their ids, fall short of their targets in each key's pose.
+# Target errors in pixels, by handle id, of each key's pose.
 KeyErrors = Mapping[Pose, Mapping[int, float]]
 
 
 def measure_key_errors(layer: Layer, earlier: Derived[Layer, KeyErrors]) -> KeyErrors:
-    """Measure the poses of a layer; those that were measured before are not again."""
+    """Measure the target errors of a layer's poses; known errors are reused."""
     source = earlier.source
     is_alike = source is not None and _measured_by(layer) == _measured_by(source)
     known = earlier.value if is_alike else {}
@@ -255,33 +253,33 @@ def measure_key_errors(layer: Layer, earlier: Derived[Layer, KeyErrors]) -> KeyE
 
 
 def _measured_by(layer: Layer) -> tuple[object, ...]:
-    """Return all of a layer, besides its poses, that shortfalls depend on."""
+    """Return all values of a layer, besides its poses, that target errors depend on."""
     return layer.domain, layer.handles, layer.sprung_handles
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class TimelineState:
-    """What may change of a project's timeline besides the document."""
+    """View state of a project's timeline."""
 
-    time_range: TimeRangeView | None = None  # what it shows; None fits all frames
+    time_range: TimeRangeView | None = None  # visible range; None fits all frames
     gesture: TimeGesture | None = None
-    # What it shows while the gesture lasts: nothing may move under the pointer.
+    # Visible range during the gesture, fixed so that nothing moves under the pointer.
     gesture_time_range: TimeRangeView | None = None
-    # The frame that was shown last, so that the strip follows the playhead only when it moves.
+    # The last shown frame, so that the range follows the playhead only when it moves.
     last_shown_frame: int = 0
-    # By how many em the rows of layers are scrolled down, where there are more than have room.
+    # Scroll offset of the layer rows, in em.
     scrolled: float = 0.0
-    # The row that was chosen last, and the layers whose tracks had rows then, so that the rows
-    # are scrolled to it only when that is another one.
+    # The last selected row and expanded layers: the rows scroll to the selected row only
+    # after a change.
     last_shown_rows: tuple[KeyRow, frozenset[int]] | None = None
-    expanded_layers: frozenset[int] = frozenset()  # the layers whose tracks have rows
+    expanded_layers: frozenset[int] = frozenset()  # layers whose tracks have rows
     target_errors: Derived[Layer, KeyErrors] = field(default_factory=lambda: Derived({}))
-    # The frames at which keys of a row are seen, in their order.
+    # Shown frames of a row's keys, in order.
     keyed_frames: Derived[tuple[Document, KeyRow], tuple[int, ...]] = field(
         default_factory=lambda: Derived(())
     )
-    # The frames of keys that the limits slow down, and by which shares, as far as that was known
-    # when so many results had been delivered.
+    # Frames of keys that the limits slow down, with the shares, by clip and number of delivered
+    # results.
     slowed: Derived[tuple[Clip, int], Mapping[int, float]] = field(
         default_factory=lambda: Derived({})
     )

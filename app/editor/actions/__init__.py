@@ -1,7 +1,7 @@
-"""What a person can do: verbs that change the session, applied in one place.
+"""Actions of the person: verbs that change the session, applied in one place.
 
 In: a session, and the arguments of a verb.
-Out: the session, changed; long work goes to the worker.
+Out: the changed session; long work goes to the worker.
 Imports: `app.editor`, and the rooms that do the work.
 """
 

@@ -1,4 +1,4 @@
-"""Changes of the document: commands, undo, and what is selected."""
+"""Changes of the document: commands, undo and the selection."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -32,16 +32,15 @@ Arguments = ParamSpec("Arguments")
 
 
 class KeyVerb(NamedTuple):
-    """What is done to keys, be they in a row of poses or of a track: the commands for both.
+    """An edit of keys: its commands for pose keys and for track keys.
 
-    Where there is none for tracks, their keys stay as they are.
+    Without a command for tracks, track keys stay unchanged.
     """
 
     to_poses: Callable[..., Command]
     to_tracks: Callable[..., Command] | None = None
 
     def at(self, row: KeyRow, frames: frozenset[int], *args: object) -> Command | None:
-        """Return the command for the keys of a row at some frames."""
         if not isinstance(row, TrackRow):
             return self.to_poses(row, frames, *args)
         return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
@@ -53,7 +52,7 @@ DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 @with_project
 def edit_document(_: Session, project: Project, command: Command) -> None:
-    """Run a command; those given in one use of a widget make one step of undo together."""
+    """Run a command; commands of one use of a widget are one undo step."""
     project.history.do(command, gesture=project.gesture)
     _forget_what_is_gone(project)
 
@@ -67,7 +66,7 @@ def edit_layer(
     *args: Arguments.args,
     **kwargs: Arguments.kwargs,
 ) -> None:
-    """Run a command on the layer that is posed."""
+    """Run a command on the active layer."""
     edit_document(session, command(project.active, *args, **kwargs))
 
 
@@ -75,7 +74,7 @@ def edit_layer(
 def note_widget_in_use(_: Session, project: Project, widget: int) -> None:
     """Note the number of the widget in use, 0 for none; once a frame.
 
-    What is done in one use of a widget is one step of undo.
+    Commands of one use of a widget are one undo step.
     """
     if widget != project.used_widget:
         project.used_widget = widget
@@ -84,10 +83,10 @@ def note_widget_in_use(_: Session, project: Project, widget: int) -> None:
 
 @with_project
 def undo(session: Session, project: Project) -> None:
-    """Take the last step back; a pull that is under way goes on in it, should it be done again.
+    """Undo the last step. A drag that is still held goes on in that step if the step is redone.
 
-    A change that waits for it, and is the last that was asked for, is taken back before it; so is
-    a motion that is on its way. Joints of a motion that is only drafted go back by themselves.
+    A pending action that was asked for last is cancelled first; so is a pending motion. While a
+    motion is drafted, undo changes only its joints.
     """
     if project.motion_setup is not None and project.motion_setup.past:
         project.motion_setup = project.motion_setup.undone
@@ -107,14 +106,14 @@ def undo(session: Session, project: Project) -> None:
         project.history.undo_label,
     )
     position = project.history.position
-    # What was done since they were wished is taken back before them.
+    # Steps that came after the targets were set are undone before them.
     unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
-    # What the hand has let go can be done again: it becomes a step before that step is undone.
+    # A released drag must be redoable: it becomes a step before that step is undone.
     unseen = [pull for pull in unseen if not posing.commit_targets(session, project, pull)]
     for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
         posing.cancel_drag(session, project, pull)
     if unseen:
-        # Nothing is to be seen of them yet but what their gestures did first.
+        # No pose of these drags is visible yet; only other edits of their gestures are.
         for pull in unseen:
             for gesture in (*pull.target_changes, pull.gesture):
                 project.history.revert(gesture)
@@ -127,7 +126,7 @@ def undo(session: Session, project: Project) -> None:
 
 @with_project
 def revert_gesture(session: Session, project: Project, gesture: object) -> None:
-    """Undo what a gesture has done, as if it had never begun."""
+    """Undo all edits of a gesture."""
     posing.revert_drag(session, gesture)
     project.history.revert(gesture)
     _forget_what_is_gone(project)
@@ -135,7 +134,6 @@ def revert_gesture(session: Session, project: Project, gesture: object) -> None:
 
 @with_project
 def redo(session: Session, project: Project) -> None:
-    """Do the step that was taken back again."""
     before, unkeyed = project.document, project.history.preview_pose
     _show_step_notice(session, "Done again", project.history.redo_label)
     project.history.redo()
@@ -151,7 +149,7 @@ def _show_step_notice(session: Session, what: str, label: str | None) -> None:
 def _go_to_change(
     session: Session, project: Project, before: Document, unkeyed: PreviewPose | None
 ) -> None:
-    """Put a playhead that stands where something has changed, or as near to it as it is to be."""
+    """Move a resting playhead to the nearest changed frame, unless its own frame changed."""
     if project.playhead.since is not None:
         return
     stretches = changed_ranges(before, project.document)
@@ -166,14 +164,14 @@ def _go_to_change(
 
 @with_project
 def select_handles(_: Session, project: Project, handles: frozenset[int]) -> None:
-    """Select these handles, as far as they are there, and no keys."""
+    """Select these handles where they exist, and no keys."""
     project.selected_handles, project.selected_frames = handles, frozenset()
     _forget_what_is_gone(project)
 
 
 @with_project
 def select_all(session: Session, project: Project) -> None:
-    """Select every handle or, in the timeline, the keys in all rows of layers that are posed."""
+    """Select every handle or, in the timeline, the keys in all rows of selected layers."""
     if session.is_timeline_focused:
         document = project.document
         posed = [row for row in project.rows if not document.layer(layer_of(row)).still]
@@ -184,19 +182,18 @@ def select_all(session: Session, project: Project) -> None:
 
 @with_project
 def deselect_all(_: Session, project: Project) -> None:
-    """Let no handles and no keys be selected."""
     project.selected_handles, project.selected_keys = frozenset(), {}
 
 
 @with_project
 def deselect_keys(_: Session, project: Project) -> None:
-    """Let no keys be selected; handles stay as they are."""
+    """Deselect all keys; the handle selection stays."""
     project.selected_keys = {}
 
 
 @with_project
 def select_mirrored(session: Session, project: Project) -> None:
-    """Select the partners of the selected handles on the other side, as their names tell."""
+    """Select the handles on the other side whose names match the selected ones."""
     pairs = mirrored_handles_by_name(project.layer.handles, project.document.pairs)
     partners = frozenset(pairs[handle] for handle in project.selected_handles if handle in pairs)
     if partners:
@@ -221,7 +218,6 @@ def toggle_handles_locked(session: Session, project: Project) -> None:
 
 @with_project
 def group_handles(session: Session, project: Project) -> None:
-    """Let the selected handles be taken together."""
     if len(project.selected_handles) > 1:
         taken = {handle.group for handle in project.layer.handles}
         name = next(f"group {n}" for n in count(1) if f"group {n}" not in taken)
@@ -230,26 +226,26 @@ def group_handles(session: Session, project: Project) -> None:
 
 @with_project
 def ungroup_handles(session: Session, project: Project) -> None:
-    """Part the groups that the selected handles belong to."""
+    """Dissolve the groups of the selected handles."""
     fellows = frozenset[int]().union(*map(project.layer.grouped_handles, project.selected_handles))
     edit_layer(session, handle_commands.group_handles, fellows, "")
 
 
 @with_project
 def select_keys(session: Session, project: Project, frames: frozenset[int]) -> None:
-    """Select the keys at these frames, as far as they are there, and no handles."""
+    """Select the keys at these frames where they exist, and no handles."""
     select_keys_in_rows(session, {project.active: frames})
 
 
 @with_project
 def select_keys_in_rows(_: Session, project: Project, chosen_of: KeysByRow) -> None:
-    """Select keys of several rows, as far as they are there, and no handles."""
+    """Select keys of several rows where they exist, and no handles."""
     project.selected_handles, project.selected_keys = frozenset(), chosen_of
     _forget_what_is_gone(project)
 
 
 def change_keys(verb: KeyVerb, chosen_of: KeysByRow, *args: object) -> Command:
-    """Return the command that changes keys of several rows together."""
+    """Return one command that changes keys of several rows."""
     changes = (verb.at(row, frames, *args) for row, frames in chosen_of.items())
     commands = [change for change in changes if change is not None]
 
@@ -263,7 +259,7 @@ def change_keys(verb: KeyVerb, chosen_of: KeysByRow, *args: object) -> Command:
 
 @with_project
 def delete_selection(session: Session, project: Project) -> None:
-    """Delete the selected keys or, in the timeline, the chosen track, or the selected handles.
+    """Delete the selected keys or, in the timeline, the selected track, or the selected handles.
 
     While a motion is drafted, leave out the joint that was touched last.
     """
@@ -278,7 +274,7 @@ def delete_selection(session: Session, project: Project) -> None:
 
 
 def _delete_keys(session: Session, project: Project) -> None:
-    """Delete the chosen keys; a layer of which all keys are chosen keeps its first one."""
+    """Delete the selected keys; a layer whose keys are all selected keeps its first key."""
     chosen_of, keeping = dict(project.selected_keys), list[str]()
     for row, chosen in project.selected_keys.items():
         if not isinstance(row, TrackRow) and chosen >= frames_in(project.document, row):
@@ -291,12 +287,12 @@ def _delete_keys(session: Session, project: Project) -> None:
 
 
 def update_layer_runtimes(project: Project) -> None:
-    """Let the window have the layers that the document has, and no others."""
+    """Match the layer runtimes to the layers of the document."""
     document = project.document
     gone = project.layer_runtimes.keys() - {layer.id for layer in document.layers}
     for identity in gone:
         del project.layer_runtimes[identity]
-    # Those of layers that undo and redo may bring back are kept as well.
+    # Runtimes of layers that undo and redo may bring back are kept as well.
     spare = project.pictures.keys() - {layer.picture for layer in document.layers}
     for file in spare - project.history.picture_files if spare else ():
         del project.pictures[file]
@@ -332,13 +328,13 @@ def _forget_what_is_gone(project: Project) -> None:
 
 
 def depth_at_playhead(session: Session, project: Project, handle: Handle) -> float:
-    """Return what is painted in front around a handle at the present frame, from −1 to 1."""
+    """Return the depth of a handle at the present frame, −1 (back) to 1 (front)."""
     return _depth_points_at_playhead(session, project).get(handle.id, handle.depth)
 
 
 @with_project
 def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
-    """Set what is painted in front around a handle, in the present key if it says so already."""
+    """Set the depth of a handle: in the present key if that has the depth, or else for all keys."""
     if identity in _depth_points_at_playhead(session, project):
         frame = playback.edited_frame(session, project)
         edit_layer(session, layer_commands.key_depth, frame, identity, front)
@@ -348,6 +344,6 @@ def set_depth(session: Session, project: Project, identity: int, front: float) -
 
 
 def _depth_points_at_playhead(session: Session, project: Project) -> Mapping[int, float]:
-    """Return what the key at the present frame says, if there is one."""
+    """Return the depth points of the key at the present frame; empty without one."""
     frame, layer = playback.edited_frame(session, project), project.layer
     return layer.key(frame).depths if frame in layer.key_frames else {}

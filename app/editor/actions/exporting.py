@@ -1,4 +1,4 @@
-"""Exports: asked for here, drawn by the window, a few frames at a time."""
+"""Exports: started here, drawn by the window a few frames at a time."""
 
 import os
 import subprocess
@@ -44,23 +44,23 @@ COPYING = JobKind("Copying the picture", "The picture was not copied", "export")
 
 
 def ask_destination_and_export(session: Session) -> None:
-    """Ask where to export to, and begin."""
+    """Ask for a destination, and start the export."""
     _ask(session, "Export", lambda path: do(start_export_at, path))
 
 
 def ask_export_destination(session: Session) -> None:
-    """Ask where the next export goes; it does not begin yet."""
+    """Ask for the destination of the next export; do not start it."""
     _ask(session, "Choose", lambda path: do(set_export_destination, path))
 
 
 @with_project
 def set_export_destination(_: Session, project: Project, out: Path) -> None:
-    """Note where the next export of this format goes, as the person chose it."""
+    """Set the destination of the next export of this format."""
     name = project.document.export.format
     _note_place(project, name, out)
     data = data_file(out, name)
     if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
-        # The dialog has asked already whether it is to be replaced.
+        # The file dialog has already asked whether to replace the file.
         project.replaceable = name, out
 
 
@@ -70,21 +70,20 @@ def _note_place(project: Project, name: str, out: Path) -> None:
 
 
 def start_export_at(session: Session, out: Path) -> None:
-    """Export to where the person chose."""
     set_export_destination(session, out)
     start_export(session, out)
 
 
 @with_project
 def replace_export_files(session: Session, project: Project, out: Path) -> None:
-    """Export, and replace what is there."""
+    """Export, and replace existing files."""
     project.replaceable = project.document.export.format, out
     start_export(session, out)
 
 
 @with_project
 def repeat_export(session: Session, project: Project) -> None:
-    """Export where it was told to go, or where the last one went; ask if there is neither."""
+    """Export to the chosen or last destination; ask if there is neither."""
     out = export_destination(project)
     if out is not None:
         start_export(session, out)
@@ -93,9 +92,10 @@ def repeat_export(session: Session, project: Project) -> None:
 
 
 def export_destination(project: Project) -> Path | None:
-    """Return where the next export goes, as its format was exported last; None if that is open.
+    """Return the destination of the next export, or None.
 
-    For the first time it goes where the last one of another format went, under a name that suits.
+    This is the last destination of the format. The first export of a format goes beside the last
+    export of another format, under a suitable name.
     """
     name, places = project.document.export.format, project.export_destinations
     newest = next(reversed(places.values()), None)
@@ -104,7 +104,7 @@ def export_destination(project: Project) -> Path | None:
 
 @with_project
 def start_export(session: Session, project: Project, out: Path) -> None:
-    """Export into a folder or a file; ask first if that takes the place of other files."""
+    """Export to a folder or a file; ask first if the export replaces other files."""
     if not _is_free(session):
         return
     settings = project.document.export
@@ -127,7 +127,7 @@ def start_export(session: Session, project: Project, out: Path) -> None:
 
 @with_project
 def _begin(session: Session, project: Project, request: ExportRequest) -> None:
-    """Export as was asked for, now that nothing is on its way to the document."""
+    """Start an export once no change is pending."""
     out, settings = request.out, request.settings
 
     def begun(run: ExportRun) -> None:
@@ -135,7 +135,7 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
         _note_place(project, settings.format, out)
         folder = out.parent if EXPORT_FORMATS[settings.format].suffixes else out
         session.preferences = replace(session.preferences, exported=folder)
-        # Another pose is another picture, which may not take this one's place without a question.
+        # A new pose makes a new picture, which must not replace this one without a question.
         is_still = EXPORT_FORMATS[settings.format].is_still
         project.replaceable = None if is_still else (settings.format, out)
 
@@ -144,10 +144,10 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
 
 @with_project
 def copy_picture(session: Session, project: Project) -> None:
-    """Put the picture of what is shown on the system's clipboard, as an export would draw it."""
+    """Copy the picture of the shown frame to the clipboard, drawn as an export draws it."""
     if not _is_free(session):
         return
-    clipboard_program()  # tells what to install where there is none
+    clipboard_program()  # raises an error with the program to install if there is none
     make_settings_folder(session.folder)
     out = temporary_picture(session.folder)
     settings = replace(project.document.export, format=STILL_FORMAT)
@@ -168,7 +168,7 @@ def _begin_copy(session: Session, project: Project, request: ExportRequest) -> N
 
 
 def is_export_under_way(session: Session) -> bool:
-    """Tell whether an export runs, is being prepared, or waits for what is on its way."""
+    """Return whether an export runs, is prepared, or waits for pending changes."""
     is_waiting = session.project is not None and any(map(_is_export, session.project.afterwards))
     return is_waiting or session.export is not None or PREPARING in session.jobs.kinds
 
@@ -178,7 +178,7 @@ def _is_export(waiting: Afterwards) -> bool:
 
 
 def _is_free(session: Session) -> bool:
-    """Tell whether no export is under way; if there is one, say so."""
+    """Return whether no export is under way; if one is, show a notice."""
     if not is_export_under_way(session):
         return True
     session.show_notice(UNDER_WAY, topic="export")
@@ -200,7 +200,7 @@ def _prepare(
     request: ExportRequest,
     begun: Callable[[ExportRun], None],
 ) -> None:
-    """Let a worker prepare an export that was checked, and then begin."""
+    """Prepare a checked export on a worker, and then start it."""
     document, format_ = project.document, EXPORT_FORMATS[request.settings.format]
     unkeyed = project.history.preview_pose
     if format_.is_still and unkeyed is not None and unkeyed.layer == project.active:
@@ -233,7 +233,7 @@ def _prepare(
 
 
 def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
-    """Return the motion for an export, which neither waits for the window's own nor disturbs it."""
+    """Return a sampler for an export that shares no work with the window's caches."""
     layer = clip.layer
     is_sibling = sibling is not None and sibling.domain.cage is layer.domain.cage
     sampler = PoseSampler(
@@ -243,13 +243,13 @@ def _animation(clip: Clip, sibling: PoseSampler | None) -> Animation:
 
 
 def cancel_export(session: Session) -> None:
-    """Give the export up, unless its file is complete already; frames that are written stay."""
+    """Cancel the export unless its file is complete; written frames stay."""
     run, project = session.export, session.project
     if not is_export_under_way(session):
         return
     if project is not None:
         project.afterwards = [each for each in project.afterwards if not _is_export(each)]
-    # Dropped first, so that nobody is told of a failure; then left, as it may take long.
+    # Dropped first, so that no failure is reported; then abandoned, since it may take long.
     session.jobs.drop(PREPARING)
     session.jobs.abandon(PREPARING)
     is_nothing_written = session.cancellation.cancel()
@@ -260,7 +260,7 @@ def cancel_export(session: Session) -> None:
 
 
 def confirm_ending_export(session: Session, then: Action) -> None:
-    """Do something that ends an export, but ask first if one is under way."""
+    """Run an action that ends an export, but ask first if one is under way."""
     run = session.export
     if not is_export_under_way(session):
         then.apply(session)
@@ -281,13 +281,13 @@ def _is_one_file(run: ExportRun) -> bool:
 
 
 def update_export_progress(session: Session, run: ExportRun, done: int) -> None:
-    """Note how many frames are drawn."""
+    """Note the number of drawn frames."""
     if session.export is run:
         session.export = replace(run, done=done)
 
 
 def finish_export(session: Session, run: ExportRun, notices: Sequence[str]) -> None:
-    """Tell that an export is complete, and what the person should know about it."""
+    """Show a notice that an export is complete, with its warnings."""
     session.export = None
     if run.for_clipboard:
         _copy(session, run.plan.out)
@@ -308,7 +308,7 @@ def finish_export(session: Session, run: ExportRun, notices: Sequence[str]) -> N
 
 
 def _copy(session: Session, picture: Path) -> None:
-    """Put a picture on the clipboard, and its file away."""
+    """Put a picture on the clipboard, and delete its file."""
 
     def work() -> None:
         try:
@@ -323,31 +323,28 @@ def _copy(session: Session, picture: Path) -> None:
 
 
 def report_failed_export(session: Session, error: Exception) -> None:
-    """Tell that an export failed."""
     session.export = None
     report_failure(session, "The export failed", error)
 
 
 def set_export_settings(session: Session, export: ExportSettings) -> None:
-    """Set what the next export makes."""
     editing.edit_document(session, scene_commands.set_export(export))
 
 
 def set_aspect_locked(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
-    """Let width and height of an export change together, or each alone."""
+    """Link or unlink width and height of an export."""
     session.is_aspect_locked = keeps
 
 
 def preview_export_frame(session: Session, box: BoundingBox) -> None:
-    """Show what an export shows in the viewport, until the next frame of the window."""
+    """Show the export's frame in the viewport, until the next frame of the window."""
     session.export_frame = box
 
 
 def open_folder(session: Session, folder: Path) -> None:
-    """Show a folder in the system's file manager."""
     try:
         if sys.platform == "win32":
-            os.startfile(folder)  # noqa: S606 - a folder that was just written to
+            os.startfile(folder)  # noqa: S606 - the folder of the export
             return
         opener = "open" if sys.platform == "darwin" else "xdg-open"
         subprocess.Popen([opener, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603

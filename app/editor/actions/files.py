@@ -46,10 +46,10 @@ PICTURES = (
 )
 LAYERED = (".ora", ".psd")
 OPENABLE = (PROJECT, *PICTURES, *LAYERED)
-LOOK = 2.0  # seconds between two looks at whether files are still there
+LOOK = 2.0  # seconds between two checks whether files still exist
 
 
-# What samples are about, by the names of their files, in as many words as a card has room for.
+# Short descriptions of the samples by file name, as long as a card has room for.
 STORIES = {
     "bar": "A bar to bend as you like",
     "character": "Waves a hand",
@@ -70,7 +70,7 @@ class SampleFile(NamedTuple):
     picture: Path
     what: str
     story: str
-    moving: Path  # a small animation, if it is there
+    moving: Path  # a small animation; the file may be missing
 
 
 @cache
@@ -79,7 +79,7 @@ def sample_files() -> tuple[SampleFile, ...]:
     found = []
     projects = {path.stem: path for path in sample_images().glob(f"*{PROJECT}")}
     pictures = {path.stem: path for path in sample_images().glob("*.png")}
-    # A drawing on layers has no picture but the small one in its project.
+    # A layered drawing has no picture but the thumbnail in its project.
     for name in sorted(projects.keys() | pictures.keys()):
         picture = pictures.get(name, projects.get(name, Path()))
         is_animated = name in projects
@@ -97,8 +97,8 @@ def sample_files() -> tuple[SampleFile, ...]:
 
 
 def recent_files(session: Session) -> tuple[tuple[Path, bool], ...]:
-    """Return the files that were open last, and whether each is still there."""
-    # They may lie on a slow disk, and this is asked for in every frame.
+    """Return the recent files, and whether each still exists."""
+    # The files may be on a slow disk, and every frame asks for this list.
     return _found(session.preferences.recent, int(session.clock() / LOOK))
 
 
@@ -108,7 +108,7 @@ def _found(paths: tuple[Path, ...], _: int) -> tuple[tuple[Path, bool], ...]:
 
 
 def open_recent_file(session: Session, path: Path) -> None:
-    """Open a file of the recent ones; one that is gone is taken off them."""
+    """Open a recent file; a missing file is removed from the list."""
     if os.path.isfile(path):  # noqa: PTH113 - never raises
         open_file(session, path)
         return
@@ -120,7 +120,7 @@ def open_recent_file(session: Session, path: Path) -> None:
 
 
 class NextStep(NamedTuple):
-    """What a person may want to do next."""
+    """A suggestion for the person's next step."""
 
     text: str
     label: str
@@ -128,7 +128,7 @@ class NextStep(NamedTuple):
 
 
 class OpenedFile(NamedTuple):
-    """What reading a file gives."""
+    """The result of reading a file."""
 
     document: Document
     layer_runtimes: dict[int, LayerRuntime]
@@ -139,14 +139,13 @@ class OpenedFile(NamedTuple):
 
 
 def ask_file_to_open(session: Session) -> None:
-    """Ask for a picture or a project."""
     session.ask_file("Open image or project", OPENABLE, lambda path: do(open_file, path))
 
 
 def open_file(session: Session, path: Path) -> None:
-    """Read a picture or a project on the worker, and open it when it is there.
+    """Read a picture or a project on the worker, and open it.
 
-    If there are changes to be lost by then, a question comes first.
+    If the project has unsaved changes by then, a question comes first.
     """
     meshing = session.meshing
     kind = JobKind(display_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
@@ -172,7 +171,7 @@ def _open(session: Session, path: Path, kind: JobKind, read: Callable[[], Opened
 
 
 def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
-    """Open what was dropped on the window: a project or a drawing, or several as layers."""
+    """Open dropped files: a project, a drawing, or several pictures as layers."""
     usable = [path for path in paths if path.suffix.lower() in OPENABLE and not path.is_dir()]
     pictures = [path for path in usable if path.suffix.lower() in PICTURES]
     if len(pictures) > 1:
@@ -190,8 +189,8 @@ def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
 
 
 def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> None:
-    """Make what was read the project of the window, unless it is open in another one: ask then."""
-    # A sample is the person's to play with, not to save over.
+    """Open a read file in the window; ask first if another window has it open."""
+    # A sample must not be saved over.
     if path.suffix.lower() != PROJECT or path.parent == sample_images():
         _install(session, path, opened, None)
         return
@@ -212,19 +211,19 @@ def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> Non
 
 
 def install_copy(session: Session, path: Path, opened: OpenedFile) -> None:
-    """Make what was read the project of the window, as a new one that is to be saved elsewhere."""
+    """Open a read file as a new project that has no file yet."""
     _install(session, path, opened, None)
 
 
 def install_anyway(session: Session, path: Path, opened: OpenedFile) -> None:
-    """Make what was read the project of the window, though another one has it open."""
+    """Open a read file, although another window has it open."""
     _install(session, path, opened, path)
 
 
 def _install(
     session: Session, path: Path, opened: OpenedFile, own: Path | None, hold: FileLock | None = None
 ) -> None:
-    """Make what was read the project of the window; `own` is the file that it is saved in."""
+    """Open a read file in the window; `own` is the project's own file."""
     session.autosave.remove()
     project = Project(
         name=display_name(path.stem),
@@ -250,7 +249,7 @@ def _install(
 
 
 def show_import_notice(session: Session, project: Project, summary: ImportLog) -> None:
-    """Tell of what is lost of a drawing that was brought in."""
+    """Show a notice about effects of a drawing that its import lost."""
     if not summary.warnings:
         return
     project.is_import_log_open = True
@@ -266,19 +265,19 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
 
 @with_project
 def show_import_log(session: Session, project: Project) -> None:
-    """Show what opening a drawing told, in the panel of layers."""
+    """Show the import log in the panel of layers."""
     project.is_import_log_open = True
     session.panel_to_focus = "Layers"
 
 
 @with_project
 def toggle_import_log(_: Session, project: Project) -> None:
-    """Show or hide what opening a drawing told, where the panel of layers has it."""
+    """Show or hide the import log in the panel of layers."""
     project.is_import_log_open = not project.is_import_log_open
 
 
 def _foremost(document: Document) -> int:
-    """Return the layer that is posed first: the one in front, stills aside."""
+    """Return the layer to pose first: the front one, still pictures aside."""
     return next(
         (layer.id for layer in reversed(document.layers) if not layer.still),
         document.layers[-1].id,
@@ -286,7 +285,7 @@ def _foremost(document: Document) -> int:
 
 
 def with_layer_runtimes(opened: OpenedScene) -> OpenedFile:
-    """Return a scene with its layers as a window has them."""
+    """Add the layer runtimes to a scene."""
     puppets = _layer_runtimes(opened.document, opened.pictures)
     return OpenedFile(opened.document, puppets, opened.notices)
 
@@ -313,13 +312,13 @@ def _read(path: Path, meshing: Meshing) -> OpenedFile:
 
 
 def _read_project(path: Path) -> OpenedFile:
-    # Before, so that what somebody saves meanwhile is taken for a change, and never for ours.
+    # The digest comes first: a save by another program during the read must count as a change.
     digest = project_digest(path)
     return decode_project(load_project(path), path.name)._replace(read_as=digest)
 
 
 def decode_project(document: Document, name: str) -> OpenedFile:
-    """Return a project's document with its layers as a window has them."""
+    """Return a project's document with its layer runtimes."""
     files = list(dict.fromkeys(layer.picture for layer in document.layers))
     decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
     by_file = dict(zip(files, decoded, strict=True))
@@ -334,7 +333,7 @@ def _read_picture(path: Path, meshing: Meshing) -> OpenedFile:
 
 
 def _next_step(puppet: LayerRuntime) -> NextStep | None:
-    """Return what a person may want to do about an opaque picture that was just opened."""
+    """Return a suggestion for an opaque picture that was just opened."""
     cut = puppet.cut.value
     if puppet.is_opaque and cut.is_all:
         return NextStep(
@@ -353,21 +352,21 @@ def _next_step(puppet: LayerRuntime) -> NextStep | None:
 
 
 def ask_recovery(session: Session) -> None:
-    """Ask what to do with what was not saved when Lissom ended before, if there is any."""
+    """If there is unsaved work of an earlier session, ask about it."""
     candidates = list_recoverable_files(session)
     if candidates:
         session.dialog = RecoveryDialog(candidates)
 
 
 def show_recovery(session: Session) -> None:
-    """Show what was not saved when Lissom ended before, or tell that there is nothing."""
+    """Show the unsaved work of earlier sessions, or a notice that there is none."""
     ask_recovery(session)
     if not isinstance(session.dialog, RecoveryDialog):
         session.show_notice("There is no unsaved work of an earlier time.")
 
 
 def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
-    """Return the unsaved work of windows that are gone, the newest first."""
+    """Return the unsaved work of closed windows, the newest first."""
     found = []
     for path in find_recoverable_files(session.folder):
         with suppress(OSError):  # another window has just taken it
@@ -379,7 +378,7 @@ def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
 
 
 def recover_file(session: Session, path: Path) -> None:
-    """Open unsaved work; it stays unsaved, and is kept until it is saved."""
+    """Open unsaved work; its autosave stays until the work is saved."""
     kind = JobKind("Opening unsaved work", "The unsaved work cannot be opened")
 
     def done(read: tuple[OpenedFile, SourceInfo]) -> None:
@@ -394,14 +393,14 @@ def _read_recoverable_file(path: Path) -> tuple[OpenedFile, SourceInfo]:
 
 
 def discard_recoverable_file(session: Session, path: Path) -> None:
-    """Delete unsaved work, and go on with what else there is."""
+    """Delete unsaved work, and show the rest of the list."""
     remove_recoverable_file(path)
     session.show_notice("The unsaved work was discarded.")
     ask_recovery(session)
 
 
 def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: SourceInfo) -> None:
-    """Make unsaved work the project of the window, under its own name and unsaved."""
+    """Open unsaved work under its own name; it stays unsaved."""
     saving.set_project(
         session,
         Project(

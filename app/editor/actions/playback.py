@@ -17,20 +17,19 @@ def seek(session: Session, project: Project, frame: int) -> None:
 
 
 def scrub(session: Session, frame: int) -> None:
-    """Halt, and put the playhead on a frame."""
+    """Stop playback, and put the playhead on a frame."""
     stop_playback(session)
     seek(session, frame)
 
 
 @with_project
 def toggle_play(session: Session, project: Project) -> None:
-    """Play, or halt."""
     turn = project.playhead.play if project.playhead.since is None else project.playhead.pause
     project.playhead = turn(project.document, session.clock())
 
 
 def toggle_play_on_space(session: Session) -> None:
-    """Play or halt where Space is let go, unless it was held to move the view."""
+    """Play or stop when Space is released, unless Space was held to pan the view."""
     if not session.is_space_used:
         toggle_play(session)
     session.is_space_used = False
@@ -38,32 +37,32 @@ def toggle_play_on_space(session: Session) -> None:
 
 @with_project
 def stop_playback(session: Session, project: Project) -> None:
-    """Stop where the playhead is."""
+    """Stop playback at the present frame."""
     project.playhead = project.playhead.pause(project.document, session.clock())
 
 
 @with_project
 def stop_playback_at_end(session: Session, project: Project) -> None:
-    """Stop an animation that does not loop when it is over; called once a frame."""
+    """Stop an animation that does not loop at its end; once a frame."""
     if project.playhead.is_over(project.document, session.clock()):
         stop_playback(session)
 
 
 @with_project
 def step_frames(session: Session, project: Project, frames: int) -> None:
-    """Go on or back by a number of frames."""
+    """Move the playhead by a number of frames."""
     stop_playback(session)
     seek(session, current_frame(session, project) + frames)
 
 
 @with_project
 def go_to_key(session: Session, project: Project, direction: int) -> None:
-    """Go to the next key (1) of the chosen row, or the previous one (-1); at the ends stay."""
+    """Go to the next key (1) of the selected row, or the previous one (−1); stop at the ends."""
     _go_to_next(session, project, keyed_frames(project), direction)
 
 
 def keyed_frames(project: Project) -> list[int]:
-    """Return the frames at which keys of the chosen row are seen, in their order."""
+    """Return the frames, in order, at which the selected row shows keys."""
     return list(_keyed_frames(project))
 
 
@@ -77,7 +76,7 @@ def _keyed_frames(project: Project) -> tuple[int, ...]:
 
 
 def is_frame_keyed(project: Project, frame: int) -> bool:
-    """Tell whether a key of the chosen row is seen at a frame."""
+    """Return whether the selected row shows a key at a frame."""
     frames = _keyed_frames(project)
     at = bisect_left(frames, frame)
     return at < len(frames) and frames[at] == frame
@@ -85,7 +84,7 @@ def is_frame_keyed(project: Project, frame: int) -> bool:
 
 @with_project
 def go_to_marker(session: Session, project: Project, direction: int) -> None:
-    """Go to the next marker (1) or the previous one (-1); at the ends stay."""
+    """Go to the next marker (1) or the previous one (−1); stop at the ends."""
     marked = [marker.frame for marker in project.document.markers]
     frames = project.document.frames
     _go_to_next(session, project, [frame for frame in marked if frame in frames], direction)
@@ -116,18 +115,17 @@ def go_to_end(session: Session, project: Project) -> None:
 
 @with_project
 def set_playback_speed(session: Session, project: Project, speed: float) -> None:
-    """Play at a multiple of the document's own speed."""
+    """Set the speed as a multiple of the document's frame rate."""
     project.playhead = project.playhead.at_speed(speed, project.document, session.clock())
 
 
 def current_frame(session: Session, project: Project) -> int:
-    """Return the frame that is shown now."""
     return project.playhead.frame_at(project.document, session.clock())
 
 
 def edited_frame(session: Session, project: Project) -> int:
-    """Return the frame at which what the layer that is posed shows now is keyed.
+    """Return the frame at which the active layer is keyed for the present frame.
 
-    It is another one than the present frame where a stretch repeats.
+    In a repeat of a cycle this is a frame of the cycle's first pass.
     """
     return project.layer.source_of(current_frame(session, project))

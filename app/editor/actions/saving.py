@@ -1,4 +1,4 @@
-"""Saving, and what must not be lost: questions before, autosave, recovery."""
+"""Saving, autosave, recovery, and the questions before changes are lost."""
 
 from functools import partial
 from pathlib import Path
@@ -34,7 +34,7 @@ from app.storage import (
 )
 
 PROJECT = ".lissom"
-PATIENCE = 10.0  # seconds that saving and closing wait for what is on its way
+PATIENCE = 10.0  # seconds that saving and closing wait for pending changes
 UNSAVED = "Unsaved changes"
 SAVING = JobKind("Saving", "The project was not saved", "keep")
 AUTOSAVING = JobKind("Autosaving", "Unsaved work cannot be kept", "keep")
@@ -43,18 +43,17 @@ CLEARING = JobKind("Clearing up", "What was left half written stays", "keep")
 
 
 def save(session: Session) -> None:
-    """Save the project where it was saved or opened; ask where if it is new or recovered."""
+    """Save the project to its own file; ask for a file if it is new or recovered."""
     save_then(session, None)
 
 
 def save_as(session: Session) -> None:
-    """Ask where to save the project."""
     _ask_where(session, None)
 
 
 @with_project
 def save_then(session: Session, project: Project, then: Action | None) -> None:
-    """Save the project; once that has worked, do what gives it up, such as to quit."""
+    """Save the project; after success run an action that closes it, such as quit."""
     if project.path is None or project.is_recovered:
         _ask_where(session, then)
     else:
@@ -62,10 +61,10 @@ def save_then(session: Session, project: Project, then: Action | None) -> None:
 
 
 def write_project(session: Session, path: Path, then: Action | None) -> None:
-    """Save the project in a file, as soon as nothing is on its way to it.
+    """Save the project to a file as soon as no change is pending.
 
-    What came afterwards would be a change again, which nobody made; and to save twice at a time
-    would take the first for another program's.
+    A change that arrived after the save would show as unsaved. A second save at the same time would
+    take the first save's file for a file of another program.
     """
     writing = do(write_project_now, path, then)
     pending_changes.run_when_idle(
@@ -77,14 +76,14 @@ def write_project(session: Session, path: Path, then: Action | None) -> None:
 def overwrite_changed_file(
     session: Session, project: Project, path: Path, then: Action | None
 ) -> None:
-    """Save the project in a file, whatever somebody else has saved there since."""
+    """Save the project to a file, even if another program has changed the file."""
     project.read_as = None
     write_project(session, path, then)
 
 
 @with_project
 def write_project_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
-    """Save the project in a file as it is."""
+    """Save the project to a file as it is, without waiting for pending changes."""
     document, known = project.document, project.read_as if path == project.path else None
     textures = {layer: puppet.cut.value.texture for layer, puppet in project.layer_runtimes.items()}
     drawings = tuple(project.drawings)
@@ -105,7 +104,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
         session.preferences = session.preferences.with_recent(path)
         session.show_notice(f"Saved {path.name}.", tone="good")
         if then is not None:
-            # There may be changes again.
+            # The project may have new changes by now.
             confirm_unsaved(session, then)
 
     def failed(error: Exception) -> None:
@@ -129,16 +128,16 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
 
 
 class _ChangedError(Exception):
-    """The file is not as it was when it was opened or saved here last."""
+    """The file has changed since it was opened or saved here."""
 
 
 def lock_project_file(session: Session, path: Path) -> FileLock | None:
-    """Let other windows see that a project is open here; tell where that is not possible.
+    """Lock a project's file for this window; show a notice if the disk allows no locks.
 
     Raises
     ------
     FileLockedError
-        If it is open in another window.
+        If the project is open in another window.
     """
     project = session.project
     if project is not None and project.file_lock is not None and project.file_lock.path == path:
@@ -155,7 +154,7 @@ def lock_project_file(session: Session, path: Path) -> FileLock | None:
 
 
 def set_project(session: Session, project: Project | None) -> None:
-    """Make a project that of the window, or none; let others have the file of the one before."""
+    """Open a project in the window, or None; unlock the file of the previous project."""
     before, session.project = session.project, project
     session.active_tool = session.cutting = session.material = None
     session.moves = False
@@ -165,7 +164,7 @@ def set_project(session: Session, project: Project | None) -> None:
 
 
 def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
-    """Hold the file that a project was saved in, in place of the one before."""
+    """Lock the file that a project was saved to, in place of the previous file."""
     if session.project is not project or (
         project.file_lock is not None and project.file_lock.path == path
     ):
@@ -181,12 +180,10 @@ def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
 
 
 def ask_curves_csv(session: Session) -> None:
-    """Ask where to save the curves of the distortion as numbers."""
     _ask_curves(session, ".csv")
 
 
 def ask_curves_png(session: Session) -> None:
-    """Ask where to save the curves of the distortion as a picture."""
     _ask_curves(session, ".png")
 
 
@@ -212,9 +209,9 @@ def _ask_curves(session: Session, project: Project, suffix: str) -> None:
 
 
 def confirm_unsaved(session: Session, then: Action) -> None:
-    """Do something that gives up the project, but ask first if it has changes.
+    """Run an action that closes the project, but ask first if it has changes.
 
-    What is on its way to it, or is being saved, is waited for, unless the person insists.
+    Pending changes and saves finish first, for at most `PATIENCE` seconds.
     """
     project = session.project
     if project is None:
@@ -236,13 +233,13 @@ def confirm_unsaved(session: Session, then: Action) -> None:
 
 
 def _asks_about(waiting: Action, then: Action) -> bool:
-    """Tell whether an action is the question that comes before another one."""
+    """Return whether a waiting action is the question before the action `then`."""
     return waiting.verb is ask_unsaved_now and waiting.arguments[0].verb is then.verb
 
 
 @with_project
 def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
-    """Do something that gives up the project, but ask first if it has changes now."""
+    """Run an action that closes the project, but ask first if it has changes now."""
     unkeyed = project.history.preview_pose
     is_settled = pending_changes.is_document_idle(project, after_saves=True)
     if is_settled and not has_unsaved_changes(project):
@@ -263,7 +260,7 @@ def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
 
 @with_project
 def key_and_save(session: Session, project: Project, then: Action) -> None:
-    """Make a key of the pose that no key holds, and save the project."""
+    """Key the unkeyed pose, and save the project."""
     unkeyed = project.history.preview_pose
     if unkeyed is not None:
         posing.insert_key_at(session, unkeyed.layer, unkeyed.frame)
@@ -271,23 +268,22 @@ def key_and_save(session: Session, project: Project, then: Action) -> None:
 
 
 def close_project(session: Session) -> None:
-    """Go back to the welcome view, after a question if there are changes."""
+    """Go back to the welcome view; ask first if there are changes."""
     confirm_unsaved(session, do(discard_project))
 
 
 def discard_project(session: Session) -> None:
-    """Close the project, whatever it holds."""
+    """Close the project and drop its changes."""
     set_project(session, None)
     session.autosave.remove()
 
 
 def request_quit(session: Session) -> None:
-    """Close the window, after questions if an export is under way or there are changes."""
+    """Close the window; ask first if an export runs or there are changes."""
     exporting.confirm_ending_export(session, do(confirm_unsaved, do(close_window)))
 
 
 def close_window(session: Session) -> None:
-    """Close the window."""
     session.autosave.remove()
     if session.project is not None and session.project.file_lock is not None:
         session.project.file_lock.release()
@@ -296,25 +292,25 @@ def close_window(session: Session) -> None:
 
 
 def write_due_files(session: Session) -> None:
-    """Write what is due: unsaved work, preferences; once a frame."""
+    """Write unsaved work and preferences when they are due; once a frame."""
     autosave(session)
     write_preferences(session)
 
 
 def remove_temporary_files(session: Session) -> None:
-    """Remove what was left half written where this person works; at the start."""
+    """Remove temporary files of interrupted saves from the person's folders; at the start."""
     folders = {session.folder, *session.preferences.written}
 
     def work() -> None:
         for folder in folders:
             remove_abandoned_files(folder)
 
-    # They may lie on a slow disk.
+    # The folders may be on a slow disk.
     run_job(session, CLEARING, work, lambda _: None)
 
 
 def write_preferences(session: Session) -> None:
-    """Write the preferences when they have changed."""
+    """Write the preferences if they have changed."""
     preferences, folder = session.preferences, session.folder
     if preferences == session.saved_preferences:
         return
@@ -330,7 +326,7 @@ def write_preferences(session: Session) -> None:
 
 @with_project
 def autosave(session: Session, project: Project) -> None:
-    """Keep changes that are not saved, every now and then."""
+    """Write unsaved changes to the autosave at intervals."""
     if not has_unsaved_changes(project):
         if project.autosaved is not None:
             project.autosaved = None
@@ -343,8 +339,8 @@ def autosave(session: Session, project: Project) -> None:
     now = session.clock()
     if project.changed_at is None:
         project.changed_at = now
-    # Not while the hand moves, which it would disturb; but a hand that moves on and on is no
-    # reason to lose what was done before.
+    # An autosave would disturb a drag, so it waits for the end of the drag. A very long drag must
+    # not delay it for ever.
     may_write = pending_changes.is_document_idle(project) or now - project.changed_at >= SECONDS
     is_due = now - project.autosaved_at >= SECONDS
     if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
@@ -353,31 +349,31 @@ def autosave(session: Session, project: Project) -> None:
 
 @with_project
 def autosave_now(session: Session, project: Project) -> None:
-    """Keep changes that are not saved at once, on this thread: it may be the last thing done.
+    """Write unsaved changes to the autosave on this thread, before the program ends.
 
     Raises
     ------
     LissomError
-        If they cannot be kept.
+        If the autosave cannot be written.
     """
     posing.commit_all_poses(session, project)
     kept = project.document, project.history.preview_pose
     is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
     if is_kept or not has_unsaved_changes(project):
         return
-    # One that waits is older, and must not take its place.
+    # An autosave that waits is older, and must not replace this one.
     session.jobs.drop(AUTOSAVING)
     session.autosave.write(_all_keyed(session, project), project.origin)
     project.autosaved, project.autosaved_at = kept, session.clock()
 
 
 def has_unsaved_changes(project: Project) -> bool:
-    """Tell whether there is anything that no file has, a pose that no key holds among it."""
+    """Return whether there are changes that no file has; an unkeyed pose is a change."""
     return not project.history.is_saved or project.history.preview_pose is not None
 
 
 def _all_keyed(session: Session, project: Project) -> Document:
-    """Return the document with a pose that no key holds in a key: files have keys only."""
+    """Return the document with the unkeyed pose as a key, since files store keys only."""
     unkeyed = project.history.preview_pose
     if unkeyed is None:
         return project.document
@@ -391,12 +387,12 @@ def _begin_autosave(session: Session, project: Project, now: float) -> None:
 
     def done(_: None) -> None:
         clear_reported_failure(session, AUTOSAVING.complaint)
-        # In the meantime it may have been saved, or closed.
+        # The project may have been saved or closed meanwhile.
         if session.project is not project or project.autosaved != kept:
             session.autosave.remove()
 
     def failed(error: Exception) -> None:
-        # There may be room again next time.
+        # The disk may have room again next time.
         if project.autosaved == kept:
             project.autosaved = earlier
         report_first_failure(session, AUTOSAVING.complaint, error)

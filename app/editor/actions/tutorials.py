@@ -1,4 +1,4 @@
-"""A first animation in five steps: which one comes next is told by the document and the session."""
+"""The tutorial: a first animation in five steps. Document and session decide the next step."""
 
 from dataclasses import replace
 
@@ -22,15 +22,15 @@ from engine.maps import HarmonicMap
 STEPS: tuple[TutorialStage, ...] = ("handle", "time", "pose", "play", "export")
 FORMAT = "gif"
 SAMPLE = "giraffe.lissom"
-LED = "nose"  # the handle of the sample that the person makes anew
-HELD = ("withers", "chest", "rump", "hoof")  # ends of the names of those that stay
-LAST, SIZE = 48, (480, 480)  # of the sample's loop, and of its GIF in pixels
-HOLDS_AND_MOVES = 2  # handles that an own drawing needs
+LED = "nose"  # the sample's handle that the person adds again
+HELD = ("withers", "chest", "rump", "hoof")  # endings of the names of handles that stay
+LAST, SIZE = 48, (480, 480)  # last frame of the sample's loop; size of its GIF in pixels
+HOLDS_AND_MOVES = 2  # number of handles that the person's own drawing needs
 OPENING = JobKind("Opening the giraffe", "The giraffe cannot be opened")
 
 
 def begin_tutorial(session: Session) -> None:
-    """Open a copy of the giraffe without motion, and lead the person through making it bow."""
+    """Open a copy of the giraffe without motion, and guide the person to make it bow."""
 
     def done(read: tuple[files.OpenedFile, TutorialState]) -> None:
         saving.confirm_unsaved(session, do(install_tutorial, *read))
@@ -39,45 +39,44 @@ def begin_tutorial(session: Session) -> None:
 
 
 def begin_tutorial_with_own_drawing(session: Session) -> None:
-    """Ask for a drawing, and lead the person through its first animation."""
+    """Ask for a drawing, and guide the person through its first animation."""
     session.ask_file("Open a drawing", files.OPENABLE, lambda path: do(files.open_file, path))
     session.tutorial = TutorialState()
 
 
 def install_tutorial(session: Session, opened: files.OpenedFile, guide: TutorialState) -> None:
-    """Make the giraffe the project of the window, and begin."""
+    """Open the giraffe in the window, and begin."""
     files.install_opened_file(session, sample_images() / SAMPLE, opened)
     session.tutorial = _attached(session, guide)
 
 
 def end_tutorial(session: Session) -> None:
-    """End the guide; what was made stays."""
+    """End the tutorial; the project stays."""
     session.tutorial = None
 
 
 def update_tutorial(session: Session) -> None:
-    """See what the person has done, and go on or back to the step that is next; once a frame."""
+    """Go on or back to the next step, depending on the document; once a frame."""
     guide, project = session.tutorial, session.project
     if guide is None:
         return
     if guide.project is None:
-        # Nothing was chosen, or what was cannot be opened.
+        # No file was chosen, or the file could not be opened.
         is_given_up = project is None and session.dialog is None and not session.jobs.kinds
         session.tutorial = None if is_given_up else _attached(session, guide)
     elif guide.project is not project:
         session.tutorial = None
     elif session.active_tool is None and project.timeline.gesture is None:
-        # What the hand is at is not to be disturbed by what comes next.
+        # The next step must not disturb a drag.
         session.tutorial = _advanced(session, project, guide)
 
 
 def is_tutorial_shown(session: Session) -> bool:
-    """Tell whether a guide is shown."""
     return session.tutorial is not None and session.tutorial.project is not None
 
 
 def is_first_pose_changed(layer: Layer) -> bool:
-    """Tell whether the first pose is another than the one in which the picture was drawn."""
+    """Return whether the first pose differs from the drawing's pose."""
     rest = HarmonicMap.identity(layer.domain.cage, layer.domain.holes)
     return not layer.map_of(layer.keys[0].pose).is_same(rest)
 
@@ -96,7 +95,7 @@ def _read() -> tuple[files.OpenedFile, TutorialState]:
 
 
 def _at_rest(document: Document) -> Document:
-    """Return a document with its first key only, and only those handles that hold still."""
+    """Return a document with its first key only, and only the handles that hold still."""
     layer = document.layers[0]
     free = [handle.id for handle in layer.handles if not handle.name.endswith(HELD)]
     for command in (
@@ -110,7 +109,7 @@ def _at_rest(document: Document) -> Document:
 
 
 def _attached(session: Session, guide: TutorialState) -> TutorialState:
-    """Return a guide through the project that is open, if there is one by now."""
+    """Return a tutorial with the open project, if there is one by now."""
     project = session.project
     if project is None:
         return guide
@@ -124,7 +123,7 @@ def _handles(document: Document) -> frozenset[tuple[int, int]]:
 
 
 def _advanced(session: Session, project: Project, guide: TutorialState) -> TutorialState:
-    """Return a guide at the step that is next; the same one where nothing has changed."""
+    """Return a tutorial at its next step; the same tutorial if nothing has changed."""
     if guide.stage == "done":
         return guide
     moves = any(map(_moves, project.document.layers))
@@ -152,7 +151,7 @@ def _next_step(
 
 
 def _moves(layer: Layer) -> bool:
-    """Tell whether a layer has poses of its own to go between, or a track that moves a handle."""
+    """Return whether a layer has several different poses, or a track that moves a handle."""
     if any(len(track.keys) > 1 for track in layer.tracks):
         return True
     first = layer.map_of(layer.keys[0].pose)

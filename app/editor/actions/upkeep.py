@@ -1,4 +1,4 @@
-"""What follows the document by itself: in-betweens, what is measured of them, what is drawn."""
+"""Per-frame updates of derived values: in-betweens, measurements and the shown frame."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -32,11 +32,11 @@ from app.motion import (
 from app.reports import CorrectedSample, measure_curves
 from app.storage import cut_picture, shrink_picture
 
-STILL = 0.15  # seconds after which the playhead is taken to stay where it is
-MOST_UNASKED = 1000  # frames whose extent is measured before anybody asks
+STILL = 0.15  # seconds after which the playhead counts as resting
+MOST_UNASKED = 1000  # frames whose extent is measured unasked
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
 UNMADE = "The in-betweens of these keys cannot be made"
-# What is awaited, or takes a few milliseconds, is not to wait until all in-betweens are there.
+# Awaited jobs and jobs of a few milliseconds run on the "hand" lane, ahead of long in-betweens.
 GLIMPSING = JobKind("In-between", UNMADE, "hand")
 SKETCHING = JobKind("In-betweens", UNMADE)
 COMPARING = JobKind("Other in-betweens", "The in-betweens to compare with cannot be made")
@@ -55,22 +55,22 @@ Value = TypeVar("Value")
 
 @with_project
 def bring_poses(session: Session, project: Project) -> None:
-    """Let the document have what pulls have come to."""
+    """Commit the poses of drags to the document."""
     posing.clamp_unreachable_targets(session, project, resolving.relax_limits_and_solve)
     posing.update_pose_drags(session, project)
 
 
 @with_project
 def bring_tracks(session: Session, project: Project) -> None:
-    """Let the document have what hands do with tracks."""
+    """Commit track drags to the document."""
     tracking.update_track_drags(session, project)
 
 
 @with_project
 def ask_for_missing(session: Session, project: Project) -> None:
-    """Ask the worker for what is missing."""
+    """Queue jobs for missing values."""
     inputs = _inputs(session, project)
-    # Where all is as it was when nothing was missing, nothing is.
+    # Nothing is missing while the inputs are those of the last complete poll.
     if inputs != project.polled:
         project.polled = inputs
         _follow_document(session, project)
@@ -79,14 +79,14 @@ def ask_for_missing(session: Session, project: Project) -> None:
                 session.jobs.put(job)
     shortfalls, layer = project.timeline.target_errors, project.layer
     if not shortfalls.follows(layer):
-        # Little work: of the poses that were not measured before, and there is one at a time.
+        # Cheap: only new poses are measured, and they come one at a time.
         shortfalls.set(layer, measure_key_errors(layer, shortfalls))
 
 
 @with_project
 def settle_shown(session: Session, project: Project) -> None:
-    """Settle what is drawn in the next frame."""
-    # Where all is as it was, so is what is drawn, however many layers there are.
+    """Update the shown frame."""
+    # Unchanged inputs mean an unchanged frame. The test costs the same for any number of layers.
     if _drawn_of(session, project) != project.settled:
         _show(session, project)
         project.settled = _drawn_of(session, project)
@@ -94,7 +94,7 @@ def settle_shown(session: Session, project: Project) -> None:
         _fit_motion(session, project)
 
 
-# In this order, once a frame. The window goes on with the next one where one fails.
+# These run in this order, once a frame. If a step fails, the window goes on with the next one.
 STEPS: tuple[Callable[[Session], None], ...] = (
     bring_poses,
     bring_tracks,
@@ -106,20 +106,20 @@ STEPS: tuple[Callable[[Session], None], ...] = (
 
 
 def maintain(session: Session) -> None:
-    """Ask the worker for what is missing, and settle what is drawn."""
+    """Run all steps, once a frame."""
     for step in STEPS:
         step(session)
 
 
 @with_project
 def follow_playhead(session: Session, project: Project) -> None:
-    """Settle what is shown at the frame that it is by now, where the playhead runs."""
+    """Update the shown frame to the present time while the playhead runs."""
     if project.playhead.since is not None:
         _show(session, project)
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
-    """Return all on which it depends which jobs are due."""
+    """Return all values that decide which jobs are due."""
     take = project.recording
     return (
         *(project.document, project.history.position, project.active, project.selected_handles),
@@ -134,7 +134,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
 
 
 def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
-    """Return all on which it depends what is drawn, and what is drawn now."""
+    """Return all values that decide the shown frame, and the shown frame itself."""
     puppets = project.layer_runtimes.values()
     return (
         *(_inputs(session, project), _is_moving(session, project)),
@@ -143,12 +143,12 @@ def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
 
 
 def _stage(pull: Pull) -> tuple[object, ...]:
-    """Return how far a pull has come, as far as others are asked for in-betweens of it."""
+    """Return the progress of a drag, as far as jobs for in-betweens depend on it."""
     return pull.is_held, pull.is_left, pull.frame, pull.kept, pull.tried, pull.ready
 
 
 def _follow_document(session: Session, project: Project) -> None:
-    """Let what is known follow the document."""
+    """Update or recall derived values after a change of the document."""
     for identity, puppet in project.layer_runtimes.items():
         puppet.corrected = reuse_corrections(project.document, identity, puppet.corrected)
     project.extent.recall(extent_key(project.document))
@@ -157,12 +157,12 @@ def _follow_document(session: Session, project: Project) -> None:
 
 
 def give_up(session: Session, kind: JobKind) -> None:
-    """End a job that takes too long, or never ends; what it was for is told to have failed."""
+    """Abandon a job that takes too long; its work is reported as failed."""
     session.jobs.abandon(kind)
 
 
 def _pin(session: Session, project: Project) -> None:
-    """Tell all stores which clips are present, and to which ones undo and redo lead."""
+    """Note in all caches the present clips, and the clips that undo and redo lead to."""
     frame, tried = playback.current_frame(session, project), posing.candidate_clips(project)
     for clip, puppet in _clips(project):
         layer, twin = clip.layer.id, puppet.comparison
@@ -179,16 +179,16 @@ def _pin(session: Session, project: Project) -> None:
 
 
 def missing(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what the worker is to do next: what is missed most, of any layer."""
+    """Yield the next jobs of any layer, the most urgent first."""
     yield from _cut(session, project)
-    # First of all: they are watched while the hand moves, and are of few points only.
+    # Motion paths come first: the person watches them during a drag, and they are of few points.
     yield from _trace(session, project)
     if _asks_extent(session, project) and not project.is_posing:
         yield from _span(session, project)
     yield from _make_frames(session, project)
     yield from tracking.correction_jobs_for_shown_frame(session, project)
     if _awaits_frame(session, project):
-        # On few cores it would come much later beside others.
+        # On few cores other jobs would delay this frame.
         return
     for kind, puppet, clip in _wanted(session, project):
         if not puppet.store.has_failed(clip, _part(kind)):
@@ -206,7 +206,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if _prepares_all(session, project):
         yield from tracking.next_correction_jobs(session, project)
     if project.is_posing:
-        # What follows takes longer than the hand stays where it is.
+        # The jobs below take longer than a pause of the drag.
         return
     yield from _hang(session, project)
     if not session.prepares_ahead:
@@ -218,12 +218,12 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _asks_extent(session: Session, project: Project) -> bool:
-    """Tell whether the extent of the motion is waited for."""
+    """Return whether the extent of the motion is awaited."""
     return session.export_frame is not None or project.awaits_extent
 
 
 def _prepares_all(session: Session, project: Project) -> bool:
-    """Tell whether all frames are prepared, and not only the one that is shown."""
+    """Return whether all frames are prepared, not only the shown one."""
     return session.prepares_ahead or session.overlays.onion or _asks_extent(session, project)
 
 
@@ -234,11 +234,11 @@ def _clips(project: Project) -> list[tuple[Clip, LayerRuntime]]:
 
 
 def _make_frames(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the in-betweens at the playhead, before and beside all others of their intervals."""
+    """Yield jobs for the in-between at the playhead, ahead of the rest of its segment."""
     frame = playback.current_frame(session, project)
     for clip, puppet in _clips(project):
         is_posed = clip.layer.id == project.active and project.unkeyed_pose is not None
-        # What fails at one frame would at others, and is told of once.
+        # A failure at one frame would repeat at others; it is reported once.
         if not is_posed and not puppet.store.has_failed(clip, "frame"):
             work = puppet.store.frame_job(clip, frame)
             if work is not None:
@@ -247,7 +247,7 @@ def _make_frames(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _awaits_frame(session: Session, project: Project) -> bool:
-    """Tell whether the first frame of the interval at the playhead is on its way."""
+    """Return whether the first frame of the segment at the playhead is pending."""
     if GLIMPSING not in session.jobs.kinds:
         return False
     frame = playback.current_frame(session, project)
@@ -261,7 +261,7 @@ def _awaits_frame(session: Session, project: Project) -> bool:
 
 
 def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, LayerRuntime, Clip]]:
-    """Yield the clips that are to have their in-betweens, what is missed most first."""
+    """Yield the clips that need in-betweens, the most urgent first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
     clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
     prepares_all = _prepares_all(session, project)
@@ -269,10 +269,10 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
     def is_wanted(clip: Clip, store: InbetweenCache) -> bool:
         return prepares_all or not store.is_exact(clip, frame)
 
-    # Where nobody sees them before the hand rests, they are not worked out for each move.
+    # In-betweens that are not visible during a drag are not computed for each move.
     is_seen = session.overlays.onion or project.pull is None
     if is_seen or posing.POSING not in session.jobs.kinds:
-        # Those that something stands in for come first.
+        # Clips whose shown frame is an approximation come first.
         for clip, puppet in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, puppet.store):
                 yield SKETCHING, puppet, clip
@@ -295,7 +295,7 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
 def _prepare(
     session: Session, project: Project, kind: JobKind, puppet: LayerRuntime, clip: Clip
 ) -> Job | None:
-    """Return what prepares the nearest in-betweens that a clip lacks, or its mesh."""
+    """Return the job for the nearest in-betweens that a clip lacks, or for its mesh."""
     domain, among = clip.layer.domain, len(project.layer_runtimes)
     is_fine, frame = kind == REFINING, playback.current_frame(session, project)
     store = puppet.fine if is_fine else puppet.store
@@ -309,14 +309,14 @@ def _prepare(
     is_edited = puppet is project.layer_runtime and not is_fine
     lacking = store.missing_segments(clip, frame, is_edited=is_edited)
     if store.lacks_sampler(clip):
-        # A frame at a key needs no in-betweens to be corrected.
+        # A correction of a frame at a key needs no in-betweens.
         lacking = []
     elif not lacking:
         return None
     if is_fine and not store.has_room():
         return None
-    # All at once where the hand has changed those around one key, and the ghosts are to stay
-    # together; else what is wanted next need not wait long.
+    # During a drag with onion skin all are made at once, so that the ghosts stay together.
+    # Otherwise one at a time, so that more urgent jobs do not wait long.
     if not (session.overlays.onion and project.pull is not None):
         lacking = lacking[:1]
     prepare = store.segments_job(clip, lacking, puppet.store.sampler)
@@ -324,7 +324,7 @@ def _prepare(
 
 
 def _stream(session: Session, project: Project) -> Iterator[Job]:
-    """Yield some steps of a series that is in the making or that is wanted next."""
+    """Yield some steps of a series in progress or of the next series."""
     frame, heat = playback.current_frame(session, project), session.overlays.heat_map != "none"
     for clip, puppet in _clips(project):
         for store in filter(None, (puppet.store, puppet.fine)):
@@ -337,13 +337,12 @@ def _stream(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _take_build(project: Project, store: InbetweenCache, build: SeriesBuild) -> None:
-    """Take in a series; where it is crowded, let go of what it was made from."""
+    """Store a series; if memory is crowded, free its intermediate values."""
     store.add_build(build)
     project.free_memory()
 
 
 def _part(kind: JobKind) -> InbetweenPart:
-    """Return which part of a clip's in-betweens a job makes."""
     parts: dict[JobKind, InbetweenPart] = {
         GLIMPSING: "frame",
         REFINING: "fine",
@@ -361,7 +360,7 @@ def _interval_job(
     work: Callable[[], Value],
     done: Callable[[Value], None],
 ) -> Job:
-    """Return a job for some in-betweens; what fails is not tried again for the same keys."""
+    """Return a job for in-betweens; a failed job is not repeated for the same keys."""
     return _job(session, kind, work, done, lambda: puppet.store.mark_failed(_part(kind), clip))
 
 
@@ -386,13 +385,13 @@ def _derive(
     source: Source,
     work: Callable[[], Value],
 ) -> Iterator[Job]:
-    """Yield the job that works out the value of a source, unless it is there or cannot be."""
+    """Yield the job for the value of a source, unless the value exists or has failed."""
     if not (into.follows(source) or into.has_failed(source)):
         yield _job(session, kind, work, partial(into.set, source), partial(into.fail, source))
 
 
 def _cut(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what is to be cut out of pictures anew, and the small ones of the list of layers."""
+    """Yield jobs for new cut-outs, and for the small pictures of the list of layers."""
     for layer in project.document.layers:
         puppet, cut_out = project.layer_runtimes[layer.id], layer.cut_out
         cut = partial(cut_picture, puppet.picture, cut_out)
@@ -403,7 +402,7 @@ def _cut(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _trace(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the paths of the active layer's handles, while some are shown."""
+    """Yield the job for motion paths of the active layer's handles, while some are shown."""
     clip, paths = project.clip, project.paths
     if session.overlays.paths and project.selected_handles:
         document, known, siblings = project.document, paths.value, project.samplers
@@ -417,7 +416,7 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _hang(session: Session, project: Project) -> Iterator[Job]:
-    """Yield some frames of the joints of what hangs."""
+    """Yield a job for some frames of the joints of attached layers."""
     joints, source = project.parent_transforms, parenting_key(project.document)
     is_settled = not source or joints.follows(source) or joints.has_failed(source)
     if is_settled or HANGING in session.jobs.kinds:
@@ -435,7 +434,7 @@ def _hang(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _measure(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what is measured of the in-betweens."""
+    """Yield jobs that measure the distortion of the in-betweens."""
     twin, wanted = project.layer_runtime.comparison, [(project.clip, project.curves)]
     if twin is not None:
         wanted.append((twin.clip(project.document), project.comparison_curves))
@@ -452,7 +451,7 @@ def _measure(session: Session, project: Project) -> Iterator[Job]:
 
 
 def _span(session: Session, project: Project) -> Iterator[Job]:
-    """Yield the measurement of where the motion reaches, once all in-betweens are there."""
+    """Yield the job that measures the extent of the motion, once all in-betweens exist."""
     document, extent, source = project.document, project.extent, extent_key(project.document)
     clips = _clips(project)
     if extent.follows(source) or not all(each.store.has(clip) for clip, each in clips):
@@ -474,7 +473,7 @@ def _fit_motion(session: Session, project: Project) -> None:
 
 
 def _show(session: Session, project: Project) -> None:
-    """Settle what is drawn in the next frame, and beside it by the method that is compared."""
+    """Update the shown frame, and the frame of the compared method."""
     frame, document = playback.current_frame(session, project), project.document
     if project.recording is not None and project.layer_runtime.corrected is not None:
         project.layer_runtime.corrected.lead(frame)
@@ -492,21 +491,21 @@ def _show(session: Session, project: Project) -> None:
         shown[layer] = show(clip, frame, pose, stores, puppet.shown, puppet.corrected)
         if twin is not None:
             earlier, other = twin.shown or shown[layer], twin.clip(document)
-            # What a pose shows is the same in both.
+            # An unkeyed pose is the same in both methods.
             twins[layer] = show(other, frame, pose, [puppet.store], earlier)
     known = project.parent_transforms.value
     for layer, hung in hang_shown(
         document, shown, project.current_parent_transforms, poses, known
     ).items():
         project.layer_runtimes[layer].shown = hung
-    # By the meshes alone: the joints that are followed exactly are of the layers' own methods.
+    # This uses the meshes alone, since the exact joints belong to the layers' own methods.
     for layer, hung in hang_shown(document, twins, None, {}, known).items():
         if (twin := project.layer_runtimes[layer].comparison) is not None:
             twin.shown = hung
 
 
 def _is_moving(session: Session, project: Project) -> bool:
-    """Tell whether what is shown changes too fast for fine meshes."""
+    """Return whether the shown frame changes too fast for fine meshes."""
     is_scrubbed = session.clock() - project.moved_at < STILL
     is_moving = project.pull is not None or project.playhead.since is not None or is_scrubbed
     return is_moving and not session.full_detail

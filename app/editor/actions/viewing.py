@@ -1,4 +1,4 @@
-"""How the window looks: camera, overlays, theme, dialogs."""
+"""The look of the window: camera, overlays, theme, dialogs."""
 
 import os
 import webbrowser
@@ -25,22 +25,21 @@ from app.storage import (
 )
 
 SCALE_STEP = 0.25
-LEAST_PART = 0.05  # of the viewport's width, that is left to either method
-AROUND_HANDLES = 0.12  # of the layer's diagonal, on each side of the handles that are fitted
+LEAST_PART = 0.05  # of the viewport's width; each method keeps at least this share
+AROUND_HANDLES = 0.12  # of the layer's diagonal; the margin around handles that are fitted
 OverlayName = Literal["handles", "wireframe", "outline", "cage", "onion", "mirror", "paths"]
 HEAT_MAPS: tuple[HeatMap, ...] = ("none", "k", "sigma_a", "sigma_b")
 
 
 @with_project
 def set_view(_: Session, project: Project, camera: View | None) -> None:
-    """Move the camera; None fits the picture's frame into the viewport, whatever its size."""
+    """Move the camera; None fits the picture's frame into the viewport at any size."""
     project.camera, project.is_camera_view = camera, False
     project.awaits_extent = False
 
 
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
-    """Show all layers as they are in this frame, whole."""
     shown = [puppet.shown for puppet in project.layer_runtimes.values()]
     boxes = [
         bounding_box(each.placement.apply(each.positions)) for each in shown if each is not None
@@ -51,13 +50,13 @@ def zoom_to_pose(session: Session, project: Project) -> None:
 
 @with_project
 def zoom_to_motion(_: Session, project: Project) -> None:
-    """Show where all layers get to in any frame, as soon as that is measured."""
+    """Show the area that all layers cover in any frame, as soon as it is measured."""
     project.awaits_extent = True
 
 
 @with_project
 def zoom_to_selection(session: Session, project: Project) -> None:
-    """Show the selected handles with some of the layer around them, or the whole layer."""
+    """Show the selected handles with a margin, or the whole layer."""
     shown = project.layer_runtime.shown
     if shown is None:
         return
@@ -71,23 +70,22 @@ def zoom_to_selection(session: Session, project: Project) -> None:
 
 
 def zoom_to_box(session: Session, box: BoundingBox) -> None:
-    """Move the camera so that a box of the plane fills the viewport."""
+    """Move the camera so that a box of the scene fills the viewport."""
     set_view(session, fit_view_around(box, session.screen))
 
 
 @with_project
 def zoom_to_actual_size(session: Session, project: Project) -> None:
-    """Show one pixel of the picture as one of the screen, around the same centre."""
+    """Show one pixel of the picture as one pixel of the screen, around the same centre."""
     set_view(session, replace(project.view(session.screen), scale=1.0))
 
 
 def set_viewport_size(session: Session, width: int, height: int) -> None:
-    """Take note of the viewport's size in pixels."""
+    """Note the viewport's size in pixels."""
     session.screen = (max(width, 1), max(height, 1))
 
 
 def toggle_overlay(session: Session, overlay: OverlayName) -> None:
-    """Show or hide an overlay."""
     shown: dict[str, Any] = {overlay: not getattr(session.overlays, overlay)}
     session.overlays = replace(session.overlays, **shown)
 
@@ -98,17 +96,17 @@ def show_heat_map(session: Session, heat_map: HeatMap) -> None:
 
 
 def toggle_heat_map(session: Session) -> None:
-    """Show the conformal distortion, or no distortion."""
+    """Show the heat map of the conformal distortion, or hide the heat map."""
     show_heat_map(session, "k" if session.overlays.heat_map == "none" else "none")
 
 
 def show_curves(session: Session, kind: CurveKind) -> None:
-    """Show the curves of the distortion relative to the keys, or as they are."""
+    """Show the curves of the distortion, relative to the keys or absolute."""
     session.curves = kind
 
 
 def toggle_comparison(session: Session) -> None:
-    """Show another method beside the drawing's own, or the drawing alone."""
+    """Show a second method beside the drawing's method, or the drawing alone."""
     if session.compare_view is None:
         session.compare_view = session.last_compare_view
     else:
@@ -116,7 +114,7 @@ def toggle_comparison(session: Session) -> None:
 
 
 def compare_with_method(session: Session, method: Variant | Baseline | None) -> None:
-    """Show a method beside the drawing's own; None shows the drawing alone."""
+    """Show a method beside the drawing's method; None shows the drawing alone."""
     if (method is None) != (session.compare_view is None):
         toggle_comparison(session)
     if method is not None and session.compare_view is not None:
@@ -131,13 +129,13 @@ def move_comparison_divider(session: Session, place: float) -> None:
 
 
 def set_side_by_side(session: Session, beside: bool) -> None:  # noqa: FBT001 - a panel's two choices
-    """Show the two methods side by side, or under a divider over one place."""
+    """Show the two methods side by side, or at one place under a divider."""
     if session.compare_view is not None:
         session.compare_view = replace(session.compare_view, is_side_by_side=beside)
 
 
 def set_onion_skin(session: Session, before: int, after: int, step: int) -> None:
-    """Choose how many ghosts the onion skin has, and how many frames apart."""
+    """Set the number of ghosts of the onion skin, and the frames between them."""
     session.preferences = replace(
         session.preferences,
         ghosts_before=min(max(before, 0), MOST_GHOSTS),
@@ -147,39 +145,36 @@ def set_onion_skin(session: Session, before: int, after: int, step: int) -> None
 
 
 def set_onion_skin_in_front(session: Session, in_front: bool) -> None:  # noqa: FBT001 - a checkbox's
-    """Let the onion skin be in front of the drawing, or behind it."""
     session.preferences = replace(session.preferences, ghosts_in_front=in_front)
 
 
 def set_path_range(session: Session, reach: int) -> None:
-    """Choose of how many frames around the playhead motion paths are; 0 takes all that play."""
+    """Set how many frames around the playhead motion paths cover; 0 means all played frames."""
     session.preferences = replace(session.preferences, path_reach=reach)
 
 
 def set_backdrop(session: Session, backdrop: str) -> None:
-    """Choose what lies behind the drawing: "checker" or "#rrggbb"."""
+    """Set the backdrop behind the drawing: "checker" or "#rrggbb"."""
     session.preferences = replace(session.preferences, backdrop=backdrop)
 
 
 @with_project
 def preview_meshing(_: Session, project: Project, meshing: Meshing) -> None:
-    """Choose what the domain will be rebuilt with."""
+    """Note the meshing that the next rebuild of the mesh uses."""
     project.meshing = meshing
 
 
 def toggle_theme(session: Session) -> None:
-    """Change between the dark and the light theme."""
+    """Switch between the dark and the light theme."""
     theme: ThemeName = "light" if session.preferences.theme == "dark" else "dark"
     session.preferences = replace(session.preferences, theme=theme)
 
 
 def enlarge_interface(session: Session) -> None:
-    """Enlarge the whole interface."""
     _scale_interface(session, SCALE_STEP)
 
 
 def shrink_interface(session: Session) -> None:
-    """Make the whole interface smaller."""
     _scale_interface(session, -SCALE_STEP)
 
 
@@ -189,53 +184,50 @@ def _scale_interface(session: Session, step: float) -> None:
 
 
 def focus_timeline(session: Session, in_timeline: bool) -> None:  # noqa: FBT001 - the only argument
-    """Note whether the person is in the timeline, and not in the drawing."""
+    """Note whether the person works in the timeline or in the drawing."""
     session.is_timeline_focused = in_timeline
 
 
 def toggle_auto_key(session: Session) -> None:
-    """Let posing make and change keys by itself, or leave that to the person."""
+    """Switch auto-key: whether posing makes and changes keys."""
     auto_key = not session.preferences.auto_key
     session.preferences = replace(session.preferences, auto_key=auto_key)
 
 
 def show_dialog(session: Session, dialog: Dialog) -> None:
-    """Open a dialog in place of the one that may be open."""
+    """Open a dialog in place of the open one."""
     session.dialog = dialog
 
 
 def browse_files(session: Session, dialog: FileDialog) -> None:
-    """Go on with the file browser that is open, in another state."""
+    """Set the state of the open file browser."""
     session.dialog = dialog
 
 
 def choose_file(session: Session, dialog: FileDialog, path: Path) -> None:
-    """Do with a path what the file dialog asked for, and begin there the next time."""
+    """Give a path to the file dialog's action; the next file dialog opens in its folder."""
     session.dialog = None
     session.preferences = replace(session.preferences, folder=path.parent)
     dialog.chosen(path).apply(session)
 
 
 def use_own_file_browser(session: Session) -> None:
-    """Ask for files with our own browser, and not with the system's dialogs, from now on."""
+    """From now on, use Lissom's file browser instead of the system's dialogs."""
     session.system_dialogs = False
 
 
 def show_tab(session: Session, title: str) -> None:
-    """Bring a tab at the side to the front."""
     session.panel_to_focus = title
 
 
 def show_shortcuts(session: Session) -> None:
-    """Open the sheet of all keys."""
     session.dialog = ShortcutSheet()
 
 
 def open_manual(session: Session, page: str) -> None:
-    """Show a page of the manual in the browser, and tell where it lies.
+    """Show a page of the manual in the browser, and show its address in a notice.
 
-    One of the terminal would hold the window up, and has no place in it: what the system offers as
-    such is not taken, but where BROWSER names it.
+    Terminal browsers are skipped, since they would block the window, unless BROWSER names one.
     """
     path = manual_page(page)
     try:
@@ -246,27 +238,26 @@ def open_manual(session: Session, page: str) -> None:
         is_open = False
     if not is_open:
         raise LissomError(f"no browser was found; the manual is {path}")
-    # What starts it may fail later, unheard.
+    # The program that starts the browser may fail later, without an error here.
     session.show_notice(f"The manual opens in the browser. It lies in {path}.", topic="manual")
 
 
 def close_dialog(session: Session) -> None:
-    """Close the dialog without doing anything; what a report was asked for from comes back."""
+    """Close the dialog without an action; the dialog below a report returns."""
     dialog = session.dialog
     session.dialog = dialog.behind if isinstance(dialog, ProblemReport) else None
 
 
 def answer_dialog(session: Session, action: Action) -> None:
-    """Close the dialog and do what was chosen in it."""
+    """Close the dialog and run the chosen action."""
     session.dialog = None
     action.apply(session)
 
 
 def dismiss_toast(session: Session, toast: Toast) -> None:
-    """Take a message away."""
     session.toasts = [other for other in session.toasts if other is not toast]
 
 
 def set_tint(session: Session, by: Tint | None) -> None:
-    """Show by colours what of the drawing is in front, or stiff; None shows it as it is."""
+    """Colour the drawing by depth or by stiffness; None shows its own colours."""
     session.tint = by

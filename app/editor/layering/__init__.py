@@ -1,7 +1,7 @@
-"""What a person does with layers: choosing, ordering, hiding, replacing, joining them.
+"""Editing layers: selecting, ordering, hiding, replacing and attaching them.
 
 In: a session, and the ids of layers.
-Out: other layers, or others in another order; which of them is posed.
+Out: changed or reordered layers; the active layer.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`, `app.storage`.
 """
 

@@ -1,4 +1,4 @@
-"""What the camera shows, and how layers fade in time."""
+"""Keys of the camera, and of opacity, transform and draw order of layers."""
 
 from dataclasses import replace
 
@@ -13,16 +13,16 @@ from app.motion import BoundingBox
 
 @with_project
 def key_camera(session: Session, project: Project) -> None:
-    """Let the camera show at the playhead what the viewport shows.
+    """Key the camera at the playhead with the viewport's view.
 
-    Where that is upright, it stays as turned as it is.
+    The rotation is kept if the viewport is upright.
     """
     document, frame = project.document, playback.current_frame(session, project)
     shot, view = camera_at(document, frame), project.view(session.screen)
     whole = fit_view_around(BoundingBox(0j, complex(*document.canvas)), session.screen)
     turn = 0.0 if shot is None else shot.turn
     if view.turn != 1:
-        # The nearest one, of those with whole turns more or less.
+        # The nearest angle among those whole turns apart.
         turn += float(np.angle(view.turn * np.exp(-1j * turn)))
     key = CameraKey(
         frame=document.frames.clamp(frame),
@@ -35,7 +35,7 @@ def key_camera(session: Session, project: Project) -> None:
 
 @with_project
 def toggle_camera_view(_: Session, project: Project) -> None:
-    """Let the viewport show what the camera does at each frame, or what it showed before."""
+    """Show the camera's view in the viewport, or the earlier view again."""
     project.is_camera_view = not project.is_camera_view
 
 
@@ -48,7 +48,7 @@ def change_camera_key(
     zoom: float | None = None,
     turn: float | None = None,
 ) -> None:
-    """Let a key of the camera be zoomed or turned otherwise, where that is told."""
+    """Set the zoom or the rotation of a camera key."""
     for key in project.document.camera:
         if key.frame == frame:
             zoom, turn = key.zoom if zoom is None else zoom, key.turn if turn is None else turn
@@ -57,20 +57,17 @@ def change_camera_key(
 
 
 def delete_camera_key(session: Session, frame: int) -> None:
-    """Delete a key of the camera."""
     editing.edit_document(session, filming_commands.delete_camera_key(frame))
 
 
 @with_project
 def key_opacity(session: Session, project: Project, identity: int, opacity: float) -> None:
-    """Set how opaque a layer is from key to key, at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.key_opacity(identity, frame, opacity))
 
 
 @with_project
 def delete_opacity_key(session: Session, project: Project, identity: int) -> None:
-    """Take back what is said of a layer's opacity at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.delete_opacity_key(identity, frame))
 
@@ -79,14 +76,12 @@ def delete_opacity_key(session: Session, project: Project, identity: int) -> Non
 def key_transform(
     session: Session, project: Project, identity: int, shift: complex, turn: float
 ) -> None:
-    """Set where a whole layer is from key to key, at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.key_movement(identity, frame, shift, turn))
 
 
 @with_project
 def delete_transform_key(session: Session, project: Project, identity: int) -> None:
-    """Take back what is said of a layer's movement at the playhead."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.delete_movement_key(identity, frame))
 
@@ -99,7 +94,7 @@ def key_draw_order(
     beside: int | None,
     in_front: bool = True,  # noqa: FBT001, FBT002 - of an action
 ) -> None:
-    """Paint a layer beside another one from the playhead on, or beside none where it lies."""
+    """Key a layer's draw order at the playhead: beside another layer, or at its own place."""
     frame = playback.current_frame(session, project)
     placing = DrawOrderKey(frame, beside, in_front)
     editing.edit_document(session, filming_commands.place_at(identity, placing))
@@ -107,6 +102,5 @@ def key_draw_order(
 
 @with_project
 def delete_draw_order_key(session: Session, project: Project, identity: int) -> None:
-    """Take back what is said of a layer's order from the playhead on."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, filming_commands.unplace_at(identity, frame))

@@ -1,4 +1,4 @@
-"""Which layer is posed, in what order they lie, and when they are seen."""
+"""The list of layers: picking, ordering, grouping, visibility and blending."""
 
 from collections.abc import Sequence
 from functools import reduce
@@ -26,17 +26,17 @@ from engine.geometry import contains
 def layer_at(
     project: Project, place: complex, *, below: int | None = None, besides: int | None = None
 ) -> int | None:
-    """Return the layer that is seen in front at a place of the scene, None where there is none.
+    """Return the front layer at a place of the scene; None if there is none.
 
-    Still, hidden and locked ones are passed through.
+    Still, hidden and locked layers are skipped.
 
     Parameters
     ----------
-    place : complex
     below : int, optional
-        Where that layer is there, too, the next one behind it is returned, or at last the first.
+        If this layer is at the place, the next layer behind it is returned, and after the last
+        layer the first.
     besides : int, optional
-        A layer that is passed through.
+        A layer that is skipped.
     """
     shown = project.layer_runtime.shown
     frame = project.playhead.frame if shown is None else shown.frame
@@ -56,14 +56,14 @@ def layer_at(
 
 
 def is_layer_at(project: Project, identity: int, place: complex) -> bool:
-    """Tell whether a layer is seen at a place of the scene."""
+    """Return whether a layer is visible at a place of the scene."""
     shown = project.layer_runtimes[identity].shown
     document = project.document
     if shown is None or (project.solo and identity not in project.solo):
         return False
     outline = shown.positions[: len(shown.mesh.domain.outline)]
     place = shown.placement.apply_inverse(place)
-    # Most layers are elsewhere, which their boxes tell at once.
+    # Most layers are elsewhere, and the test of their boxes is cheap.
     x, y = outline.real, outline.imag
     if not (x.min() <= place.real <= x.max() and y.min() <= place.imag <= y.max()):
         return False
@@ -73,13 +73,12 @@ def is_layer_at(project: Project, identity: int, place: complex) -> bool:
 
 
 def rename_layer(session: Session, identity: int, name: str) -> None:
-    """Give a layer another name."""
     if name.strip():
         editing.edit_document(session, layer_commands.rename_layer(identity, name))
 
 
 def move_layer(session: Session, identity: int, index: int) -> None:
-    """Put a layer at an index in the order from back to front."""
+    """Move a layer to an index in the order from back to front."""
     editing.edit_document(session, layer_commands.move_layer(identity, index))
 
 
@@ -91,9 +90,9 @@ def move_layers_beside(
     in_front: bool,  # noqa: FBT001 - of an action
     *identities: int,
 ) -> None:
-    """Put layers in front of another one, or behind it, in the order that they have.
+    """Move layers in front of another layer or behind it; their own order stays.
 
-    All of a group stay one.
+    Layers of a group stay together.
     """
     whole = _whole_group(project, identities)
     if whole:
@@ -114,7 +113,7 @@ def move_layers_beside(
 
 @with_project
 def toggle_layers_hidden(session: Session, project: Project, *identities: int) -> None:
-    """Hide layers, or show them again: the other way than the first of them is."""
+    """Hide or show layers: the opposite of the first layer's state."""
     hidden = not project.document.layer(identities[0]).hidden
     commands = [layer_commands.set_hidden(each, hidden=hidden) for each in identities]
     editing.edit_document(
@@ -124,7 +123,7 @@ def toggle_layers_hidden(session: Session, project: Project, *identities: int) -
 
 @with_project
 def toggle_layers_locked(session: Session, project: Project, *identities: int) -> None:
-    """Let clicks on the drawing pass through layers, or stop at them: other than at the first."""
+    """Lock or unlock layers against clicks: the opposite of the first layer's state."""
     locked = not project.document.layer(identities[0]).locked
     commands = [layer_commands.set_locked(each, locked=locked) for each in identities]
     editing.edit_document(
@@ -133,13 +132,13 @@ def toggle_layers_locked(session: Session, project: Project, *identities: int) -
 
 
 def put_layers_in_group(session: Session, path: str, *identities: int) -> None:
-    """Put layers in a group, or with "" out of all groups."""
+    """Put layers in a group; with "" remove them from all groups."""
     editing.edit_document(session, group_commands.group_layers(identities, path))
 
 
 @with_project
 def group_layers(session: Session, project: Project) -> None:
-    """Put the chosen layers in a new group, in the innermost one that all of them are in."""
+    """Put the selected layers in a new group, inside their innermost common group."""
     document, chosen = project.document, project.selected_layers
     around = reduce(common_path, (document.layer(each).group for each in chosen))
     taken = {each.name for each in document.groups}
@@ -149,7 +148,7 @@ def group_layers(session: Session, project: Project) -> None:
 
 @with_project
 def add_layers_to_group(session: Session, project: Project, path: str, *identities: int) -> None:
-    """Take layers into a group; all of another group stay one in it."""
+    """Add layers to a group; a whole group among them stays a group inside it."""
     whole = _whole_group(project, identities)
     if whole:
         editing.edit_document(session, group_commands.move_group_into(whole, path))
@@ -158,7 +157,7 @@ def add_layers_to_group(session: Session, project: Project, path: str, *identiti
 
 
 def _whole_group(project: Project, identities: Sequence[int]) -> str:
-    """Return the path of the outermost group that is made of several layers; "" if none is."""
+    """Return the path of the outermost group that consists of these layers; "" if none."""
     document = project.document
     for path in ancestor_paths(document.layer(identities[0]).group):
         inside = {each.id for each in document.layers if path in ancestor_paths(each.group)}
@@ -168,12 +167,10 @@ def _whole_group(project: Project, identities: Sequence[int]) -> str:
 
 
 def ungroup_layers(session: Session, path: str) -> None:
-    """Let the layers of a group be by themselves."""
     editing.edit_document(session, group_commands.ungroup_layers(path))
 
 
 def rename_group(session: Session, path: str, name: str) -> None:
-    """Give a group another name."""
     editing.edit_document(session, group_commands.rename_group(path, name))
 
 
@@ -183,45 +180,41 @@ def _of(verb: str, identities: Sequence[int]) -> str:
 
 @with_project
 def toggle_reference(session: Session, project: Project, identity: int) -> None:
-    """Leave a layer out of exports, or take it in again."""
+    """Exclude a layer from exports, or include it again."""
     reference = project.document.layer(identity).reference
     editing.edit_document(session, layer_commands.set_reference(identity, reference=not reference))
 
 
 def set_layer_opacity(session: Session, identity: int, opacity: float) -> None:
-    """Set how opaque a layer is."""
     editing.edit_document(session, layer_commands.set_opacity(identity, opacity))
 
 
 def set_blend_mode(session: Session, identity: int, mode: BlendMode) -> None:
-    """Set how a layer's colours meet those behind it."""
     editing.edit_document(session, layer_commands.set_blend(identity, mode))
 
 
 @with_project
 def toggle_clipping(session: Session, project: Project, identity: int) -> None:
-    """Let a layer be seen only where what lies below it is, or everywhere again."""
+    """Clip a layer to the layer below, or release it."""
     clipped = project.document.layer(identity).clipped
     editing.edit_document(session, layer_commands.set_clipped(identity, clipped=not clipped))
 
 
 def set_group_opacity(session: Session, path: str, opacity: float) -> None:
-    """Set how opaque a group is."""
     editing.edit_document(session, group_commands.set_group_opacity(path, opacity))
 
 
 @with_project
 def toggle_group_hidden(session: Session, project: Project, path: str) -> None:
-    """Hide a group, or show it again."""
     hidden = project.document.group(path).hidden
     editing.edit_document(session, group_commands.set_group_hidden(path, hidden=not hidden))
 
 
 @with_project
 def toggle_visibility_key(session: Session, project: Project, identity: int) -> None:
-    """Show or hide a layer from the present frame on: the other way than it is there.
+    """Key the opposite of a layer's visibility at the present frame.
 
-    One that takes turns with others is shown in place of them.
+    A layer of a switch is shown instead of the switch's other layers.
     """
     frame = playback.current_frame(session, project)
     document = project.document
@@ -236,25 +229,25 @@ def toggle_visibility_key(session: Session, project: Project, identity: int) -> 
 
 @with_project
 def delete_visibility_key(session: Session, project: Project, identity: int) -> None:
-    """Take back that a layer is shown or hidden from the present frame on."""
+    """Delete a layer's visibility key at the present frame."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, layer_commands.key_visibility(identity, frame, visible=None))
 
 
 @with_project
 def note_listed_layer(_: Session, project: Project) -> None:
-    """Note that the list of layers shows the one that is posed."""
+    """Note that the list of layers has scrolled to the active layer."""
     project.last_listed_layer = project.active
 
 
 def ask_layer_name(session: Session, identity: int | None) -> None:
-    """Ask for a layer's name where layers are listed; None asks for none any more."""
+    """Edit a layer's name in the list of layers; None ends the editing."""
     session.named_layer = identity
 
 
 @with_project
 def duplicate_layer(session: Session, project: Project, identity: int) -> None:
-    """Put a copy of a layer in front of it, and choose it."""
+    """Put a copy of a layer in front of it, and select the copy."""
     free = layer_commands.next_layer_id(project.document)
     editing.edit_document(session, layer_commands.duplicate_layer(identity))
     set_active_layer(session, free)

@@ -1,4 +1,4 @@
-"""Which layer is posed, which are chosen beside it, and what of the layers is looked at."""
+"""The active layer, the selected layers, and soloed layers."""
 
 from app.editor.actions import posing
 from app.editor.project import Project
@@ -7,7 +7,7 @@ from app.editor.session import Session, with_project
 
 @with_project
 def set_active_layer(session: Session, project: Project, identity: int) -> None:
-    """Let a layer be the one whose handles and keys are shown and changed, and no other."""
+    """Make a layer active: its handles and keys are shown and edited."""
     project.other_selected_layers = frozenset()
     if identity == project.active:
         return
@@ -22,7 +22,7 @@ def set_active_layer(session: Session, project: Project, identity: int) -> None:
 
 @with_project
 def select_layers(session: Session, project: Project, *identities: int) -> None:
-    """Choose layers together; the one that is posed goes on if it is among them."""
+    """Select layers; the active layer stays active if it is among them."""
     if project.active not in identities:
         set_active_layer(session, identities[0])
     project.other_selected_layers = frozenset(identities) - {project.active}
@@ -30,7 +30,7 @@ def select_layers(session: Session, project: Project, *identities: int) -> None:
 
 @with_project
 def toggle_layers_selected(session: Session, project: Project, *identities: int) -> None:
-    """Choose layers beside those that are chosen, or no more where all of them are."""
+    """Add layers to the selection, or remove them if all are selected."""
     chosen = frozenset(project.selected_layers)
     left = chosen - set(identities) if chosen.issuperset(identities) else chosen | set(identities)
     if left:
@@ -40,7 +40,7 @@ def toggle_layers_selected(session: Session, project: Project, *identities: int)
 
 @with_project
 def select_layers_up_to(session: Session, project: Project, identity: int) -> None:
-    """Choose the layers that are listed from the one that is posed to another one."""
+    """Select the listed layers from the active one to another one."""
     listed = [row.layer.id for row in project.tree if row.layer is not None]
     ends = sorted((listed.index(project.active), listed.index(identity)))
     select_layers(session, *listed[ends[0] : ends[1] + 1])
@@ -48,18 +48,18 @@ def select_layers_up_to(session: Session, project: Project, identity: int) -> No
 
 @with_project
 def toggle_tree_row(_: Session, project: Project, row: str) -> None:
-    """Open a row of the tree of layers, or close it again."""
+    """Open or close a row of the layer tree."""
     project.toggled_rows ^= {row}
     project.lingering = frozenset()
 
 
 @with_project
 def reset_tree_rows(_: Session, project: Project) -> None:
-    """List only the layers of open rows again, and the one that is posed."""
+    """List only the layers of open rows, and the active layer."""
     project.lingering = frozenset()
 
 
 @with_project
 def solo_layers(_: Session, project: Project, *identities: int) -> None:
-    """Show some layers alone while the person works, or all again; exports do not heed it."""
+    """Show only these layers while editing, or all again; exports ignore solo."""
     project.solo = frozenset() if project.solo == set(identities) else frozenset(identities)

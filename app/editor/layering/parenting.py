@@ -1,4 +1,4 @@
-"""Hanging one layer on another, and letting it go."""
+"""Parenting: attaching layers to a parent, and detaching them."""
 
 from collections.abc import Callable, Collection, Sequence
 
@@ -33,7 +33,7 @@ PARENT_IS_DESCENDANT = (
 
 
 def is_same_or_descendant(project: Project, identity: int, carrier: int) -> bool:
-    """Tell whether a layer is another one, or hangs on it at some time, directly or by others."""
+    """Return whether a layer is another layer, or its descendant at any time."""
     others = project.document.all_ancestors(identity)
     return identity == carrier or any(each.id == carrier for each in others)
 
@@ -47,16 +47,14 @@ def attach_layer(
     turns: bool = True,  # noqa: FBT001, FBT002 - of an action
     place: complex | None = None,
 ) -> None:
-    """Hang a layer by its anchor on another one; nothing moves at the present frame.
+    """Attach a layer by its anchor to a parent; nothing moves at the present frame.
 
     Parameters
     ----------
-    child, parent : int
-        Ids of layers.
     turns : bool
         Whether the child turns with the parent.
     place : complex, optional
-        Of the joint, in the scene; by default the anchor's, or the middle of where they overlap.
+        The joint, in the scene. The default is the anchor, or the middle of the overlap.
     """
     if is_same_or_descendant(project, parent, child):
         names = [project.document.layer(identity).name for identity in (parent, child)]
@@ -80,7 +78,7 @@ def attach_layer(
 
 @with_project
 def attach_layers(session: Session, project: Project, parent: int, *children: int) -> None:
-    """Hang layers on another one; those that hang on one of them go along with that."""
+    """Attach layers to a parent; descendants of these layers move with them."""
     frame = playback.current_frame(session, project)
     whole = [child for child in children if child != parent]
     carried = {
@@ -110,7 +108,7 @@ def _attach(
     joined: Sequence[int],
     find: Callable[[ParentTransforms], Command],
 ) -> None:
-    """Hang layers on another one by the joints that are found."""
+    """Attach layers to a parent by the joints that `find` computes."""
     document = project.document
     if not set(joined) <= project.layer_runtimes.keys():
         return
@@ -133,9 +131,9 @@ def _attach(
 
 @with_project
 def detach_layer(session: Session, project: Project, child: int) -> None:
-    """Let a layer hang on nothing any more; nothing moves at the present frame.
+    """Detach a layer; nothing moves at the present frame.
 
-    One that hangs on others at other times is let go as long as the present joint holds.
+    If the layer has other parents at other times, only the present attachment ends.
     """
     shown, layer = project.layer_runtimes[child].shown, project.document.layer(child)
     joint = layer.attachment_key_at(playback.current_frame(session, project))
@@ -152,7 +150,7 @@ def detach_layer(session: Session, project: Project, child: int) -> None:
 
 @with_project
 def set_inherits_rotation(session: Session, project: Project, child: int, turns: bool) -> None:  # noqa: FBT001 - of an action
-    """Let a layer turn with the one that it hangs on, or keep its own turn; nothing moves now."""
+    """Set whether a layer turns with its parent; nothing moves at the present frame."""
     frame = playback.current_frame(session, project)
     joint = project.document.layer(child).attachment_key_at(frame)
     if joint is not None and joint.parent is not None and turns != joint.inherits_rotation:
@@ -161,7 +159,7 @@ def set_inherits_rotation(session: Session, project: Project, child: int, turns:
 
 @with_project
 def reparent_layer(session: Session, project: Project, child: int, parent: int | None) -> None:
-    """Let a layer hang on another one, or on none, from the present frame on; nothing jumps."""
+    """Attach a layer to another parent, or to none, from the present frame on; nothing jumps."""
     layer = project.document.layer(child)
     frame = layer.joint_frame(playback.current_frame(session, project))
     if parent is None:
@@ -184,13 +182,13 @@ def reparent_layer(session: Session, project: Project, child: int, parent: int |
 
 @with_project
 def delete_parent_key(session: Session, _: Project, child: int, frame: int) -> None:
-    """Let a layer hang on what it hung on before a frame, from there on, too."""
+    """Delete a parent key; the previous parent holds on."""
     editing.edit_document(session, layer_commands.delete_attachment_key(child, frame))
 
 
 @with_project
 def delete_layers(session: Session, project: Project, *identities: int) -> None:
-    """Delete layers. What hung on them hangs on what they hung on, and nothing moves now."""
+    """Delete layers; their children attach to their parents, and nothing moves now."""
     gone, layers = set(identities), project.document.layers
     if len(gone) == len(layers):
         session.show_notice("A scene has at least one layer. Add another one first.", tone="error")
@@ -204,7 +202,7 @@ def delete_layers(session: Session, project: Project, *identities: int) -> None:
 
 @with_project
 def _reparent_children(session: Session, project: Project, *identities: int) -> None:
-    """Find where what hangs on layers that go is to hang, and delete them."""
+    """Find new parents for the children of deleted layers, and delete the layers."""
     document, siblings = project.document, project.samplers
     frame = playback.current_frame(session, project)
 
@@ -225,9 +223,9 @@ def _reparent_children(session: Session, project: Project, *identities: int) -> 
 def _reparent_child_command(
     joints: ParentTransforms, child: int, gone: Collection[int], frame: int
 ) -> Command:
-    """Return the command by which a layer hangs on what carries those that go, at all times.
+    """Return the command that replaces a child's deleted parents by remaining ancestors.
 
-    At the frame nothing moves; where it is handed over to one of them it does not jump.
+    Nothing moves at `frame`, and nothing jumps at the child's parent keys.
     """
     document = joints.document
     layer, here = document.layer(child), document.layer(child).attachment_key_at(frame)
@@ -254,9 +252,9 @@ def _reparent_child_command(
 
 
 def _detach_command(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
-    """Return the command by which a layer hangs on nothing and stays where it is at a frame.
+    """Return the command that detaches a layer; it keeps its placement at a frame.
 
-    From then on it is moved by its own movement.
+    From then on its own transform moves it.
     """
     own = transform_at(document, document.layer(child), frame)
     return layer_commands.detach_layer(child, *own.inverse.compose(placement))

@@ -1,4 +1,4 @@
-"""Pictures that become layers, or take the place of a layer's own."""
+"""Pictures that become layers, or replace a layer's picture."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -41,11 +41,11 @@ from app.storage import (
 )
 
 ADDING = JobKind("Adding a layer", "The layer cannot be added")
-LONGEST = 28  # characters of a name on a button
+LONGEST = 28  # most characters of a name on a button
 
 
 class _LoadedLayer(NamedTuple):
-    """A layer, its decoded picture, what was done, in words, and the layer as a window has it."""
+    """A layer, its decoded picture, a sentence about its import, and its runtime."""
 
     layer: Layer
     picture: Picture
@@ -55,7 +55,7 @@ class _LoadedLayer(NamedTuple):
 
 @with_project
 def make_still(session: Session, project: Project, identity: int) -> None:
-    """Make a layer a still picture, without handles and keys."""
+    """Turn a layer into a still picture, without handles and keys."""
     still = make_still_layer(project.document.layer(identity))
     command = layer_commands.replace_layer(identity, still)
     editing.edit_document(session, replace(command, label="Make still"))
@@ -63,7 +63,7 @@ def make_still(session: Session, project: Project, identity: int) -> None:
 
 @with_project
 def make_posable(session: Session, project: Project, identity: int) -> None:
-    """Let a still picture be posed: the shape that is drawn on it, as it was drawn."""
+    """Make a still picture posable: find its shape; its drawn pose stays."""
     layer, picture = project.document.layer(identity), project.layer_runtimes[identity].picture
     imported = ImportedLayer(
         name=layer.name, data=layer.picture.data, picture=picture, corner=layer.corner
@@ -83,8 +83,8 @@ def make_posable(session: Session, project: Project, identity: int) -> None:
 
 
 def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _LoadedLayer:
-    """Return the layer of a layer that can be posed."""
-    # Where nothing is transparent, a plain background is taken off first.
+    """Return a posable layer for an imported layer."""
+    # A plain background of an opaque picture is removed first.
     is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())
     made, notices = make_posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
     if made.still:
@@ -93,7 +93,7 @@ def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _LoadedL
 
 
 def replace_picture(session: Session, identity: int, path: Path) -> None:
-    """Let a layer have another picture; its handles, keys and joints stay."""
+    """Replace a layer's picture; its handles, keys and joints stay."""
     pending_changes.run_when_idle(
         session, do(_replace_picture, identity, path), "Replace the picture"
     )
@@ -133,7 +133,7 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
 
 @with_project
 def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> None:
-    """Add pictures, and the layers of drawings, as layers in front of all others."""
+    """Add pictures, and the layers of drawings, in front of all layers."""
     meshing, before = session.meshing, project.document
     canvas = before.canvas
 
@@ -153,7 +153,7 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
                     moved, identity, meshing, is_cut_out=is_layered(path)
                 )
                 document = layer_commands.add_layer(layer)(document)
-                # Here, and not while the window waits: it takes a tenth of a second.
+                # This takes a tenth of a second, so it runs on the worker and not in the window.
                 puppet = LayerRuntime.of(clip_of(document, identity), imported.picture)
                 for notice in imported.picture.notices + notices:
                     told.add_note(document.layers[-1].name, notice)
@@ -181,13 +181,13 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
 
 
 def _require_room(layers: Iterable[Layer], pictures: Iterable[Picture]) -> None:
-    """Refuse more pictures beside those of layers than could be opened together."""
+    """Refuse more pictures than could be opened together."""
     there = {layer.picture for layer in layers}
     require_memory([*(file.size for file in there), *(picture.size for picture in pictures)])
 
 
 def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPicture:
-    """Return a drawing with names of groups that a document does not have."""
+    """Rename the groups of a drawing whose names the document already uses."""
     taken = {group.name for group in document.groups}
 
     def free(path: str) -> str:
@@ -202,7 +202,7 @@ def _with_free_groups(drawing: LayeredPicture, document: Document) -> LayeredPic
 
 
 def _drawing(path: Path) -> LayeredPicture:
-    """Read a drawing on layers, or a picture as one of a single layer."""
+    """Read a layered drawing, or a picture as a drawing of a single layer."""
     if is_layered(path):
         return read_layered(path)
     data = read_file(path)
@@ -214,25 +214,23 @@ def _drawing(path: Path) -> LayeredPicture:
 
 
 def ask_pictures_to_add(session: Session) -> None:
-    """Ask for a picture that becomes another layer."""
     suffixes = (*files.PICTURES, *files.LAYERED)
     session.ask_file("Add a picture as a layer", suffixes, lambda path: do(add_layers, [path]))
 
 
 @with_project
 def ask_replacement_picture(session: Session, project: Project, identity: int) -> None:
-    """Ask for a picture that takes the place of a layer's own."""
     title = f"Replace the picture of {project.document.layer(identity).name}"
     session.ask_file(title, files.PICTURES, lambda path: do(replace_picture, identity, path))
 
 
 def set_drop_target(session: Session, identity: int) -> None:
-    """Note on which layer's row the pointer is in this frame."""
+    """Note the layer row under the pointer in this frame."""
     session.pointed_layer = identity
 
 
 def drop_files(session: Session, paths: Sequence[Path]) -> None:
-    """Open what was dropped on the window; ask whether pictures are to join the open scene."""
+    """Open dropped files; ask whether pictures join the open scene."""
     kinds = (*files.PICTURES, *files.LAYERED)
     pictures = [path for path in paths if path.suffix.lower() in kinds and not path.is_dir()]
     project = session.project

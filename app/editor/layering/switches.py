@@ -1,4 +1,4 @@
-"""Layers that take turns, as mouths do."""
+"""Switches: groups of layers of which exactly one is visible, such as mouths."""
 
 from app.document import layer_commands, switch_group_commands
 from app.editor.actions import editing, playback
@@ -10,7 +10,6 @@ from app.editor.session import Session, with_project
 def create_switch(
     session: Session, project: Project, *identities: int, name: str = "choice"
 ) -> None:
-    """Let layers take turns: of them exactly one is seen at a time."""
     taken = {choice.name for choice in project.document.switch_groups}
     free = layer_commands.unique_name(name, taken)
     editing.edit_document(session, switch_group_commands.create_switch_group(free, identities))
@@ -18,33 +17,30 @@ def create_switch(
 
 @with_project
 def key_switch(session: Session, project: Project, identity: int) -> None:
-    """Let a layer be the one of its choice that is seen from the present frame on."""
+    """Key a switch to a layer at the present frame."""
     frame = playback.current_frame(session, project)
     editing.edit_document(session, switch_group_commands.choose_at(identity, frame))
 
 
 @with_project
 def dismiss_switch_suggestion(_: Session, project: Project, group: str) -> None:
-    """Offer no more to make a choice of a group."""
+    """Stop suggesting a switch for a group."""
     project.dismissed_suggestions |= {group}
 
 
 def add_to_switch(session: Session, name: str, *identities: int) -> None:
-    """Take layers into a choice."""
     editing.edit_document(session, switch_group_commands.add_to_switch_group(name, identities))
 
 
 def remove_from_switch(session: Session, identity: int) -> None:
-    """Take a layer out of its choice."""
     editing.edit_document(session, switch_group_commands.remove_from_switch_group(identity))
 
 
 def rename_switch(session: Session, name: str, new: str) -> None:
-    """Give a choice another name."""
     if new.strip():
         editing.edit_document(session, switch_group_commands.rename_switch_group(name, new))
 
 
 def delete_switch(session: Session, name: str) -> None:
-    """Let the layers of a choice take turns no more: each is seen when it was."""
+    """Delete a switch; its layers have their own visibility again."""
     editing.edit_document(session, switch_group_commands.delete_switch_group(name))

@@ -1,9 +1,9 @@
-"""Poses that are used again: copied and pasted, flipped, and kept in libraries.
+"""Reuse of poses: copying, pasting, flipping, and pose libraries.
 
-They come to any layer whose handles have the same names.
+Poses fit any layer whose handles have the same names.
 
 In: a session with a project.
-Out: keys that hold those poses, and what was copied or kept.
+Out: keys with these poses; the copied or saved poses.
 Imports: `app.editor.actions`, `app.solving`.
 """
 

@@ -20,9 +20,9 @@ KEYS_COPIED = "{count} keys copied."
 
 @with_project
 def copy_pose_or_keys(session: Session, project: Project) -> None:
-    """Copy the pose at the playhead or, in the timeline, the keys that are chosen there.
+    """Copy the pose at the playhead or, in the timeline, the selected keys.
 
-    Where several layers are chosen, those of all of them.
+    With several selected layers, copy from all of them.
     """
     if is_copying_keys(session, project):
         copy_keys(session)
@@ -37,12 +37,12 @@ def copy_pose_or_keys(session: Session, project: Project) -> None:
 
 @with_project
 def copy_all_poses(session: Session, project: Project) -> None:
-    """Copy the poses that all layers have at the playhead."""
+    """Copy the poses of all layers at the playhead."""
     _copy_poses(session, project, [layer.id for layer in project.document.layers])
 
 
 def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> None:
-    """Copy the poses of layers at the playhead; the worker finds those in between."""
+    """Copy the poses of layers at the playhead; the worker solves for in-betweens."""
     frame, document = playback.current_frame(session, project), project.document
     layers = [
         each
@@ -80,13 +80,13 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
 
 
 def is_copying_keys(session: Session, project: Project) -> bool:
-    """Tell whether keys would be copied, and not the pose at the playhead."""
+    """Return whether a copy takes keys, and not the pose at the playhead."""
     return session.is_timeline_focused and bool(project.selected_keys)
 
 
 @with_project
 def copy_keys(session: Session, project: Project) -> None:
-    """Copy the chosen keys; poses on their way come to rest in the copies, too."""
+    """Copy the selected keys; unfinished drags update the copies as well."""
     keys, tracks = [], []
     for row, at in project.selected_keys.items():
         layer, track = project.document.layer(layer_of(row)), project.track_in(row)

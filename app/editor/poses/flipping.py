@@ -1,4 +1,4 @@
-"""The axis at which poses are flipped, and flipping again where it has been moved."""
+"""The mirror axis of poses, and repeated flips after it was moved."""
 
 from app.document import pose_commands
 from app.editor.poses import pasting
@@ -8,7 +8,7 @@ from app.editor.session import CopiedKeys, Session, with_project
 
 
 def can_flip_again(project: Project) -> bool:
-    """Tell whether what was flipped last is still what the chosen keys hold."""
+    """Return whether the selected keys still hold the last flipped poses."""
     flip = project.last_flip
     if flip is None or project.selected_frames != flip.frames or project.active != flip.layer:
         return False
@@ -19,19 +19,19 @@ def can_flip_again(project: Project) -> bool:
 
 
 def is_mirror_axis_shown(session: Session, project: Project) -> bool:
-    """Tell whether the axis is shown: after a flip, and as long as the person wants to see it."""
+    """Return whether the axis is shown: after a flip, while its overlay is on."""
     return project.playhead.since is None and (session.overlays.mirror or can_flip_again(project))
 
 
 @with_project
 def move_mirror_axis(_: Session, project: Project, x: float | None, gesture: object) -> None:
-    """Put the axis elsewhere, or in the middle."""
+    """Set the axis; None is the middle."""
     project.history.do(pose_commands.set_mirror(project.active, x), gesture=gesture)
 
 
 @with_project
 def flip_pose_again(session: Session, project: Project, gesture: object) -> None:
-    """Flip once more what was flipped last, at the axis of now."""
+    """Flip the last flipped poses again, at the present axis."""
     flip = project.last_flip
     if flip is not None and can_flip_again(project):
         copied = CopiedKeys(project.layer, flip.keys)
@@ -41,7 +41,7 @@ def flip_pose_again(session: Session, project: Project, gesture: object) -> None
 
 
 def set_mirror_axis(session: Session, x: float | None) -> None:
-    """Put the axis elsewhere, or in the middle, and flip again what was flipped last."""
+    """Set the axis, None is the middle, and flip the last flipped poses again."""
     gesture = object()
     move_mirror_axis(session, x, gesture)
     flip_pose_again(session, gesture)

@@ -1,4 +1,4 @@
-"""Libraries: poses under names, which are put on the timeline or blended in."""
+"""Pose libraries: named poses that are keyed or blended in."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,7 +18,7 @@ KEEPING = JobKind("Keeping a pose", "The pose could not be kept", "hand")
 
 @with_project
 def save_pose_to_library(session: Session, project: Project) -> None:
-    """Put the pose at the playhead into the library."""
+    """Save the pose at the playhead to the library."""
     pose_insertion.request_pose_at_playhead(
         session, project, KEEPING, partial(_save_pose, session, project)
     )
@@ -35,16 +35,16 @@ def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> 
 
 
 class PoseOffer(NamedTuple):
-    """A pose of a library that the layer that is posed can take, and whose it is."""
+    """A library pose that the active layer can take, and its owner."""
 
     owner: Layer
     kept: LibraryPose
 
 
 def list_library_poses(project: Project) -> list[PoseOffer]:
-    """Return the poses of the layer's own library, then those of others with its handles' names.
+    """Return the poses of the active layer's library, then fitting poses of other layers.
 
-    They come to it as they do by pasting.
+    A pose of another layer fits by handle names, as in pasting.
     """
     own = project.layer
     layers = [own, *(each for each in project.document.layers if each is not own)]
@@ -61,7 +61,7 @@ def list_library_poses(project: Project) -> list[PoseOffer]:
 def apply_library_pose(
     session: Session, project: Project, name: str, owner: int | None = None
 ) -> None:
-    """Put a pose of a library into a key at the present frame; by default the layer's own."""
+    """Key a library pose at the present frame; by default from the layer's own library."""
     _put(
         session,
         project,
@@ -74,7 +74,7 @@ def apply_library_pose(
 def apply_library_pose_at(
     session: Session, project: Project, name: str, frame: int, owner: int | None = None
 ) -> None:
-    """Put a pose of a library into a key at a frame, and go there."""
+    """Key a library pose at a frame, and go there."""
     pose_insertion.stop_and_get_frame(session, project)
     _put(session, project, _find_library_pose(project, name, owner), frame)
     playback.seek(session, frame)
@@ -103,16 +103,15 @@ def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> No
 def blend_library_pose(
     session: Session, project: Project, name: str, share: float, owner: int | None = None
 ) -> None:
-    """Mix a pose of a library into the one that is shown, as it was when this began.
+    """Blend a library pose into the pose that was shown when the blend began.
 
     Parameters
     ----------
-    name : str
     share : float
-        Of the pose in the library: 0 changes nothing, 1 is that pose itself. Between them the
-        handles are on the way, and the shape follows within its limits.
+        Weight of the library pose: 0 changes nothing, 1 is that pose. In between, targets are
+        interpolated, and the shape follows within its limits.
     owner : int, optional
-        Whose pose it is; by default the layer's own.
+        The layer of the library; by default the active layer.
     """
     offer = _find_library_pose(project, name, owner)
     begun = project.blend_preview
@@ -135,7 +134,7 @@ def blend_library_pose(
 
 @with_project
 def end_pose_blend(session: Session, project: Project) -> None:
-    """Let the pose be as it is mixed now; wholly mixed in, it is that of the library itself."""
+    """Keep the blended pose; with a share of 1, key the library pose exactly."""
     blend, project.blend_preview = project.blend_preview, None
     posing.release_drag(session)
     if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
@@ -155,11 +154,10 @@ def _between(one: Target, other: Target, share: float) -> Target:
 
 @with_project
 def rename_library_pose(session: Session, project: Project, name: str, to: str) -> None:
-    """Give a pose of the library another name."""
     editing.edit_layer(session, pose_commands.rename_pose, name, to)
     project.picked_pose = (project.active, to)
 
 
 def delete_library_pose(session: Session, name: str) -> None:
-    """Take a pose out of the library; keys that were made of it stay."""
+    """Delete a pose from the library; keys made from it stay."""
     editing.edit_layer(session, pose_commands.delete_pose, name)

@@ -1,4 +1,4 @@
-"""Where what was copied goes: onto which layers, by which handles, and why it cannot."""
+"""Destinations of copied keys: layers, handles, and reasons why a paste is impossible."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -11,24 +11,22 @@ from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session
 from app.solving import PoseTransfer, SimilarityTransform
 
-# As it is; with pairs of layers and of handles exchanged; or with all of it mirrored, too.
+# Unchanged; with partner layers and handles swapped; or swapped and mirrored.
 PasteMode = Literal["as it is", "swapped", "flipped"]
 NOTHING_COPIED = "Copy a pose or keys first."
-MOST_NAMED = 3  # handles in a sentence
+MOST_NAMED = 3  # most names in a sentence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PasteDestination:
-    """A layer that takes keys over, and from which of their handles.
+    """A layer that can take copied keys.
 
-    Parameters
+    Attributes
     ----------
-    layer : Layer
-    copied : CopiedKeys
     pairs : mapping of int to int
-        The layer's handles, and those of the layer that was copied, by their ids.
+        The copied layer's handles by the layer's handles, as ids.
     is_own : bool
-        Whether they are the layer's own keys, on the same domain and handles.
+        Whether the keys are the layer's own, with the same domain and handles.
     """
 
     layer: Layer
@@ -38,7 +36,7 @@ class PasteDestination:
 
     @property
     def disabled_reason(self) -> str:
-        """In a sentence why nothing is taken over; empty where it is."""
+        """The reason why the layer cannot take the keys, as a sentence; empty if it can."""
         layer, source = self.layer, self.copied.layer
         if layer.still:
             return f"“{layer.name}” is a still picture, which has no poses."
@@ -57,12 +55,12 @@ class PasteDestination:
         return f"“{layer.name}” has no handle called {listed}."
 
     def is_direct(self, way: PasteMode) -> bool:
-        """Tell whether the poses are taken as they are."""
+        """Return whether the poses are pasted unchanged."""
         stays = all(identity == other for identity, other in self.pairs.items())
         return self.is_own and (way == "as it is" or (way == "swapped" and stays))
 
     def pose_transfer(self, way: PasteMode) -> PoseTransfer:
-        """Return the way from the poses that were copied to this layer's."""
+        """Return the transfer of copied poses to this layer."""
         source, likeness = self.copied.layer, SimilarityTransform()
         if self.is_own and way == "flipped":
             likeness = SimilarityTransform.reflection(self.layer.axis)
@@ -81,11 +79,11 @@ class PasteDestination:
 def find_paste_destinations(
     session: Session, project: Project, way: PasteMode
 ) -> list[PasteDestination]:
-    """Return which layers take over what was copied, each of them once.
+    """Return the layers that take the copied keys, each of them once.
 
-    Keys of several layers go to those that they are of, by their names, or to the partners of
-    these. Keys of one go to that which is posed, or to all that are chosen; where sides exchange,
-    the one that is posed gives its own to its partner.
+    Keys of several layers go to the layers of the same names, or to their partners. Keys of one
+    layer go to the active layer or to all selected layers. A swap on the copied layer goes to its
+    partner.
     """
     found = _find_paste_destinations(session, project, way)
     return [each for each in found if not each.disabled_reason]
@@ -94,7 +92,7 @@ def find_paste_destinations(
 def find_active_paste_destination(
     session: Session, project: Project, way: PasteMode
 ) -> PasteDestination | None:
-    """Return how the layer that is posed takes over what was copied; None where it is not to."""
+    """Return the active layer as a destination; None if it takes nothing."""
     copied = session.copied
     if len(copied) == 1:
         return find_paste_destination(project.document, copied[0], project.layer, way)
@@ -103,7 +101,7 @@ def find_active_paste_destination(
 
 
 def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
-    """Return in a sentence why the keys that were copied cannot be pasted; empty where they can."""
+    """Return why the copied keys cannot be pasted, as a sentence; empty if they can."""
     copied = _copied(session)
     if not copied:
         return NOTHING_COPIED
@@ -125,7 +123,7 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
 
 
 def skipped_layers_reasons(session: Session, project: Project, way: PasteMode) -> list[str]:
-    """Return in sentences which of several layers take nothing over, and why."""
+    """Return the reasons of layers that take no keys, one sentence each."""
     found = _find_paste_destinations(session, project, way)
     return [landing.disabled_reason for landing in found if landing.disabled_reason]
 
@@ -133,7 +131,7 @@ def skipped_layers_reasons(session: Session, project: Project, way: PasteMode) -
 def find_paste_destination(
     document: Document, copied: CopiedKeys, layer: Layer, way: PasteMode
 ) -> PasteDestination:
-    """Return how a layer takes keys over."""
+    """Return a layer as a destination of copied keys."""
     source = copied.layer
     names = {handle.id: handle.name for handle in source.handles}
     is_own = source.domain is layer.domain and (
@@ -147,10 +145,10 @@ def find_paste_destination(
 def match_handles(
     source: Layer, layer: Layer, pairs: SidePairs, way: PasteMode
 ) -> Mapping[int, int]:
-    """Return which of a layer's handles take over from which of another's, by their names.
+    """Match a layer's handles to another layer's handles by their names.
 
-    Where sides are exchanged, a handle takes over from its partner on the other side. Between
-    layers whose handles have no name in common it does so, too.
+    In a swap, a handle gets its partner on the other side. Layers without a common handle name are
+    matched by partners as well.
     """
     theirs = {handle.name: handle.id for handle in source.handles}
     ours = {handle.name: handle.id for handle in layer.handles}
@@ -179,7 +177,7 @@ def _find_paste_destinations(
 
 
 def _copied(session: Session) -> list[CopiedKeys]:
-    """Return the keys that were copied of each layer; none where only those of tracks were."""
+    """Return the copied keys of each layer; none if only track keys were copied."""
     copied = {each.layer.id: each for each in session.copied}
     for each in session.copied_tracks:
         copied.setdefault(each.layer.id, CopiedKeys(each.layer, ()))
@@ -189,10 +187,10 @@ def _copied(session: Session) -> list[CopiedKeys]:
 def _receiving_layers(
     project: Project, source: Layer, way: PasteMode, *, is_alone: bool
 ) -> Iterator[Layer]:
-    """Yield the layers that take over what was copied of another one."""
+    """Yield the layers that take the copied keys of a layer."""
     document = project.document
     names = {layer.name: layer for layer in document.layers}
-    # A layer may have been given another name since.
+    # A layer may have been renamed since.
     kin = (each for each in document.layers if each.id == source.id)
     own = names.get(source.name) or next((f for f in kin if f.domain is source.domain), None)
     if is_alone and way == "as it is":

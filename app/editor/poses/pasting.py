@@ -1,4 +1,4 @@
-"""Pasting what was copied: as it is, with sides exchanged, or flipped; by names onto any layer."""
+"""Pasting copied poses: as they are, with sides swapped, or flipped; by names onto any layer."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -38,13 +38,13 @@ NOT_PASTED = "The pose was not pasted: a layer, its shape or its handles changed
 
 
 def paste_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
-    """Return in a sentence why nothing that was copied can be pasted; empty where it can."""
+    """Return why nothing copied can be pasted, as a sentence; empty if it can."""
     tracks = pasteable_tracks(session, project, way)
     return "" if tracks else paste_keys_disabled_reason(session, project, way)
 
 
 def paste_on_selected_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
-    """Return in a sentence why the selected handles can take nothing over; empty where they can."""
+    """Return why nothing can be pasted on the selected handles; empty if it can."""
     landing = find_active_paste_destination(session, project, way)
     if landing is None:
         return (
@@ -58,7 +58,7 @@ def paste_on_selected_disabled_reason(session: Session, project: Project, way: P
 
 @with_project
 def paste_copied(session: Session, project: Project, way: PasteMode = "as it is") -> None:
-    """Put what was copied into a key at the present frame: of several keys, the first one."""
+    """Paste the copied keys at the present frame; the first key is there."""
     frame = pose_insertion.stop_and_get_frame(session, project)
     pending_changes.run_when_idle(session, do(_paste, frame, way), LABELS.get(way, "Paste"))
 
@@ -104,21 +104,18 @@ def paste_poses(
     gesture: object | None = None,
     then: Callable[[], None] = lambda: None,
 ) -> None:
-    """Put keys onto the layers that take them over, so many frames later than they were.
+    """Paste keys onto their layers, `by` frames later than they were copied.
 
-    What is no layer's own pose is solved by the worker; all of it comes as one step.
+    The worker solves the poses that come from other layers. All pastes are one undo step.
 
     Parameters
     ----------
-    found : sequence of PasteDestination
-    way : str
-    by : int
     label : str, optional
-        What this does in words; by default it pastes.
+        The undo label; by default it is a paste.
     gesture : object, optional
-        What is one step of undo together.
+        Edits of one gesture are one undo step.
     then : callable, optional
-        Done after the keys are there.
+        Runs after the keys are inserted.
     """
     gesture, label = gesture or object(), label or LABELS.get(way)
     keys = {each.layer.id: _fitted(project, each) for each in found if each.is_direct(way)}
@@ -157,13 +154,13 @@ def paste_poses(
 
 
 def set_mirror_names(session: Session, text: str) -> None:
-    """Set which words, or whole names, tell layers and handles of the two sides apart."""
+    """Set the words or whole names that mark the two sides of layers and handles."""
     editing.edit_document(session, scene_commands.set_mirror_names(parse_pairs(text)))
 
 
 @with_project
 def paste_on_selected(session: Session, project: Project, way: PasteMode = "as it is") -> None:
-    """Let the selected handles go where they, or their partners, were, and the shape follow."""
+    """Move the selected handles to the copied places of themselves or of their partners."""
     if not paste_on_selected_disabled_reason(session, project, way):
         landing = find_active_paste_destination(session, project, way)
         if landing is not None:
@@ -176,7 +173,7 @@ def paste_on_selected(session: Session, project: Project, way: PasteMode = "as i
 def pasted_targets(
     project: Project, landing: PasteDestination, way: PasteMode
 ) -> Mapping[int, Target]:
-    """Return where a layer's handles are wanted by the first of some keys, by their ids."""
+    """Return the targets of a layer's handles from the first copied key, by id."""
     if landing.is_own:
         pose, layer = _fitted(project, landing)[0].pose, landing.layer
         if way == "flipped":
@@ -187,7 +184,7 @@ def pasted_targets(
 
 
 def _is_as_it_was(project: Project, landing: PasteDestination) -> bool:
-    """Tell whether a layer still has the shape and the handles that poses were solved for."""
+    """Return whether a layer still has the shape and the handles that poses were solved for."""
     was = landing.layer
     return any(
         each.id == was.id and each.domain is was.domain and each.handles == was.handles
@@ -205,7 +202,7 @@ def _fitted(project: Project, landing: PasteDestination) -> list[Keyframe]:
 def _solving(
     project: Project, landing: PasteDestination, way: PasteMode, by: int
 ) -> Callable[[], Sequence[Keyframe]]:
-    """Return what solves the poses for a layer, on the worker's thread."""
+    """Return the function that solves the poses for a layer, on the worker's thread."""
     layer, puppet = landing.layer, project.layer_runtimes[landing.layer.id]
     earlier, sibling = puppet.rig, puppet.store.sampler
     if landing.is_own and way == "flipped":
@@ -224,7 +221,7 @@ def _solving(
         return flip
     carriage, clip = landing.pose_transfer(way), clip_of(project.document, layer.id)
     turns = -1 if carriage.similarity.mirrors else 1
-    # What is in front is not what moves: within one layer it stays where it is.
+    # Depth belongs to the handle and is not swapped with the pose within one layer.
     fronts = {handle.id: handle.id for handle in layer.handles}
     fronts = fronts if landing.is_own else dict(landing.pairs)
 
@@ -242,13 +239,13 @@ def _solving(
 
 
 def _carried(key: Keyframe, fronts: Mapping[int, int], *, turns: int, pose: Pose) -> Keyframe:
-    """Return a key with another pose, and what is in front at handles as it is at others."""
+    """Return a key with another pose, and its depth points moved to other handles."""
     known = {i: key.depths[other] for i, other in fronts.items() if other in key.depths}
     return replace(key, pose=pose, revolutions=turns * key.revolutions, depths=known)
 
 
 def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Keyframe]) -> None:
-    """Note what was flipped, so that it is flipped again where the axis is moved."""
+    """Note a flip, so that moving the mirror axis flips the same poses again."""
     layer = landing.layer.id
     project.last_flip = LastFlip(
         layer=layer,

@@ -1,4 +1,4 @@
-"""Pasting keys of tracks: onto the track that is chosen, or, with poses, by names."""
+"""Pasting track keys: onto the selected track or, together with poses, by names."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,9 +13,9 @@ from app.editor.timeline_view import TrackRow
 def pasteable_tracks(
     session: Session, project: Project, way: PasteMode
 ) -> Mapping[TrackRow, CopiedTrack]:
-    """Return what was copied of each track, by the row on which it can be pasted.
+    """Return the copied keys of each track, by the row on which they can be pasted.
 
-    Keys of one track go to that which is chosen; else they go with those of poses, by names.
+    Keys of a single track go to the selected track. Otherwise they go with the poses, by names.
     """
     copied, chosen = session.copied_tracks, project.selected_track
     if way == "as it is" and len(copied) == 1 and chosen is not None:
@@ -34,11 +34,11 @@ def pasteable_tracks(
 def _transferred_track(
     landing: PasteDestination, copied: CopiedTrack, way: PasteMode, handles: tuple[int, ...]
 ) -> CopiedTrack:
-    """Return a track that was copied as one of a layer's handles."""
+    """Return a copied track for other handles of a layer."""
     likeness = landing.pose_transfer(way).similarity
     old = landing.copied.layer.handle(copied.track.handles[0]).position
     new = landing.layer.handle(handles[0]).position
-    # Beside the pose ways count, and in the picture places, with what the handle is beside them.
+    # Keys relative to the pose are offsets. Keys in the scene are places, with the handle's offset.
     start = (
         -likeness.shift if not copied.track.is_scene_space else new - likeness.apply_to_point(old)
     )
@@ -61,7 +61,7 @@ def _transferred_track(
 def paste_track(
     session: Session, project: Project, row: TrackRow, copied: CopiedTrack, by: int, gesture: object
 ) -> None:
-    """Put keys of a track into that of a row so many frames later; these are chosen then."""
+    """Paste track keys on a row, `by` frames later, and select them."""
     layer = project.document.layer(row.layer)
     track, name = layer.track_of(row.handle), layer.handle(row.handle).name
     if track is not None and track.is_scene_space != copied.track.is_scene_space:

@@ -1,4 +1,4 @@
-"""Poses on the timeline: what is pasted, flipped or taken from the library."""
+"""Inserting keys of pasted, flipped or library poses."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
@@ -26,22 +26,20 @@ def insert_poses(
     label: str | None = None,
     gesture: object | None = None,
 ) -> None:
-    """Put poses into keys: the first at a frame, others as much later as they were copied.
+    """Insert keys with poses: the first at a frame, others at their copied distances.
 
-    These keys are chosen then. Where there is one alone, only its pose is taken.
+    The new keys are selected. A single key gives only its pose.
 
     Parameters
     ----------
-    frame : int
-        Where the first of them comes.
     keys_of : mapping of int to sequence of Keyframe
-        By the ids of their layers.
+        By layer id.
     poses : collection of int
-        Layers of which the pose alone is taken, too.
+        Layers that take only the poses of their keys.
     label : str, optional
-        What this does in words; by default it pastes.
+        The undo label; by default it is a paste.
     gesture : object, optional
-        What is one step of undo together.
+        Edits of one gesture are one undo step.
     """
     gesture = gesture or object()
     first = min(key.frame for keys in keys_of.values() for key in keys)
@@ -49,7 +47,7 @@ def insert_poses(
     is_alone = sum(map(len, keys_of.values())) == 1
     for layer, keys in keys_of.items():
         is_pose = is_alone or layer in poses
-        # One pose changes all repeats; several keys have no place in them.
+        # A single pose changes all repeats; several keys cannot be inserted into repeats.
         at = project.document.layer(layer).source_of(frame) if is_pose else frame
         moved = [replace(key, frame=key.frame + at - first) for key in keys]
         if is_pose:
@@ -66,7 +64,7 @@ def insert_poses(
 
 
 def stop_and_get_frame(session: Session, project: Project) -> int:
-    """Halt, and return the present frame."""
+    """Stop playback, and return the present frame."""
     playback.stop_playback(session)
     return playback.current_frame(session, project)
 
@@ -74,16 +72,10 @@ def stop_and_get_frame(session: Session, project: Project) -> int:
 def fit_keys_to_layer(
     project: Project, identity: int, keys: Sequence[Keyframe], bounds: Bounds
 ) -> list[Keyframe]:
-    """Return keys with poses that have a layer's handles of now, and are proven for its limits.
+    """Return keys whose poses have a layer's present handles, proven for its limits.
 
-    Parameters
-    ----------
-    identity : int
-        Of the layer.
-    keys : sequence of Keyframe
-        Of an earlier state of it, or of one with the same domain.
-    bounds : Bounds
-        Those that it had then.
+    `keys` are of an earlier state of the layer, or of a layer with the same domain. `bounds` are
+    its limits at that time.
     """
     layer = project.document.layer(identity)
     known = {handle.id for handle in layer.handles}
@@ -111,7 +103,7 @@ def _fitted(project: Project, layer: Layer, pose: Pose, bounds: Bounds) -> Pose:
 def request_pose_at_playhead(
     session: Session, project: Project, kind: JobKind, take: PoseHandler
 ) -> None:
-    """Hand over the pose at the playhead; for an in-between, the worker finds the nearest one."""
+    """Pass the pose at the playhead to `take`; for an in-between the worker solves for it."""
     layer, pose = project.layer, posing.pose_at_playhead(session, project)
     if pose is not None:
         take(layer, pose)

@@ -1,7 +1,7 @@
-"""What the pointer does in the viewport: one table of tools, and the verbs that give it to them.
+"""Tools of the pointer in the viewport: their table, and the verbs that pass events to them.
 
-In: presses and moves of the pointer in the drawing's plane.
-Out: a session that the tool in hand has changed, and that forgets it where it is cancelled.
+In: presses and moves of the pointer in the scene.
+Out: a session that the active tool has changed.
 Imports: `app.editor.actions`.
 """
 

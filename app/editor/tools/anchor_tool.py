@@ -1,4 +1,4 @@
-"""Setting the anchor, the point of the shape that in-betweens follow."""
+"""Tool that sets the anchor, the point of the shape that in-betweens follow."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -11,11 +11,10 @@ from app.editor.tools.tool import PointerHit, Tool
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class AnchorTool(Tool):
-    """The pointer has set the anchor; until it is let go, that can be taken back."""
+    """A press sets the anchor; until the release it can be cancelled."""
 
     @classmethod
     def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell that a click with Ctrl sets it."""
         if spot.on_ring:
             return ()
         if spot.handle is not None:
@@ -28,7 +27,7 @@ class AnchorTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Set it where the shape is pressed; the handle that is it already gives it back."""
+        """Set the anchor where the shape is pressed; a press on the anchor's handle resets it."""
         if not spot.ctrl or spot.on_ring or not (spot.on_shape or spot.handle is not None):
             return None
         anchoring = cls(project=project)

@@ -1,4 +1,4 @@
-"""Hanging the layer that is posed on another one, by a drag from its anchor."""
+"""Tool that attaches the active layer to a parent, by a drag from its anchor."""
 
 from dataclasses import dataclass, replace
 from typing import Self
@@ -17,19 +17,18 @@ FREE_HAND = (PickLayerTool, PoseTool, AnchorTool)
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class AttachTool(Tool):
-    """The pointer holds the anchor of a layer over the one that it is to hang on."""
+    """The pointer drags the anchor of a layer onto its new parent."""
 
-    spot: PointerHit  # where it was pressed
+    spot: PointerHit  # place of the press
     child: int
-    names: dict[int, str]  # of the layers
-    place: complex  # where the pointer is
-    parent: int | None = None  # the layer under it
-    is_circle: bool = False  # whether that layer hangs on the child
-    moved: bool = False  # whether it has gone farther than a click may
+    names: dict[int, str]  # names of the layers
+    place: complex  # place of the pointer
+    parent: int | None = None  # the layer under the pointer
+    is_circle: bool = False  # whether that layer is a descendant of the child
+    moved: bool = False  # whether the pointer has moved farther than in a click
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell that the anchor is dragged."""
         if not _takes_anchor(session, project, spot):
             return ()
         what = "to hang it on another layer"
@@ -37,7 +36,7 @@ class AttachTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Take hold of the anchor; where a handle is the anchor, with Ctrl."""
+        """Grab the anchor; if a handle is the anchor, only with Ctrl."""
         if not _takes_anchor(session, project, spot) or (spot.handle is not None and not spot.ctrl):
             return None
         names = {layer.id: layer.name for layer in project.document.layers}
@@ -45,7 +44,7 @@ class AttachTool(Tool):
         return cls(project=project, spot=spot, child=child, names=names, place=spot.place)
 
     def move(self, session: Session, place: complex) -> None:
-        """Look which layer is under the pointer."""
+        """Find the layer under the pointer."""
         project = self.project
         self.place = place
         self.moved = self.moved or self.is_away(session, self.spot.place, place)
@@ -57,7 +56,7 @@ class AttachTool(Tool):
             )
 
     def end(self, session: Session, place: complex) -> None:
-        """Hang the layer on the one under the pointer; what was only clicked is for another."""
+        """Attach the layer to the layer under the pointer; a mere click passes to the next tool."""
         self.move(session, place)
         project = self.project
         if not self.moved:
@@ -70,7 +69,7 @@ class AttachTool(Tool):
             frame = playback.current_frame(session, project)
             joint = project.document.layer(self.child).attachment_key_at(frame)
             turns = joint is None or joint.inherits_rotation
-            # On both of them the joint is just there; else by the anchor.
+            # If the place is on both layers, it is the joint; otherwise the anchor is.
             there = to_scene(project, place)
             is_on_both = layering.is_layer_at(project, self.child, there)
             layering.attach_layer(
@@ -83,7 +82,7 @@ class AttachTool(Tool):
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """The way to the pointer, and the layer under it."""
+        """The line to the pointer, and the layer under it."""
         if not self.moved:
             return ()
         return (
@@ -97,7 +96,6 @@ class AttachTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """Tell what letting go does here."""
         if self.parent is None:
             return (Hint("go", "over the layer to hang it on"),)
         if self.is_circle:
@@ -108,6 +106,6 @@ class AttachTool(Tool):
 
 
 def _takes_anchor(session: Session, project: Project, spot: PointerHit) -> bool:
-    """Tell whether a press takes the anchor of a layer, in a scene of several."""
+    """Return whether a press grabs the anchor of a layer, in a scene of several layers."""
     is_free = not (spot.shift or spot.alt or spot.on_ring) and session.overlays.handles
     return spot.on_anchor and is_free and len(project.document.layers) > 1

@@ -1,4 +1,4 @@
-"""Moving the axis at which poses are flipped."""
+"""Tool that moves the mirror axis of poses."""
 
 from dataclasses import dataclass, field
 from typing import Self
@@ -12,33 +12,32 @@ from app.editor.tools.tool import PointerHit, Tool
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class MirrorAxisTool(Tool):
-    """The pointer moves the axis; what was flipped last is flipped again where it is let go."""
+    """The pointer moves the axis; the last flipped poses are flipped again at the release."""
 
-    axis: float  # where it was
-    start: complex  # where the pointer was pressed
-    place: complex  # where it is
+    axis: float  # the axis before the drag
+    start: complex  # place of the press
+    place: complex  # place of the pointer
     typed: NumericEntry = field(default_factory=NumericEntry)
 
     @classmethod
     def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell what the axis is for."""
         return (Hint("drag", "to flip poses at another place"),) if spot.on_axis else ()
 
     @classmethod
     def press(cls, _: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Take hold of the axis."""
+        """Grab the axis."""
         if not spot.on_axis:
             return None
         axis = project.layer.axis
         return cls(project=project, axis=axis, start=spot.place, place=spot.place)
 
     def move(self, session: Session, place: complex) -> None:
-        """Move the axis as far as the pointer goes sideways."""
+        """Move the axis by the pointer's horizontal offset."""
         self.place = place
         self._move(session)
 
     def type(self, session: Session, characters: str) -> None:
-        """Move it as far as is typed."""
+        """Move the axis by the typed offset."""
         self.typed.type(characters)
         self._move(session)
 
@@ -48,12 +47,12 @@ class MirrorAxisTool(Tool):
         flipping.move_mirror_axis(session, self.axis + way, gesture=self)
 
     def end(self, session: Session, _: complex) -> None:
-        """Flip again."""
+        """Flip the last flipped poses again."""
         flipping.flip_pose_again(session, gesture=self)
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """What was typed."""
+        """The typed text."""
         if not self.typed.text:
             return ()
         return (
@@ -62,5 +61,4 @@ class MirrorAxisTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done until it ends."""
         return (Hint("type", "a number of pixels"),)

@@ -1,4 +1,4 @@
-"""Moving the whole layer as it is, and all that hangs on it."""
+"""Tool that moves a whole layer with its descendants."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -14,14 +14,13 @@ from app.editor.tools.tool import PointerHit, to_scene
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Moving(PoseTool):
-    """The pointer moves a layer; the last one was posed before it."""
+    """The pointer moves a layer; `last` is the active layer before the press."""
 
     last: int
     is_free: bool  # whether the layer can be moved
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell what moves."""
         if session.moves:
             return (
                 Hint("drag", f"to move all of {_root_parent(session, project, spot.layer).name}"),
@@ -30,7 +29,7 @@ class Moving(PoseTool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Take hold of what is pressed with the tool in hand, or from beside it by keys."""
+        """Grab the layer under the pointer or, with keys beside the shape, the active layer."""
         is_by_keys = spot.ctrl and spot.shift and _is_beside(spot)
         if not is_by_keys and (spot.ctrl or not session.moves):
             return None
@@ -43,19 +42,18 @@ class Moving(PoseTool):
             posing.move_pose(session, self.offset, gesture=self)
 
     def cancel(self, session: Session) -> None:
-        """Take it back, and pose what was posed before."""
+        """Undo the move, and make the earlier layer active."""
         layering.set_active_layer(session, self.last)
         PoseTool.cancel(self, session)
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done until it ends."""
         return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
 
 
 @with_project
 def toggle_move_tool(session: Session, project: Project) -> None:
-    """Let drags and arrows move the whole layer, or pose it again."""
+    """Select the move tool, or the pose tool if the move tool is selected."""
     if session.active_tool is None:
         in_hand = session.cutting, session.material, project.motion_setup
         is_other = any(each is not None for each in in_hand)
@@ -65,7 +63,7 @@ def toggle_move_tool(session: Session, project: Project) -> None:
 
 @with_project
 def return_to_posing(session: Session, project: Project) -> None:
-    """Put away whatever is in hand instead of posing, a motion that is drafted among it."""
+    """Select the pose tool; close a motion draft."""
     session.cutting = session.material = None
     session.moves = False
     if project.motion_setup is not None:
@@ -74,7 +72,7 @@ def return_to_posing(session: Session, project: Project) -> None:
 
 @with_project
 def nudge_layer(session: Session, project: Project, step: complex) -> None:
-    """Move the layer that is posed, with all that it hangs on, by a few pixels."""
+    """Move the active layer's topmost parent by `step` in pixels; its descendants follow."""
     if _set_root_parent_active(session, project, None):
         posing.move_pose(session, step)
         posing.release_drag(session)
@@ -85,13 +83,13 @@ def _is_beside(spot: PointerHit) -> bool:
 
 
 def _root_parent(session: Session, project: Project, layer: int | None) -> Layer:
-    """Return what a layer, by default the one that is posed, hangs on in the end; or itself."""
+    """Return the topmost parent of a layer, by default of the active layer; or the layer itself."""
     frame = playback.current_frame(session, project)
     return project.document.parent_chain(project.active if layer is None else layer, frame)[-1]
 
 
 def _set_root_parent_active(session: Session, project: Project, layer: int | None) -> bool:
-    """Choose what moves with all that hangs on it; tell why, and return False, if it stays."""
+    """Make a layer's topmost parent active; if it cannot move, show why and return False."""
     carrier = _root_parent(session, project, layer)
     if carrier.still or carrier.locked:
         what = "a still picture" if carrier.still else "locked"

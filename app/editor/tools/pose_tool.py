@@ -1,7 +1,6 @@
-"""Posing by hand: handles are added where the shape is pressed, and pulled.
+"""Tool that poses: a press on the shape adds a handle, and drags move handles.
 
-A handle whose track's row is chosen is carried along that, or its drag is recorded; the rest of the
-tool is the same.
+If the row of a handle's track is selected, the drag keys the track or is recorded.
 """
 
 from collections.abc import Mapping
@@ -20,25 +19,24 @@ from engine.deform import BoundedPull
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class PoseTool(Tool):
-    """The pointer pulls handles."""
+    """The pointer drags handles."""
 
-    start: complex  # where it was pressed
-    handles: frozenset[int] = frozenset()  # those that are pulled, by id
-    taken: int | None = None  # the one that was there already under the pointer
-    at_target: bool = False  # whether they are pulled from where they are wanted
-    entry: NumericEntry = field(default_factory=NumericEntry)  # what is typed meanwhile
-    place: complex | None = None  # where it is; None before it has moved
-    moved: bool = False  # whether it has gone farther than a click may, or a way was typed
-    # The handle whose track takes the drag in place of the pose, and where that began.
+    start: complex  # place of the press
+    handles: frozenset[int] = frozenset()  # ids of the dragged handles
+    taken: int | None = None  # the existing handle under the press
+    at_target: bool = False  # whether the drag begins at the targets and not at the handles
+    entry: NumericEntry = field(default_factory=NumericEntry)  # typed offset
+    place: complex | None = None  # place of the pointer; None before it has moved
+    moved: bool = False  # whether it moved farther than in a click, or an offset was typed
+    # The handle whose track is keyed in place of the pose, and its place at the start.
     tracked: int | None = None
     origin: complex = 0j
-    # Whether the drag is recorded: then all places are of the scene, in which the body moves.
+    # Whether the drag is recorded; then places are in the scene, where the body moves.
     records: bool = False
-    stood: int | None = None  # the frame that the playhead has left for a key of the path
+    stood: int | None = None  # the playhead's frame before it went to a key of the path
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell that handles are dragged, and that a click adds one."""
         if spot.handle is not None:
             if project.layer.is_locked(spot.handle):
                 return (Hint("click", "to select; it is locked"),)
@@ -54,7 +52,7 @@ class PoseTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Take hold of a handle and of all that are selected with it, or of a new one."""
+        """Grab a handle with all selected handles, or add a handle."""
         if spot.ctrl or spot.shift or spot.on_ring:
             return None
         if spot.handle is not None:
@@ -81,7 +79,7 @@ class PoseTool(Tool):
         return pulling
 
     def _take_to_track(self, session: Session, pressed: int) -> None:
-        """Let the handle's track take the drag, if it is for that or is recorded."""
+        """Drag on the handle's track if its row is selected or the drag is recorded."""
         project, shown = self.project, self.project.layer_runtime.shown
         track = tracking.draggable_track(project, pressed)
         if session.records:
@@ -103,7 +101,7 @@ class PoseTool(Tool):
             tracking.start_recording(session, self.tracked, self.origin, gesture=self)
 
     def _take_key(self, session: Session, handle: int, frame: int) -> None:
-        """Take hold of the key of a track that is seen at a frame; the playhead goes there."""
+        """Grab the track key shown at a frame; the playhead goes there."""
         project, track = self.project, self.project.layer.track_of(handle)
         place = None if track is None else tracking.track_target(project, track, frame)
         if track is not None and place is not None:
@@ -112,13 +110,13 @@ class PoseTool(Tool):
             playback.scrub(session, frame)
 
     def move(self, session: Session, place: complex) -> None:
-        """Pull the handles as far as the pointer goes; each keeps the turn that it wishes."""
+        """Move the handles' targets by the pointer's offset; target rotations stay."""
         self.place = to_scene(self.project, place) if self.records else place
         self.moved = self.moved or self.is_away(session, self.start, self.place)
         self._pull(session)
 
     def type(self, session: Session, characters: str) -> None:
-        """Pull them as far as is typed, or along an axis; what is recorded is the hand alone."""
+        """Move the handles by the typed offset or along an axis; a recorded drag ignores typing."""
         if self.records:
             return
         self.entry.type(characters)
@@ -127,7 +125,7 @@ class PoseTool(Tool):
 
     @property
     def offset(self) -> complex:
-        """How far the pointer has come, or what was typed in place of that."""
+        """The pointer's offset, or the typed one."""
         return self.entry.constrain_offset(
             (self.start if self.place is None else self.place) - self.start
         )
@@ -154,9 +152,9 @@ class PoseTool(Tool):
         posing.drag_handles(session, as_far, gesture=self, hand=BoundedPull(pulled))
 
     def end(self, session: Session, _: complex) -> None:
-        """Let the handles go where they have come to, or keep the wish.
+        """Release the handles; forced targets stay beyond the handles' reach.
 
-        A click selects the one that it was on alone, or its group.
+        A click selects only the handle under it, or its group.
         """
         if self.records:
             tracking.stop_recording(session, has_moved=self.moved)
@@ -170,7 +168,7 @@ class PoseTool(Tool):
             editing.select_handles(session, self.project.layer.grouped_handles(self.taken))
 
     def cancel(self, session: Session) -> None:
-        """Take back what it did; the playhead goes back to where it was."""
+        """Undo the drag; the playhead goes back to its earlier frame."""
         if self.records:
             tracking.discard_recording(session)
         tracking.cancel_track_drag(self.project, self)
@@ -180,7 +178,7 @@ class PoseTool(Tool):
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """What was typed; else nothing: the handles show it."""
+        """The typed text; the handles show the rest."""
         entry = self.entry
         if not (entry.text or entry.axis):
             return ()
@@ -189,7 +187,6 @@ class PoseTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done until it ends."""
         if self.records:
             return (Hint("let go", "to end the recording"),)
         typed = (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
@@ -199,6 +196,6 @@ class PoseTool(Tool):
 
 
 def _movable_handles(project: Project) -> frozenset[int]:
-    """Return the selected handles but those that are locked."""
+    """Return the selected handles that are not locked."""
     handles = project.layer.handles
     return frozenset(h.id for h in handles if h.id in project.selected_handles and not h.locked)

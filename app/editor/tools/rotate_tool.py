@@ -1,6 +1,6 @@
-"""Turning the shape around a handle, by the ring around it or by a key.
+"""Tool that rotates the shape around a handle, by its ring or with a modifier key.
 
-A handle whose track's row is chosen is turned by that, and the pose stays.
+If the row of the handle's track is selected, the track is keyed and the pose stays.
 """
 
 import cmath
@@ -17,29 +17,26 @@ from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
 from app.editor.work import DragStart
 
-STEP = math.radians(15.0)  # of turning in steps
-LEAST_ARM = 12.0  # pixels of the screen from a handle, within which a press has no direction
+STEP = math.radians(15.0)  # step of a rotation that snaps
+LEAST_ARM = 12.0  # screen pixels around a handle; a press within has no direction
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class RotateTool(Tool):
-    """The pointer turns the shape around a handle."""
+    """The pointer rotates the shape around a handle."""
 
     handle: int
-    centre: complex  # where the handle is
-    start: complex  # where the pointer was pressed
-    turn: float  # by how much the shape was turned there at the start, in radians
-    on_track: bool  # whether the handle's track takes the turn in place of the pose
-    deletes: bool  # whether a click, which turns nothing, deletes the handle
-    swept: float = 0.0  # by how much the pointer has turned it, in radians
-    entry: NumericEntry = field(
-        default_factory=NumericEntry
-    )  # how many degrees are typed meanwhile
+    centre: complex  # place of the handle
+    start: complex  # place of the press
+    turn: float  # rotation of the shape there at the start, in radians
+    on_track: bool  # whether the handle's track is keyed in place of the pose
+    deletes: bool  # whether a click without a rotation deletes the handle
+    swept: float = 0.0  # rotation by the pointer, in radians
+    entry: NumericEntry = field(default_factory=NumericEntry)  # typed degrees
     moved: bool = False
 
     @classmethod
     def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell how the shape is turned."""
         if spot.on_ring:
             (handle,) = project.selected_handles
             is_alone = tracking.draggable_track(project, handle) is not None
@@ -47,12 +44,12 @@ class RotateTool(Tool):
             return (Hint("drag", what),)
         if spot.handle is None or project.layer.is_locked(spot.handle):
             return ()
-        # Of both gestures the one that no window manager takes for itself, as many do Alt+drag.
+        # The hint names the ring, since many window managers take Alt+drag.
         return (Hint("drag its ring", "to turn"),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Take hold of the ring around the selected handle, or of a handle with Alt."""
+        """Grab the ring around the selected handle, or a handle with Alt."""
         shown = project.layer_runtime.shown
         is_by_key = spot.handle is not None and spot.alt and not (spot.ctrl or spot.shift)
         is_by_ring = spot.on_ring and len(project.selected_handles) == 1
@@ -79,13 +76,13 @@ class RotateTool(Tool):
         return turning
 
     def move(self, session: Session, place: complex) -> None:
-        """Turn the shape as far as the pointer goes around the handle, maybe in steps."""
+        """Rotate the shape by the pointer's angle around the handle; it may snap to steps."""
         if not (self.moved or self.is_away(session, self.start, place)):
             return
         if not self.moved:
             arm = abs(self.start - self.centre) * self.project.view(session.screen).scale
             if arm < LEAST_ARM:
-                # From so near, the direction in which it leaves is where the turn begins.
+                # After a press this near, the rotation begins where the pointer leaves.
                 self.start = place
         self.moved = True
         swept = (place - self.centre) / (self.start - self.centre or 1)
@@ -95,7 +92,7 @@ class RotateTool(Tool):
             self._turn(session)
 
     def type(self, session: Session, characters: str) -> None:
-        """Turn the shape by as many degrees as are typed."""
+        """Rotate the shape by the typed degrees."""
         self.entry.type(characters)
         self.entry.axis = ""
         if self.entry.value is not None:
@@ -120,20 +117,19 @@ class RotateTool(Tool):
         posing.drag_handles(session, turned, gesture=self)
 
     def end(self, session: Session, _: complex) -> None:
-        """Let the shape go; delete the handle that was only clicked."""
+        """End the rotation; delete the handle after a mere click."""
         if self.deletes and not self.moved:
             posing.remove_handles(session, frozenset({self.handle}))
         elif not self.on_track:
             posing.release_drag(session)
 
     def cancel(self, session: Session) -> None:
-        """Take back what it did."""
         tracking.cancel_track_drag(self.project, self)
         super(RotateTool, self).cancel(session)
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """How far it is turned, and what was typed."""
+        """The rotation and the typed text."""
         sweep = RotationOverlay(
             handle=self.handle, angle=self.turn + self.swept, swept_angle=self.swept
         )
@@ -146,5 +142,4 @@ class RotateTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done until it ends."""
         return (Hint("turn", "by steps of 15°", "ctrl"), Hint("type", "a number of degrees"))

@@ -1,4 +1,4 @@
-"""Selecting handles, one by one or by a box, and choosing the layer to pose by a click on it."""
+"""Tools that select handles by a click or a box, and layers by a click."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -13,22 +13,21 @@ from app.motion import BoundingBox
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class SelectTool(Tool):
-    """The pointer spans a box to select what is in it, or has selected a handle by a click."""
+    """The pointer spans a selection box, or has selected a handle by a click."""
 
-    start: complex  # where it was pressed
-    place: complex  # where it is
-    adds: bool  # whether what was selected stays so
+    start: complex  # place of the press
+    place: complex  # place of the pointer
+    adds: bool  # whether earlier selected handles stay selected
     has_box: bool
 
     @classmethod
     def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell that dragging beside the shape selects."""
         is_free = spot.handle is None and not spot.on_shape and not spot.on_ring
         return (Hint("drag", "to select"),) if is_free else ()
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin a box; with Shift, on a handle, select it beside the others or not any more."""
+        """Begin a box; with Shift on a handle, add it to the selection or remove it."""
         has_box, at = spot.handle is None, spot.place
         if spot.on_ring or not (has_box or spot.shift):
             return None
@@ -45,11 +44,9 @@ class SelectTool(Tool):
         return selecting
 
     def move(self, _: Session, place: complex) -> None:
-        """Span the box up to the pointer."""
         self.place = place
 
     def end(self, session: Session, place: complex) -> None:
-        """Select what is in the box."""
         project, shown = self.project, self.project.layer_runtime.shown
         if shown is None or not self.has_box:
             return
@@ -67,19 +64,17 @@ class SelectTool(Tool):
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """The box."""
         return (BoxOverlay(corner=self.start, opposite=self.place),) if self.has_box else ()
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class PickLayerTool(Tool):
-    """The pointer has chosen a layer (not the last one); it does no more until it is let go."""
+    """A press makes another layer active; until the release it can be cancelled."""
 
     last: int
 
     @classmethod
     def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell which layer a click chooses."""
         layer = _pressed_other_layer(project, spot)
         if layer is None:
             return ()
@@ -87,7 +82,7 @@ class PickLayerTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Choose the layer that is seen there, if it is another one."""
+        """Make the visible layer at the place active, if it is another one."""
         layer = _pressed_other_layer(project, spot)
         if layer is None:
             return None
@@ -96,12 +91,12 @@ class PickLayerTool(Tool):
         return choosing
 
     def cancel(self, session: Session) -> None:
-        """Go back to the layer that was posed."""
+        """Make the earlier layer active again."""
         layering.set_active_layer(session, self.last)
 
 
 def _pressed_other_layer(project: Project, spot: PointerHit) -> int | None:
-    """Return the layer that a press at a spot is for, if it is not the one that is posed."""
+    """Return the layer that a press selects, if it is not the active layer."""
     if spot.handle is not None or spot.on_ring or spot.ctrl or spot.shift:
         return None
     return None if spot.layer in {None, project.active} else spot.layer

@@ -1,4 +1,4 @@
-"""All tools: adding one is adding it here."""
+"""The table of all tools."""
 
 from typing import Final
 
@@ -24,7 +24,7 @@ CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (CutBrushTool, KnifeTool, CutClic
 STIFFNESS_TOOLS: Final[tuple[type[Tool], ...]] = (StiffnessBrushTool, BoneTool)
 JOINT_TOOLS: Final[tuple[type[Tool], ...]] = (JointTool,)
 MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (MirrorAxisTool, Moving, AnchorTool)
-# A press is for the first that takes it; hints are told in this order.
+# The first tool that takes a press gets it; hints are shown in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
     MirrorAxisTool,
     Moving,
@@ -38,7 +38,7 @@ TOOLS: Final[tuple[type[Tool], ...]] = (
 
 
 def tools_of(session: Session) -> tuple[type[Tool], ...]:
-    """Return the tools of what the person does now: cut out, give a motion, move, or pose."""
+    """Return the tools of the present mode: cut out, set up a motion, move, or pose."""
     if session.project is not None and session.project.motion_setup is not None:
         return JOINT_TOOLS
     if session.cutting is not None:

@@ -1,4 +1,4 @@
-"""What a tool is: it takes a press, and then has the pointer until the button is let go."""
+"""The base class of tools: a tool takes a press, and then gets all events until the release."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
@@ -14,26 +14,26 @@ from app.editor.timeline_view import KeysByRow
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PointerHit:
-    """Where the pointer is, and what is under it."""
+    """The pointer's place, and the item under it."""
 
-    place: complex  # in the plane
-    handle: int | None = None  # the one under it
-    at_target: bool = False  # whether it is wanted there, and has not arrived
-    track_key: int | None = None  # the frame of the key under it, on the path of the chosen track
-    on_axis: bool = False  # on the grip of the axis at which poses are flipped
-    on_anchor: bool = False  # on the anchor of the layer that is posed
+    place: complex  # in the scene
+    handle: int | None = None  # the handle under the pointer
+    at_target: bool = False  # whether the target is there and not the handle itself
+    track_key: int | None = None  # frame of the key under it, on the selected track's path
+    on_axis: bool = False  # on the grip of the mirror axis
+    on_anchor: bool = False  # on the anchor of the active layer
     on_ring: bool = False  # on the ring around the selected handle
-    on_shape: bool = False  # on the layer that is posed
-    # The one seen there; with Alt held the next one behind the one that is posed.
+    on_shape: bool = False  # on the active layer
+    # The visible layer there; with Alt held, the next one behind the active layer.
     layer: int | None = None
-    ctrl: bool = False  # which keys are held
+    ctrl: bool = False  # whether the modifier keys are held
     shift: bool = False
     alt: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SelectionSnapshot:
-    """What was selected when a gesture began."""
+    """The selection when a gesture began."""
 
     handles: frozenset[int]
     keys: KeysByRow
@@ -41,46 +41,38 @@ class SelectionSnapshot:
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Tool(ABC):
-    """Something that the pointer does; an instance has it in hand, from press to release.
+    """A tool of the pointer; an instance is active from press to release.
 
-    Parameters
-    ----------
-    project : Project
-        In which it began.
-
-    Attributes
-    ----------
-    before : SelectionSnapshot
+    `before` is the selection at the press.
     """
 
     project: Project
     before: SelectionSnapshot = field(init=False)
 
     def __post_init__(self) -> None:
-        """Keep what is selected."""
         self.before = SelectionSnapshot(self.project.selected_handles, self.project.selected_keys)
 
     @classmethod
     @abstractmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Return what it would do at a spot, in words."""
+        """Return the hints for a press at a place."""
 
     @classmethod
     @abstractmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin at a spot; None where it is for another tool."""
+        """Begin at a place; return None to leave the press to another tool."""
 
     def move(self, session: Session, place: complex) -> None:  # noqa: B027 - not every tool cares
-        """Follow the pointer to another place of the plane."""
+        """Follow the pointer to a place in the scene."""
 
     def type(self, session: Session, characters: str) -> None:  # noqa: B027 - not every tool cares
-        """Take what is typed meanwhile."""
+        """Take characters that are typed during the drag."""
 
     def end(self, session: Session, place: complex) -> None:  # noqa: B027 - not every tool cares
-        """End where the pointer is."""
+        """End at the pointer's place."""
 
     def cancel(self, session: Session) -> None:
-        """Undo what it did to the document and to the selection."""
+        """Undo the tool's edits, and restore the selection."""
         self.project.selected_handles, self.project.selected_keys = (
             self.before.handles,
             self.before.keys,
@@ -89,20 +81,20 @@ class Tool(ABC):
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """What is drawn of it over the picture."""
+        """The tool's overlays over the drawing."""
         return ()
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done until it ends."""
+        """The hints until the release."""
         return ()
 
     def is_away(self, session: Session, start: complex, place: complex) -> bool:
-        """Tell whether the pointer has gone farther than a click may."""
+        """Return whether the pointer has moved farther than in a click."""
         return abs(place - start) * self.project.view(session.screen).scale > CLICK
 
 
 def to_scene(project: Project, place: complex) -> complex:
-    """Return where a place of the layer that is posed, by itself, is in the scene."""
+    """Convert a place of the active layer's own space to the scene."""
     shown = project.layer_runtime.shown
     return place if shown is None else complex(shown.placement.apply(np.array([place]))[0])

@@ -1,4 +1,4 @@
-"""The pointer in the viewport, from press to release: the tool that takes the press has it."""
+"""Pointer events in the viewport: the tool that takes a press gets all events until the release."""
 
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -8,19 +8,19 @@ from app.editor.tools.tool import PointerHit
 
 @with_project
 def press_pointer(session: Session, project: Project, spot: PointerHit) -> None:
-    """Give a press to the first tool that takes it."""
+    """Pass a press to the first tool that takes it."""
     if project.layer_runtime.shown is not None:
         gestures = (tool.press(session, project, spot) for tool in tools_of(session))
         session.active_tool = next((gesture for gesture in gestures if gesture is not None), None)
 
 
 def move_pointer(session: Session, place: complex) -> None:
-    """Follow the pointer to another place of the plane."""
+    """Pass the pointer's place in the scene to the active tool."""
     _move_pointer(session, place, snaps=False)
 
 
 def move_pointer_in_steps(session: Session, place: complex) -> None:
-    """Follow the pointer; what is turned turns by round angles."""
+    """Pass the pointer's place to the active tool; rotations snap to steps."""
     _move_pointer(session, place, snaps=True)
 
 
@@ -31,18 +31,18 @@ def _move_pointer(session: Session, place: complex, *, snaps: bool) -> None:
 
 
 def type_in_tool(session: Session, characters: str) -> None:
-    """Give what is typed during a drag to the tool in hand."""
+    """Pass characters typed during a drag to the active tool."""
     if session.active_tool:
         session.active_tool.type(session, characters)
 
 
 def release_pointer(session: Session, place: complex) -> None:
-    """End what the pointer does where it is."""
+    """End the active tool."""
     _release_pointer(session, place, insists=False)
 
 
 def release_pointer_forced(session: Session, place: complex) -> None:
-    """End what the pointer does where it is; what it pulls is wanted there, however far that is."""
+    """End the active tool; targets stay even if the handles cannot reach them."""
     _release_pointer(session, place, insists=True)
 
 
@@ -54,22 +54,21 @@ def _release_pointer(session: Session, place: complex, *, insists: bool) -> None
 
 
 def cancel_tool(session: Session) -> None:
-    """End what the pointer does, and take it back."""
+    """Cancel the active tool, and undo its edits."""
     gesture, session.active_tool = session.active_tool, None
     if gesture:
         gesture.cancel(session)
 
 
 def hover_handle(session: Session, handle: int | None) -> None:
-    """Note which handle is under the pointer."""
+    """Note the handle under the pointer."""
     session.hovered = handle
 
 
 def show_hint(session: Session, hint: str) -> None:
-    """Show a hint in the status bar."""
     session.hint = hint
 
 
 def note_space_used(session: Session) -> None:
-    """Note that Space was held to move the view, so that letting it go does not play."""
+    """Note that Space was held to pan the view, so that its release does not play."""
     session.is_space_used = True

@@ -1,7 +1,7 @@
-"""What goes on behind the scenes: jobs of the workers, and what they are to bring.
+"""Background work: jobs of the workers, and pending changes.
 
 In: pure computations on frozen input.
-Out: their results, on the main thread; promises of what will change the document.
+Out: their results, on the main thread; pending changes of the document.
 Imports: `app.document`, `app.solving`, `app.editor.action`.
 """
 

@@ -1,8 +1,8 @@
 """Worker threads for long computations.
 
-There are four: one for what the person waits for, such as the pose under the hand, one for
-exports, one for what is shown and may take a second, such as in-betweens, and one for what is to be
-kept. None keeps another waiting, and one that never comes to an end can be left behind.
+There are four lanes of one thread each. "hand" is for awaited results such as a dragged pose,
+"export" for exports. "display" is for slower results such as in-betweens, "keep" for writing to
+disk. No lane blocks another. A job that never ends can be abandoned.
 """
 
 import atexit
@@ -17,24 +17,24 @@ from typing import Any, Literal, get_args
 from app.errors import CANCELLED, LissomError, listen_to_progress
 
 LaneName = Literal["hand", "export", "display", "keep"]
-PATIENCE = 10.0  # seconds that the end of the program waits for what runs
-MOMENT = 0.5  # seconds that it waits for what was given up
+PATIENCE = 10.0  # seconds that the end of the program waits for running jobs
+MOMENT = 0.5  # seconds that it waits for abandoned jobs
 
 
 @dataclass(frozen=True, slots=True)
 class JobKind:
-    """What a job is for."""
+    """Label, complaint and lane of a job."""
 
-    label: str  # in words that the status bar can show
-    complaint: str = ""  # what is said where it fails
-    # On which thread it runs: that for what is under the "hand", for an "export", for what is to be
-    # on "display", or for what the disk is to "keep".
+    label: str  # shown in the status bar
+    complaint: str = ""  # shown if the job fails
+    # The thread of the job: "hand" for drags, "export" for exports, "display" for shown values, or
+    # "keep" for writing to disk.
     lane: LaneName = "display"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Job:
-    """A pure computation on frozen input, and what is done with its result."""
+    """A pure computation on frozen input, and the callbacks for its result."""
 
     kind: JobKind
     work: Callable[[], Any]  # runs on a worker thread; touches nothing mutable and no GL
@@ -44,18 +44,18 @@ class Job:
 
 @dataclass(slots=True, eq=False)
 class _Lane:
-    """A worker thread, and what it works on."""
+    """A worker thread and its running job."""
 
     thread: threading.Thread | None = None
     running: Job | None = None
     since: float = 0.0
     is_stale: bool = False
-    share: float | None = None  # that is done, where the job tells it
+    share: float | None = None  # part of the job that is done, if the job reports it
 
 
 @dataclass(slots=True, eq=False)
 class _Hold:
-    """Kinds of which no job begins, all of them where none is named, but for the first few."""
+    """Kinds whose jobs do not begin, or all kinds if none is named; the first few still begin."""
 
     kinds: frozenset[JobKind]
     first: int
@@ -67,38 +67,33 @@ class _Hold:
 class Jobs:
     """The queue and its worker threads.
 
-    A job is unfinished until its result is delivered. One whose kind was put in again or dropped
-    before that is stale: if it waits it never starts, and its result is thrown away. Those that
-    were added are all done.
-
-    Parameters
-    ----------
-    clock : callable
-        Seconds, for telling how long a job runs.
+    A job is unfinished until its result is delivered. A job becomes stale if its kind is put again
+    or dropped: it never starts, or its result is dropped. Jobs queued by `add` are all done.
+    `clock` gives seconds, for the running time of jobs.
     """
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
-        # Called on the worker's thread whenever something is there to deliver.
+        # Called on the worker's thread when a result is ready to deliver.
         self.wake: Callable[[], None] = lambda: None
-        self.delivered = 0  # how many results were handed over so far
+        self.delivered = 0  # number of delivered results
         self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
         self._finished: list[tuple[JobKind, Callable[[], None]]] = []
         self._is_closed = False
-        # The end of the program takes BLAS away, and a thread that is in it crashes.
+        # The end of the program unloads BLAS, and a thread inside BLAS then crashes.
         atexit.register(self.close)
         self._lanes: dict[LaneName, _Lane] = {name: _Lane() for name in get_args(LaneName)}
         self._left: list[_Lane] = []
         self._holds: list[_Hold] = []
 
     def put(self, job: Job) -> None:
-        """Queue a job in place of an unfinished one of its kind."""
+        """Queue a job in place of an unfinished job of its kind."""
         self.drop(job.kind)
         self.add(job)
 
     def add(self, job: Job) -> None:
-        """Queue a job, be there others of its kind or not."""
+        """Queue a job; unfinished jobs of its kind stay."""
         with self._condition:
             self._staff(job.kind.lane)
             self._waiting.append(job)
@@ -106,10 +101,9 @@ class Jobs:
 
     @contextmanager
     def held(self, *kinds: JobKind, first: int = 0) -> Iterator[None]:
-        """Let no job of these kinds begin within the block, or of any kind where none is given.
+        """Hold back jobs of these kinds within the block, or all jobs if no kind is given.
 
-        A job that is held waits, and others of its lane begin before it. The first few begin all
-        the same.
+        A held job waits, and other jobs of its lane overtake it. The first few jobs still begin.
         """
         hold = _Hold(frozenset(kinds), first)
         with self._condition:
@@ -128,11 +122,11 @@ class Jobs:
             self._forget(kind)
 
     def abandon(self, kind: JobKind) -> None:
-        """Give up a job of this kind that may never end; what waits behind it goes on elsewhere.
+        """Abandon a job of this kind that may never end; jobs behind it move to a new thread.
 
-        Its result is thrown away, and it has failed as far as anybody is told. One that tells how
-        far it is ends when it tells so next. Where a newer one of its kind waits for it to end,
-        nobody is told anything: that one begins.
+        Its result is dropped, and the job is reported as failed. A job that reports progress ends
+        at its next report. If a newer job of its kind waits, no failure is reported, and that job
+        begins.
         """
         with self._condition:
             left = {
@@ -153,7 +147,7 @@ class Jobs:
 
     @property
     def kinds(self) -> tuple[JobKind, ...]:
-        """The kinds that are unfinished: first what is finished already, last what still waits."""
+        """Kinds of unfinished jobs: finished but undelivered first, waiting last."""
         with self._condition:
             running = [
                 lane.running.kind
@@ -165,19 +159,19 @@ class Jobs:
 
     @property
     def is_closed(self) -> bool:
-        """Whether no job begins any more."""
+        """Whether the queue is closed and no job begins any more."""
         return self._is_closed
 
     @property
     def abandoned_count(self) -> int:
-        """How many jobs that were given up still run."""
+        """Number of abandoned jobs that still run."""
         with self._condition:
             return sum(lane.thread is not None and lane.thread.is_alive() for lane in self._left)
 
     def running_for(self, seconds: float) -> tuple[JobKind, ...]:
-        """Return the kinds of jobs that run since so many seconds or more.
+        """Return the kinds of jobs that have run for at least so many seconds.
 
-        Stale ones are among them where others wait for them to end.
+        A stale job counts if other jobs wait for its end.
         """
         start = self._clock() - seconds
         with self._condition:
@@ -190,7 +184,7 @@ class Jobs:
             )
 
     def share_of(self, kind: JobKind) -> float | None:
-        """Return how much of a job that runs is done, from 0 to 1; None where it does not tell."""
+        """Return the finished part of a running job, 0 to 1; None if the job does not report it."""
         with self._condition:
             for lane in self._lanes.values():
                 if lane.running is not None and lane.running.kind == kind:
@@ -198,12 +192,12 @@ class Jobs:
             return None
 
     def deliver(self) -> None:
-        """Hand over what is finished; on the main thread, once a frame."""
+        """Deliver the finished results; on the main thread, once a frame."""
         with self._condition:
             due = len(self._finished)
         for _ in range(due):
             with self._condition:
-                # One at a time: what is handed over may make the next one stale.
+                # One at a time: a delivered result may make the next one stale.
                 if not self._finished:
                     return
                 _, hand_over = self._finished.pop(0)
@@ -211,7 +205,7 @@ class Jobs:
             hand_over()
 
     def wait_until_idle(self, timeout: float = 60.0) -> bool:
-        """Wait until all that is not held is to be delivered; return whether that came in time."""
+        """Wait until all jobs that are not held have finished; return False on a timeout."""
         with self._condition:
             return self._condition.wait_for(
                 lambda: all(
@@ -222,18 +216,10 @@ class Jobs:
             )
 
     def close(self, patience: float = PATIENCE) -> bool:
-        """Drop what waits, and end the threads when what runs is done.
+        """Drop waiting jobs, and end the threads after their running jobs.
 
-        Parameters
-        ----------
-        patience : float
-            Seconds to wait for that; for what was left behind, at most `MOMENT`.
-
-        Returns
-        -------
-        bool
-            Whether all have ended. If not, the program must end without taking anything down that
-            they may use.
+        `patience` is in seconds; abandoned jobs get at most `MOMENT`. Return whether all threads
+        have ended. If not, the program must end without freeing values that the threads may use.
         """
         with self._condition:
             self._is_closed = True
@@ -248,22 +234,21 @@ class Jobs:
         return is_over
 
     def _staff(self, name: LaneName) -> None:
-        """Give a lane its thread."""
+        """Start the thread of a lane."""
         lane = self._lanes[name]
         if lane.thread is None:
             work = partial(self._work, lane, name)
             thread = threading.Thread(target=work, name=name, daemon=True)
             thread.start()
-            # Only now: where the system has refused it, the next job asks for it again.
+            # Set after the start: if the system refuses the thread, the next job asks for it again.
             lane.thread = thread
 
     def _fail(self, jobs: list[Job]) -> None:
-        """Tell those who asked for some jobs that nothing comes of them."""
+        """Report jobs as failed."""
         failed = [(job.kind, partial(job.failed, LissomError(CANCELLED))) for job in jobs]
         self._finished.extend(failed)
 
     def _is_waiting(self, name: LaneName) -> bool:
-        """Tell whether a job waits for a lane."""
         return any(job.kind.lane == name for job in self._waiting)
 
     def _forget(self, kind: JobKind) -> None:
@@ -293,11 +278,11 @@ class Jobs:
                 lane.running = None
                 self._condition.notify_all()
             self.wake()
-            # While the thread waits they would keep alive what they hold, such as a whole drawing.
+            # A waiting thread would keep large values alive through these variables.
             del job, hand_over
 
     def _hear(self, lane: _Lane, share: float) -> None:
-        """Note how far a job is, on its own thread; end it where it was given up."""
+        """Note a job's progress on its own thread; end the job if it was abandoned."""
         if self._is_closed or lane in self._left:
             raise LissomError(CANCELLED)
         lane.share = share

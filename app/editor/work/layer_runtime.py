@@ -1,4 +1,4 @@
-"""A layer as a window has it, and its twin by another method."""
+"""The window's runtime values of a layer, and of its comparison by another method."""
 
 from dataclasses import dataclass, field, replace
 from typing import Self
@@ -14,42 +14,42 @@ from engine.domain import CutOut
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class ComparisonRuntime:
-    """A layer by another method, which its own is compared with."""
+    """A layer animated by another method, for comparison with its own."""
 
-    original: Layer  # the layer as it is
-    layer: Layer  # the same by the other variant, where the method is one
+    original: Layer  # the layer with its own method
+    layer: Layer  # the layer with the other variant, if the method is a variant
     method: Variant | Baseline
     shown: DisplayedFrame | None = None
 
     def clip(self, document: Document) -> Clip:
-        """Return it in the time of its scene."""
+        """Return the layer in the time of its scene."""
         baseline = self.method if isinstance(self.method, Baseline) else None
         return replace(clip_of(document, self.layer.id), layer=self.layer, baseline=baseline)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class LayerRuntime:
-    """A layer as a window has it."""
+    """The window's runtime values of a layer: decoded picture, caches and shown frame."""
 
     file: PictureFile
-    picture: Picture  # decoded from that
-    is_opaque: bool  # whether it has no transparency: its background was found by its colour
-    # Its in-betweens on a coarse mesh, and on its own one if that is another and is there.
+    picture: Picture  # the decoded picture
+    is_opaque: bool  # whether the picture has no transparent pixels
+    # In-betweens on a coarse mesh, and on the layer's own mesh if it is finer and prepared.
     store: InbetweenCache
     fine: InbetweenCache | None = None
     shown: DisplayedFrame | None = None  # None before the first frame of the window
-    corrected: CorrectedFrames | None = None  # the corrections of its frames
-    rig: Rig | None = None  # for the poses to come; None before the first of them
-    cut: Derived[CutOut, CutOutResult]  # what is left of the picture, as the newest cut-out has it
-    # That made small, for the list of layers.
+    corrected: CorrectedFrames | None = None  # corrections of the layer's frames
+    rig: Rig | None = None  # for solving poses; None before the first one
+    cut: Derived[CutOut, CutOutResult]  # the picture after the newest cut-out
+    # The small picture for the list of layers.
     small: Derived[CutOutResult, Bytes | None] = field(default_factory=lambda: Derived(None))
-    comparison: ComparisonRuntime | None = None  # beside it, while the viewport is split
+    comparison: ComparisonRuntime | None = None  # the compared method, while the viewport is split
 
     @classmethod
     def of(cls, clip: Clip, picture: Picture, *, among: int = 1) -> Self:
-        """Return a layer as the window has it at first: its keys are shown; in-betweens follow.
+        """Return the initial runtime of a layer: its keys are shown, and in-betweens follow.
 
-        `among` tells how many layers there are.
+        `among` is the number of layers.
         """
         return cls(
             picture=picture,
@@ -62,7 +62,7 @@ class LayerRuntime:
         )
 
     def releasable_bytes(self, clip: Clip) -> int:
-        """Return how many bytes `rest` lets go, or will once series show all of a clip."""
+        """Return the bytes that `release_intermediates` frees, now or once all series are there."""
         if self.store.has_failed(clip, "series"):
             return 0
         stores = filter(None, (self.store, self.fine))
@@ -72,9 +72,9 @@ class LayerRuntime:
         return shown + outline + (0 if self.corrected is None else self.corrected.nbytes)
 
     def release_intermediates(self, clip: Clip) -> None:
-        """Let go of what all that is shown of a clip was made with; an edit needs it again.
+        """Free the intermediate values of a clip's in-betweens; an edit computes them again.
 
-        It is most of what a layer with keys takes.
+        They are most of the memory of a layer with keys.
         """
         stores = [store for store in (self.store, self.fine) if store is not None]
         if needs_correction(clip) or not all(store.has(clip) for store in stores):

@@ -1,4 +1,4 @@
-"""What is on its way to the document, and what is to be done once it is there."""
+"""Pending changes of the document, and actions that wait for them."""
 
 from dataclasses import dataclass
 from math import inf
@@ -10,22 +10,22 @@ from app.solving import KeyResolver
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Promise:
-    """A result of the worker that is on its way."""
+    """A pending result of the worker."""
 
-    label: str  # what comes, in words that the status bar can show
-    changes: bool = True  # whether it changes the document when it comes; a save does not
-    key_resolver: KeyResolver | None = None  # keys that are being solved again, and how far that is
-    motion_job: MotionJob | None = None  # a motion on its way, and how far that is
+    label: str  # shown in the status bar
+    changes: bool = True  # whether it changes the document; a save does not
+    key_resolver: KeyResolver | None = None  # keys that are solved again, with progress
+    motion_job: MotionJob | None = None  # a pending motion, with progress
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Afterwards:
-    """What was asked for, and is done as soon as nothing is on its way any more."""
+    """An action that runs as soon as no change is pending."""
 
     then: Action
-    what: str  # the same in words: "Save", "Close"
-    after_saves: bool = False  # whether it also waits for a save that is under way
-    # The clock's seconds when it is done whatever is still on its way: a worker that never ends is
-    # to delay neither saving nor closing.
+    what: str  # the label: "Save", "Close"
+    after_saves: bool = False  # whether it also waits for a running save
+    # Seconds of the clock at which it runs even if changes are pending: an endless worker must
+    # delay neither saving nor closing.
     until: float = inf
-    position: int | None = None  # of the history when that was asked; None if it changes nothing
+    position: int | None = None  # of the history at the request; None if it changes nothing

@@ -1,4 +1,4 @@
-"""A pose that the hand has asked for, on its way to rest."""
+"""A pose drag: a requested pose, from the press until the pose rests."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -12,23 +12,16 @@ from app.editor.work.promise import Promise
 from app.solving import DragSolver
 from engine.deform import BoundedPull
 
-# Newton steps towards one wish; a drag comes to rest in far fewer.
+# Newton steps towards one target; a drag comes to rest in far fewer.
 MOST_STEPS = 600
 ROUNDING = 1e-9  # pixels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DragStart:
-    """A pose as a pull begins with it, by the ids of the layer's handles.
+    """The pose at the start of a drag, by the ids of the layer's handles.
 
-    Parameters
-    ----------
-    places : mapping of int to complex
-        Where the handles are.
-    turns : mapping of int to float
-        By how much the shape turns there, in radians.
-    targets : mapping of int to Target
-        Where they are wanted.
+    `places` are the handles' places. `angles` are the rotations of the shape there, in radians.
     """
 
     places: Mapping[int, complex]
@@ -37,7 +30,6 @@ class DragStart:
 
     @classmethod
     def of(cls, layer: Layer, pose: Pose) -> "DragStart":
-        """Return the start that a pose of a layer is."""
         f, identities = layer.map_of(pose), [handle.id for handle in layer.handles]
         at = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
         places = dict(zip(identities, f(at).tolist(), strict=True))
@@ -51,72 +43,69 @@ class DragStart:
         turns: Mapping[int, float],
         targets: Mapping[int, Target],
     ) -> "DragStart":
-        """Return the start with handles at some places, wanted there unless a target says else."""
+        """Return the start for handles at some places; a handle without a target gets its place."""
         wanted = {i: targets.get(i) or Target(position=places[i]) for i in places}
         return cls(places=places, angles=turns, targets=wanted)
 
 
-# Returns where handles are wished, of a pull's start and of what was wished of it before.
+# Computes new targets from the start of a drag and its earlier targets.
 TargetChange = Callable[[DragStart, Mapping[int, Target]], Mapping[int, Target]]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class Pull(Promise):
-    """Handles of a layer at a frame, wished elsewhere, and how far the solver has followed.
+    """A pose drag of a layer at a frame: targets of handles, and the solver's progress.
 
-    It lives until the pose rests, wherever the playhead goes and whatever else is done meanwhile:
-    each pose that the solver finds takes the place of the one before, in the step of history that
-    is its own and in all later ones.
+    It lives until the pose rests, independent of the playhead and of other edits. Each pose of the
+    solver replaces the previous one, in its own history step and in all later ones.
 
-    Parameters
+    Attributes
     ----------
     clip : Clip
-        The layer as it was when it began, which the solver knows, in its scene's time.
+        The layer at the start, in its scene's time; the solver works on it.
     frame : int
-        Where the pose belongs now: it moves with its key.
+        The present frame of the pose: it moves with its key.
     gesture : object
-        What is one step of undo together.
+        Edits of one gesture are one undo step.
     start : DragStart, optional
-        None as long as the in-between that it begins with is not worked out.
+        None while the in-between at the start is not computed.
     before : Pose, optional
-        The one that the key or the frame had; None for a new key.
+        The pose of the key or the frame before the drag; None for a new key.
     is_keyed : bool
-        Whether a key has the pose, as the person wanted when it began.
-    wishes : dict of object to TargetChange
-        By the gestures that they are of, in order; each knows what was wished before it.
-    hands : dict of object to Hand
-        By the gestures that pull handles, told by their ids, until the pose has come to rest.
-    ways : dict of object to complex
-        By the gestures that move the layer as a whole. The solver knows nothing of that: what it
-        finds is moved, as exactly as it is.
+        Whether a key holds the pose: the auto-key setting at the start.
+    target_changes : dict of object to TargetChange
+        By gesture, in order; each change gets the targets before it.
+    dragged_targets : dict of object to BoundedPull
+        By gesture, until the pose rests.
+    translations : dict of object to complex
+        Moves of the whole layer, by gesture. They are applied to the solver's result exactly and
+        do not change it.
     rests : bool
-        Whether the pose that it begins with is at rest: merely moved, it stays as it is.
+        Whether the pose at the start is at rest: a mere move keeps it.
     targets : mapping of int to Target, optional
-        What all of that comes to; None as long as there is no start.
-    pulled : frozenset of int
-        The ids of the handles of which something is wished.
+        The result of all changes; None without a start.
+    dragged_handles : frozenset of int
+        Ids of the handles with changed targets.
     position : int
-        Of the history when something was wished last.
-    is_held : bool
-        Whether the hand still pulls.
+        Of the history at the last change of targets.
     drag : DragSolver, optional
-        Where the solver is; None until its first steps are done.
+        The solver's state; None until its first steps are done.
     solved : tuple of mapping of int to Target and tuple of BoundedPull, optional
-        The targets that these steps were towards, and the hands that pulled.
+        The targets and the bounded pulls of the solver's last steps.
     steps : int
         Newton steps towards the present targets.
     found : Pose, optional
-        Where the solver is, as a pose; at first the one that was there before.
+        The solver's pose, without translations.
     newest : Pose, optional
-        The same, moved as the layer is moved.
+        The solver's pose with the translations.
     kept : Pose, optional
-        What the document has of it; None as long as that is nothing.
+        The committed pose; None before the first commit.
     tried : Pose, optional
-        The one whose in-betweens are being prepared, once the hand has let go.
+        The pose whose in-betweens are prepared, after the release.
     trial : Derived
-        The layer's clip with it, as long as the document stays: several ask for it in each frame.
+        The layer's clip with `tried`, cached since each frame asks for it several times.
     ready : Pose, optional
-        The newest one whose in-betweens are there: the playhead that leaves it finds them.
+        The newest pose with prepared in-betweens, committed when the playhead leaves.
     is_left : bool
         Whether the playhead is elsewhere.
     """
@@ -152,14 +141,14 @@ class Pull(Promise):
     def change_targets(
         self, gesture: object, wish: TargetChange, hand: BoundedPull | None = None
     ) -> None:
-        """Wish something else of a gesture, in place of what it wished before."""
+        """Set a gesture's change of targets, in place of its earlier one."""
         self.target_changes[gesture] = wish
         if hand is not None:
             self.dragged_targets[gesture] = hand
         self.update_targets()
 
     def move(self, gesture: object, way: complex) -> None:
-        """Let a gesture move the layer as a whole, so far from where it began."""
+        """Set a gesture's translation of the whole layer from the start."""
         self.translations[gesture] = way
         self.change_targets(gesture, _nothing)
         pose = self.found or self.before
@@ -167,14 +156,14 @@ class Pull(Promise):
             self.take(pose)
 
     def take(self, pose: Pose) -> Pose:
-        """Take note of where the solver is; return that as it is moved."""
+        """Store the solver's pose; return it with the translations."""
         way = sum(self.translations.values())
         self.found = pose
         self.newest = _moved_pose(self.clip.layer, pose, way) if way else pose
         return self.newest
 
     def revert(self, gesture: object) -> None:
-        """Take back what a gesture wished."""
+        """Remove a gesture's targets and translation."""
         del self.target_changes[gesture]
         self.dragged_targets.pop(gesture, None)
         if self.translations.pop(gesture, None) and self.found is not None:
@@ -182,12 +171,12 @@ class Pull(Promise):
         self.update_targets()
 
     def force_targets(self) -> None:
-        """Let what hands pulled be wanted where they let go, however far that is."""
+        """Keep the released positions as targets even if they cannot be reached."""
         self.dragged_targets = {}
         self.steps = 0
 
     def release(self) -> None:
-        """Let what hands pulled be wanted where it is from now on; a pose at rest stays."""
+        """Move the dragged targets to the reached places; a pose at rest stays."""
         if self.drag is None or self.targets is None:
             return
         before, hands = self.targets, self.dragged_targets
@@ -199,7 +188,7 @@ class Pull(Promise):
             self.target_changes[gesture] = partial(_moved, self.target_changes[gesture], own)
         self.dragged_targets = {}
         self.update_targets()
-        # Unless a later wish is for a place that does not depend on the one before it.
+        # The pose stays unless a later gesture has set an absolute target.
         found = {**before, **places}
         if all(abs(self.targets[i].position - found[i].position) < ROUNDING for i in found):
             self.solved = (self.targets, ())
@@ -207,24 +196,24 @@ class Pull(Promise):
 
     @property
     def reached(self) -> Mapping[int, Target]:
-        """Where handles that hands pull would be wanted if these let go now, by their ids."""
+        """Targets of dragged handles after a release at this moment, by id."""
         if self.drag is None or self.targets is None or not self.dragged_targets:
             return {}
         return self._moved(self.drag.release(self.targets, tuple(self.dragged_targets.values()))[1])
 
     @property
     def world_targets(self) -> Mapping[int, Target] | None:
-        """The targets, moved as the layer is; None as long as there is no start."""
+        """The targets with the translations; None without a start."""
         return None if self.targets is None else self._moved(self.targets)
 
     def _moved(self, targets: Mapping[int, Target]) -> Mapping[int, Target]:
         return _moved_targets(targets, dict.fromkeys(targets, sum(self.translations.values())))
 
     def update_targets(self) -> None:
-        """Work out the targets anew."""
+        """Compute the targets again."""
         self.steps = 0
         if self.start is None:
-            # Those of a start that was left knew other handles.
+            # Targets of the dropped start were for other handles.
             self.targets, self.dragged_handles = None, frozenset()
         else:
             self.targets = combine_targets(self.start, self.target_changes.values())
@@ -232,12 +221,11 @@ class Pull(Promise):
 
     @property
     def layer(self) -> int:
-        """The id of its layer."""
         return self.clip.layer.id
 
     @property
     def is_rigid(self) -> bool:
-        """Whether there is nothing to be solved, as a pose at rest is but moved."""
+        """Whether the drag only moves a pose at rest, so that nothing needs solving."""
         return (
             self.rests
             and bool(self.translations)
@@ -246,7 +234,7 @@ class Pull(Promise):
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether the solver has found the pose, and moves nothing any more."""
+        """Whether the solver has found the final pose."""
         if self.is_rigid:
             return self.found is not None
         is_over = self.drag is not None and self.drag.is_over
@@ -255,12 +243,12 @@ class Pull(Promise):
 
     @property
     def is_settled(self) -> bool:
-        """Whether the document has the pose at rest, and hands that let go have given in."""
+        """Whether the final pose is committed, and released targets are clamped."""
         is_done = self.is_held or not self.dragged_targets
         return self.is_at_rest and self.kept is self.newest and is_done
 
     def is_in(self, history: History) -> bool:
-        """Tell whether the document, as it is now, has a pose of it, or is to have the first."""
+        """Return whether the present document has a pose of this drag, or will get the first."""
         if self.kept is None:
             return True
         layers = history.document.layers
@@ -273,14 +261,14 @@ class Pull(Promise):
         return any(pose.phi is self.kept.phi for pose in poses)
 
     def brought_to(self, pose: Pose) -> PoseReplacement:
-        """Return how a layer of any step of history has a pose of this pull."""
+        """Return the function that puts a pose of this drag into a layer of any history step."""
         then = {handle.id: handle.position for handle in self.clip.layer.handles}
 
         def of(layer: Layer, earlier: Pose) -> Pose:
             now = {handle.id: handle.position for handle in layer.handles}
             if now == then and earlier.targets.keys() == pose.targets.keys() == then.keys():
                 return pose
-            # Handles came, went or were put elsewhere since: of those nothing is wished yet.
+            # Handles have changed meanwhile; new handles have no targets yet.
             start = DragStart.of(layer, replace(pose, targets=earlier.targets))
             targets = {}
             for identity, position in now.items():
@@ -298,7 +286,7 @@ def _moved(
     start: DragStart,
     targets: Mapping[int, Target],
 ) -> Mapping[int, Target]:
-    """Return what is wished, moved as far as hands, and joints beside them, have given in."""
+    """Return the targets of a change, moved to the places that the drag reached."""
     joints = {i: targets[i] for i in moves if i in targets}
     return _moved_targets({**joints, **wish(start, targets)}, moves)
 
@@ -313,33 +301,33 @@ def _moved_targets(
 
 
 def _moved_pose(layer: Layer, pose: Pose, way: complex) -> Pose:
-    """Return a pose of a layer moved, with all that is wanted of it; it is as distorted."""
+    """Return a moved pose with its targets; its distortion stays the same."""
     targets = _moved_targets(pose.targets, dict.fromkeys(pose.targets, way))
     return replace(pose.with_map(layer.map_of(pose).moved(1.0, way)), targets=targets)
 
 
 def _nothing(_: DragStart, __: Mapping[int, Target]) -> Mapping[int, Target]:
-    """Return no wishes: those that there are stay."""
+    """Return no changes of targets."""
     return {}
 
 
 def absolute_targets(
     wishes: Mapping[int, Target], _: DragStart, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
-    """Return wishes that do not depend on where a pull begins."""
+    """Return targets that are independent of the drag's start."""
     return {i: wish for i, wish in wishes.items() if i in targets}
 
 
 def combine_targets(start: DragStart, wishes: Iterable[TargetChange]) -> Mapping[int, Target]:
-    """Return what some wishes, one after the other, come to."""
+    """Return the targets after all changes in order."""
     targets = dict(start.targets)
     for wish in wishes:
         for identity, wished in wish(start, targets).items():
-            # What a later version wrote about a target stays.
+            # Unknown fields of a target, written by a later version, stay.
             targets[identity] = replace(wished, unknown=targets[identity].unknown)
     return targets
 
 
 def find_changed_handles(start: DragStart, wishes: Iterable[TargetChange]) -> frozenset[int]:
-    """Return the ids of the handles of which some wishes say anything."""
+    """Return the ids of the handles with changed targets."""
     return frozenset(identity for wish in wishes for identity in wish(start, start.targets))

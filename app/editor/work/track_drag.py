@@ -1,4 +1,4 @@
-"""What a hand does with a track: a handle that it carries, and a drag that is recorded."""
+"""Track drags: a handle that is dragged on its track, and a recorded drag."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -9,24 +9,23 @@ from app.editor.work.promise import Promise
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class TrackDrag(Promise):
-    """A handle at a frame, wanted elsewhere or turned by its own track.
+    """A handle with a new target or rotation at a frame, on its own track.
 
-    It is a promise until the track has the key, which it gets once it is known what that is
-    relative to.
+    It is pending until the track has the key, which needs the track's base motion.
 
-    Parameters
+    Attributes
     ----------
-    layer, handle : int
-        Ids; the handle is the first one of the track's.
+    handle : int
+        The first handle of the track.
     frame : int
-        Of the scene.
+        In scene time.
     gesture : object
-        What is one step of undo together.
+        Edits of one gesture are one undo step.
     place : complex
-        Where the handle is wanted, on the layer by itself.
+        Target of the handle, in the layer's own space.
     turn : float, optional
-        By how much the shape is to be turned there, in radians; the place is then where the handle
-        is, for a track that wants it nowhere yet.
+        Rotation of the shape there, in radians. For a track without a target, `place` is then the
+        present place of the handle.
     """
 
     label: str = "Keys of a handle"
@@ -39,7 +38,7 @@ class TrackDrag(Promise):
 
 
 class RecordedSample(NamedTuple):
-    """Where in the scene a handle was dragged: when, in frames, which go on where a loop ends."""
+    """A dragged place of a handle in the scene, at a frame that counts on over loop ends."""
 
     time: float
     place: complex
@@ -49,33 +48,30 @@ class RecordedSample(NamedTuple):
 class Recording:
     """A drag of a handle that is recorded while the timeline plays.
 
-    Parameters
+    Attributes
     ----------
-    layer, handle : int
-        Ids; the handle is the first one of the track's.
+    handle : int
+        The first handle of the track.
     gesture : object
-        What is one step of undo together.
+        Edits of one gesture are one undo step.
     before : Track, optional
-        The handle's track as it was.
+        The handle's track before the recording.
     playhead : Playhead
-        As it runs since the drag began.
+        The playhead that has run since the drag began.
     last : int
-        The frame at which it is over at the latest; in a loop it counts on.
+        The frame at which the recording ends at the latest; in a loop it counts on.
     speed : float
-        Of the playhead before.
+        Playback speed before the recording.
     place : complex
-        Where in the scene the handle is wanted now.
+        Present target of the handle, in the scene.
     scale : float
-        How many pixels of the screen one of the picture took, when it began.
+        Screen pixels per picture pixel at the start.
     smoothing : float
         From 0 to 1.
-    samples : list of RecordedSample
-    is_over : bool
-        Whether the hand has let go.
     has_moved : bool
-        Whether the hand was moved. Else it was a click, unless the body moved under it.
+        Whether the pointer has moved. Otherwise it is a click, unless the body moved under it.
     after : Document, optional
-        The document with the recorded track; None until it has that.
+        The document with the recorded track; None before it is written.
     """
 
     layer: int

@@ -1,7 +1,7 @@
-"""What a layer is made of, changed: its cut-out, its mesh and limits, its material.
+"""Editing a layer's cut-out, mesh, limits and stiffness.
 
 In: a session, and the arguments of a verb.
-Out: the session, changed.
+Out: the changed session.
 Imports: `app.editor`, `app.editor.actions`.
 """
 

@@ -26,17 +26,17 @@ from engine.geometry import box_diagonal, distance_to_segments
 
 WRITING = JobKind("Saving the mask", "The mask was not saved")
 MASKS = (".png",)
-PANEL = "Cut-out"  # has the settings of the brush
+PANEL = "Cut-out"  # the panel with the settings of the brush
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
 BRUSH_STEP = 1.25
 FIRST_BRUSH = 0.03  # of the picture's longer side
-BESIDE = 1.25  # widths of a slit: a handle that is nearer to the knife's line may be in it
-DROP = 2  # pixels around the one that is picked whose colour counts
+BESIDE = 1.25  # widths of a slit: a handle nearer to the knife's line may be inside the slit
+DROP = 2  # radius in pixels around a picked place whose colours count
 
 
 @with_project
 def toggle_cut_tool(session: Session, project: Project, tool: CutTool | None) -> None:
-    """Take a tool in hand that cuts out; None, or the same one again, goes back to posing."""
+    """Select a cut-out tool; None, or the selected tool again, selects the pose tool."""
     if session.active_tool is None:
         session.cutting = None if tool == session.cutting else tool
         session.material = project.motion_setup = None
@@ -44,19 +44,17 @@ def toggle_cut_tool(session: Session, project: Project, tool: CutTool | None) ->
 
 
 def toggle_cut_brush(session: Session) -> None:
-    """Begin to cut out with the brush that removes; let a brush in hand do the opposite."""
+    """Select the brush that removes; if a brush is selected, swap keep and remove."""
     toggle_cut_tool(session, "keep" if session.cutting == "remove" else "remove")
 
 
 @with_project
 def enlarge_brush(session: Session, project: Project) -> None:
-    """Make the brush larger."""
     set_brush_radius(session, brush_radius(project) * BRUSH_STEP)
 
 
 @with_project
 def shrink_brush(session: Session, project: Project) -> None:
-    """Make the brush smaller."""
     set_brush_radius(session, brush_radius(project) / BRUSH_STEP)
 
 
@@ -67,7 +65,6 @@ def set_brush_radius(_: Session, project: Project, radius: float) -> None:
 
 
 def brush_radius(project: Project) -> float:
-    """Return the radius of the brush, in pixels of the picture."""
     if project.brush is not None:
         return project.brush
     return max(4.0, FIRST_BRUSH * max(project.layer.picture.size))
@@ -75,29 +72,28 @@ def brush_radius(project: Project) -> float:
 
 @with_project
 def change_cut_out(session: Session, project: Project, /, **changes: Any) -> None:
-    """Give the cut-out other values of its fields."""
     cut_out = replace(project.layer.cut_out, **changes)
     editing.edit_layer(session, shape_commands.set_cut_out, cut_out)
 
 
 def set_background_tolerance(session: Session, tolerance: int) -> None:
-    """Set by how many levels the background may vary."""
+    """Set the number of levels by which the background may vary."""
     change_cut_out(session, tolerance=tolerance)
 
 
 def set_background(session: Session, background: Any) -> None:
-    """Set what is removed: "auto", "none", or a colour. A mask that was loaded goes."""
+    """Set the removed background: "auto", "none", or a colour. A loaded mask is dropped."""
     change_cut_out(session, background=background, mask=None)
 
 
 def set_enclosed_removed(session: Session, enclosed: Any) -> None:
-    """Set whether parts inside go that have the background's colour."""
+    """Set whether enclosed areas of the background's colour are removed."""
     change_cut_out(session, enclosed=enclosed)
 
 
 @with_project
 def pick_background_colour(session: Session, project: Project, place: complex) -> None:
-    """Take the colour of the picture at a place for the background's."""
+    """Use the picture's colour at a place as the background colour."""
     rgba = project.layer_runtime.picture.rgba
     height, width = rgba.shape[:2]
     point = place - project.layer.corner
@@ -112,13 +108,13 @@ def pick_background_colour(session: Session, project: Project, place: complex) -
 
 
 def cut_with_brush(session: Session, stroke: Stroke) -> None:
-    """Keep or remove what a stroke covers."""
+    """Keep or remove the area of a stroke."""
     editing.edit_layer(session, shape_commands.cut_with_brush, stroke)
 
 
 @with_project
 def cut_with_knife(session: Session, project: Project, slit: CutLine) -> None:
-    """Part what touches along a line of the knife, which may go through no handle."""
+    """Cut along a line of the knife; the line may cross no handle."""
     layer = project.layer
     width = CUT_WIDTH * box_diagonal(layer.domain.outline)
     for handle in layer.handles:
@@ -133,7 +129,7 @@ def cut_with_knife(session: Session, project: Project, slit: CutLine) -> None:
 
 @with_project
 def remove_knife_cut(session: Session, project: Project, place: complex, reach: float) -> None:
-    """Take away the line of the knife that is nearest to a place, and no farther than `reach`."""
+    """Remove the knife line nearest to a place, at most `reach` away."""
     slits = project.layer.cut_out.cut_lines
     away = [_away_from(slit, place - project.layer.corner) for slit in slits]
     if min(away, default=np.inf) <= reach:
@@ -142,37 +138,36 @@ def remove_knife_cut(session: Session, project: Project, place: complex, reach: 
 
 
 def _away_from(slit: CutLine, point: complex) -> float:
-    """Return how far a point of the picture is from a line of the knife."""
+    """Return the distance of a point of the picture from a knife line."""
     return float(distance_to_segments(np.array([point]), slit.points[:-1], slit.points[1:]).min())
 
 
 @with_project
 def toggle_hole(session: Session, project: Project, place: complex) -> None:
-    """Keep the hole at a place that would be filled, or fill one that would be kept."""
+    """Keep the hole at a place if it would be filled, or fill it if it would be kept."""
     holes, point = project.layer_runtime.cut.value.holes, place - project.layer.corner
     number = holes.number_at(point) if holes is not None else 0
     if holes is None or not number:
         return
     swapped = project.layer.cut_out.toggled_holes
     others = tuple(other for other in swapped if holes.number_at(other) != number)
-    # Its middle, not the point at its rim where the click may have been.
+    # The middle of the hole, since the click may have been at its rim.
     named = (*swapped, holes.middles[number])
     change_cut_out(session, swapped=others if len(others) < len(swapped) else named)
 
 
 def clear_cut_out_strokes(session: Session) -> None:
-    """Take away all strokes, the knife's lines and the mask."""
+    """Delete all strokes, knife lines and the mask."""
     change_cut_out(session, strokes=(), slits=(), mask=None)
 
 
 def ask_mask_to_load(session: Session) -> None:
-    """Ask which mask to load."""
     session.ask_file("Load a mask", MASKS, lambda path: do(load_mask, path))
 
 
 @with_project
 def load_mask(session: Session, project: Project, path: Path) -> None:
-    """Read a mask on the worker; it takes the place of the background and of all strokes."""
+    """Read a mask on the worker; it replaces the background and all strokes."""
     identity = project.active
 
     def take(mask: Mask) -> None:
@@ -185,14 +180,13 @@ def load_mask(session: Session, project: Project, path: Path) -> None:
 
 @with_project
 def ask_mask_to_save(session: Session, project: Project) -> None:
-    """Ask where to save the mask."""
     name = f"{project.name} mask.png"
     session.ask_file("Save the mask", MASKS, lambda path: do(save_mask, path), name=name)
 
 
 @with_project
 def save_mask(session: Session, project: Project, path: Path) -> None:
-    """Write what is kept as a black and white picture."""
+    """Save the kept area as a black and white picture."""
     picture, cut_out = project.layer_runtime.picture, project.layer.cut_out
     check_writable(path, sources=project.sources)
 

@@ -1,4 +1,4 @@
-"""Other bounds and another domain: the worker solves the keys again, one job for each."""
+"""New limits or a new domain: the worker solves the keys again, one job a key."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,18 +16,18 @@ from app.solving import KeyResolver, step_resolver
 from engine.maps import Bounds
 
 SOLVING_KEYS = JobKind("Solving the keys")
-REST = 0.5  # seconds after which a brush is taken to rest
+REST = 0.5  # seconds after which a brush counts as resting
 
 
 @with_project
 def preview_limits(_: Session, project: Project, bounds: Bounds) -> None:
-    """Try bounds while their knob is dragged; nothing is solved yet."""
+    """Preview limits while their knob is dragged; nothing is solved yet."""
     project.previewed_limits = bounds
 
 
 @with_project
 def set_limits(session: Session, project: Project, bounds: Bounds) -> None:
-    """Set the bounds; keys that are outside of them are solved again."""
+    """Set the limits; keys that exceed them are solved again."""
     project.previewed_limits = bounds
     cancel_solving_keys(session)
     pending_changes.run_when_idle(session, do(_set_limits, bounds), "Limits")
@@ -49,23 +49,23 @@ def _set_limits(session: Session, project: Project, bounds: Bounds) -> None:
 def relax_limits_and_solve(
     session: Session, project: Project, asked: Mapping[int, Target] | None = None
 ) -> None:
-    """Allow the next looser stretch, and pull the pose that is shown to its targets again.
+    """Allow the next larger stretch, and solve the shown pose for its targets again.
 
-    Handles that a hand could not bring to where they were asked are pulled there once more.
+    `asked` holds targets that a drag could not reach. They are tried again.
     """
     bounds = relax_limits(project.layer.bounds)
     if bounds is None:
         return
     cancel_solving_keys(session)
     gesture = object()
-    # What was allowed still is, so that no key has to be solved again.
+    # The old limits lie within the new ones, so no key has to be solved again.
     project.history.do(shape_commands.set_limits(project.active, bounds), gesture=gesture)
     posing.solve_pose_again(session, asked or {}, gesture=gesture)
 
 
 @with_project
 def relax_motion_limits(session: Session, project: Project) -> None:
-    """Allow the next looser stretch on the way between the keys; poses stay as they are."""
+    """Allow the next larger stretch between the keys; poses stay as they are."""
     bounds = relax_limits(project.layer.bounds)
     if bounds is not None:
         cancel_solving_keys(session)
@@ -73,18 +73,18 @@ def relax_motion_limits(session: Session, project: Project) -> None:
 
 
 def set_limit(session: Session, bounds: Bounds, name: str, value: float) -> None:
-    """Set one of the bounds to a number that was typed in.
+    """Set one limit to a typed number.
 
     Raises
     ------
     EngineError
-        If it bounds nothing, or everything.
+        If the number is outside the limit's valid range.
     """
     set_limits(session, replace(bounds, **{name: value}))
 
 
 def solve_keys_again(session: Session) -> None:
-    """Pull every key's handles to their places again, within the bounds of now."""
+    """Solve every key for its targets again, within the present limits."""
     pending_changes.run_when_idle(session, do(_solve_keys_again), "Solve again")
 
 
@@ -106,7 +106,7 @@ def _rebuild_mesh(session: Session, project: Project) -> None:
 
 @with_project
 def rebuild_changed_cut_out(session: Session, project: Project) -> None:
-    """Rebuild a domain whose cut-out has changed as soon as the brush rests; once a frame."""
+    """Rebuild the domain after a change of the cut-out, once the brush rests; once a frame."""
     stale = project.stale_layer
     if stale is None:
         project.stale = None
@@ -120,13 +120,13 @@ def rebuild_changed_cut_out(session: Session, project: Project) -> None:
 
 
 def _follows_cut_out(renewal: KeyResolver) -> bool:
-    """Tell whether a domain is rebuilt only because its cut-out has changed."""
+    """Return whether a rebuild has no other cause than a changed cut-out."""
     return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
 
 
 @with_project
 def cancel_solving_keys(session: Session, project: Project) -> None:
-    """Give up what is being solved or rebuilt."""
+    """Cancel the current solve or rebuild."""
     session.jobs.drop(SOLVING_KEYS)
     if project.key_resolver is not None and _follows_cut_out(project.key_resolver):
         project.unbuildable = project.key_resolver.before
@@ -135,7 +135,7 @@ def cancel_solving_keys(session: Session, project: Project) -> None:
 
 @with_project
 def begin_solving_keys(session: Session, project: Project, renewal: KeyResolver) -> None:
-    """Begin what replaces a layer's poses, in place of what is under way."""
+    """Begin to replace a layer's poses; a current solve is cancelled."""
     cancel_solving_keys(session)
     _go_on(session, project, renewal)
 
@@ -143,7 +143,7 @@ def begin_solving_keys(session: Session, project: Project, renewal: KeyResolver)
 def _go_on(session: Session, project: Project, renewal: KeyResolver) -> None:
     if renewal.before not in project.document.layers:
         if _follows_cut_out(renewal):
-            return  # and begins anew
+            return  # the rebuild begins again
         session.show_notice(
             "The keys were not posed again: the project changed meanwhile. Start again."
         )
@@ -185,7 +185,7 @@ def _accept(session: Session, project: Project, renewal: KeyResolver) -> None:
     if renewal.replaces_picture:
         editing.update_layer_runtimes(project)
     for number, notice in enumerate(renewal.notices):
-        # After every stroke: what was said of the one before is no news any more.
+        # This runs after every stroke, and notices of earlier strokes are out of date.
         session.show_notice(as_sentence(notice), topic=f"rebuilt {number}")
     if renewal.unsolved:
         poses = "pose" if len(renewal.unsolved) == 1 else "poses"

@@ -1,4 +1,4 @@
-"""Making parts of a layer stiff or soft: a brush, bones, and what handles' names suggest."""
+"""Tools that make parts of a layer stiff or soft: brush, bones, and suggestions by handle names."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -15,12 +15,12 @@ from app.errors import LissomError
 from engine.errors import EngineError
 from engine.geometry import distance_to_boundary
 
-# The brushes, and whether they make parts stiffer or softer; None takes that back.
+# The brushes, and whether they make parts stiffer or softer; None erases.
 BRUSHES: Mapping[str | None, bool | None] = {"stiff": True, "soft": False, "normal": None}
 WEAKEST, STRONGEST, SOFTEST = 1.5, 100.0, 30.0  # of the brush and of bones
-FIRST_BRUSH = 0.1  # of the picture's longer side: it is to reach the edge of a limb
-AROUND = 2.0  # times as far around a handle as it is away from the outline
-# By which factor the words in handles' names make the parts around them stiff.
+FIRST_BRUSH = 0.1  # of the picture's longer side, so that it reaches the edge of a limb
+AROUND = 2.0  # radius of a suggestion, in distances of its handle from the outline
+# Stiffness factors of the parts around handles, by words in the handles' names.
 SUGGESTED = (
     ({"head", "face", "skull", "hand", "fist", "shoe", "boot", "foot", "hoof", "paw"}, 10.0),
     ({"tail", "trunk", "tentacle", "hair", "scarf", "ribbon", "cape"}, 0.2),
@@ -29,7 +29,7 @@ SUGGESTED = (
 
 @with_project
 def toggle_stiffness_tool(session: Session, project: Project, tool: MaterialTool | None) -> None:
-    """Take a tool in hand that changes the material; None, or the same again, goes back to pose."""
+    """Select a stiffness tool; None, or the selected tool again, selects the pose tool."""
     if session.active_tool is None:
         playback.stop_playback(session)
         session.material = None if tool == session.material else tool
@@ -39,18 +39,18 @@ def toggle_stiffness_tool(session: Session, project: Project, tool: MaterialTool
 
 
 def set_stiffness_strength(session: Session, strength: float) -> None:
-    """Set how many times as stiff the brush makes what it covers, or as soft."""
+    """Set the factor of stiffness or softness that the brush paints."""
     session.strength = min(max(strength, WEAKEST), STRONGEST)
 
 
 def set_brush_softness(session: Session, softness: float) -> None:
-    """Set over which part of the brush's radius its effect becomes less."""
+    """Set the part of the brush's radius over which its effect fades."""
     session.softness = min(max(softness, 0.0), 1.0)
 
 
 @with_project
 def paint_stiffness(session: Session, project: Project, places: Sequence[complex]) -> None:
-    """Make what a stroke covers stiff or soft, or take that back; `places` are shown ones."""
+    """Paint or erase stiffness along a stroke; `places` are in the shown pose."""
     shown, tool = project.layer_runtime.shown, session.material
     if shown is None or tool is None:
         return
@@ -78,19 +78,19 @@ def paint_stiffness(session: Session, project: Project, places: Sequence[complex
 
 
 def clear_stiffness(session: Session) -> None:
-    """Take back all that is painted."""
+    """Erase all painted stiffness."""
     editing.edit_layer(session, stiffness_commands.clear_stiffness)
 
 
 @with_project
 def mirror_stiffness(session: Session, project: Project) -> None:
-    """Give both sides of the mirror axis what one of them has."""
+    """Copy the stiffness of one side of the mirror axis to the other."""
     editing.edit_layer(session, stiffness_commands.mirror_stiffness, project.document.pairs)
 
 
 @with_project
 def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
-    """Put a bone between two handles, or tell why there can be none."""
+    """Put a bone between two handles, or show why there can be none."""
     try:
         project.history.do(stiffness_commands.add_bone(project.active, ends))
     except (EngineError, LissomError) as error:
@@ -99,29 +99,26 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
 
 @with_project
 def add_bone_between_selected(session: Session, project: Project) -> None:
-    """Put a bone between the two handles that are selected."""
     if len(project.selected_handles) == 2:
         first, second = sorted(project.selected_handles)
         add_bone(session, (first, second))
 
 
 def remove_bone(session: Session, ends: tuple[int, int]) -> None:
-    """Take the bone between two handles away."""
     editing.edit_layer(session, stiffness_commands.remove_bone, ends)
 
 
 def set_bone_stiffness(session: Session, ends: tuple[int, int], amount: float) -> None:
-    """Set how stiff a bone is."""
     editing.edit_layer(session, stiffness_commands.set_bone_stiffness, ends, amount)
 
 
 def set_bones_visible(session: Session, *, shown: bool) -> None:
-    """Show the bones, or hide them: they act either way."""
+    """Show or hide the bones; hidden bones still act."""
     editing.edit_layer(session, stiffness_commands.set_bones_visible, shown=shown)
 
 
 def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str:
-    """Return why there can be no bone between two handles; empty where there can be one."""
+    """Return why no bone can be put between two handles; empty if one can."""
     layer = project.layer
     try:
         bone_region(layer, Bone(ends=ends), layer.domain.outline)
@@ -132,7 +129,7 @@ def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str:
 
 @with_project
 def suggest_stiffness(session: Session, project: Project) -> None:
-    """Make heads, hands and feet stiff and tails and trunks soft, by the names of their handles."""
+    """Make heads, hands and feet stiff and tails and trunks soft, by their handles' names."""
     layer, gesture, done = project.layer, object(), list[str]()
     for handle in layer.handles:
         words = set(re.findall("[a-z]+", handle.name.lower()))
@@ -156,5 +153,5 @@ def suggest_stiffness(session: Session, project: Project) -> None:
 
 
 def solve_shown_pose_again(session: Session) -> None:
-    """Let the pose that is shown follow its wishes once more, with the material as it is now."""
+    """Solve the shown pose for its targets again, with the present stiffness."""
     posing.solve_pose_again(session, {}, gesture=object())

@@ -1,6 +1,6 @@
-"""Posing by handles: what the hand pulls, and what the worker's solver makes of it.
+"""Posing by handles: dragging, solving and committing poses.
 
-In: a session, handles, and where they are wished.
+In: a session, handles, and their targets.
 Out: poses in the document, step by step; handles and the anchor.
 Imports: `app.editor`, `app.document`, `app.motion`, `app.solving`.
 """

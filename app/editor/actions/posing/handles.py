@@ -1,4 +1,4 @@
-"""Handles and the anchor: adding, deleting and setting them, also in the pose that no key holds."""
+"""Handles and the anchor: adding, deleting and setting them, also in the unkeyed pose."""
 
 from dataclasses import replace
 
@@ -21,14 +21,14 @@ from engine import domain as domains
 from engine.domain import MeshedDomain
 from engine.geometry import contains, diameter
 
-NEAR = 0.05  # of the diameter: so near to a handle there is no other one suggested
+NEAR = 0.05  # of the diameter: least distance of a suggested handle from another handle
 
 
 @with_project
 def add_handle(
     _: Session, project: Project, place: complex, *, gesture: object | None = None
 ) -> None:
-    """Add a handle where the shape is at a place of the screen's plane; nothing moves."""
+    """Add a handle at a shown place of the shape; nothing moves."""
     if project.layer_runtime.shown is None:
         return
     rest = _at_rest(project.layer_runtime.shown, place)
@@ -47,7 +47,7 @@ def remove_handles(
     *,
     gesture: object | None = None,
 ) -> None:
-    """Delete handles; every pose stays as it is, or comes to rest as it was pulled."""
+    """Delete handles; poses stay, and unfinished drags go on to their rest."""
     release_drag(session)
     command = handle_commands.remove_handles(project.active, identities)
     project.history.do(command, gesture=gesture or object())
@@ -56,7 +56,7 @@ def remove_handles(
 
 @with_project
 def suggest_handles(session: Session, project: Project) -> None:
-    """Put handles on the body, at tips and joints of limbs, where there are none yet."""
+    """Add handles on the body, at tips and joints of limbs that have none."""
     layer = project.layer
     suggested = domains.suggest_handles(layer.domain.loops)
     near = NEAR * diameter(layer.domain.outline)
@@ -85,7 +85,7 @@ def suggest_handles(session: Session, project: Project) -> None:
 def _take_suggestions_back(
     session: Session, project: Project, added: frozenset[int], gesture: object
 ) -> None:
-    """Remove the handles that were suggested; what was done since stays."""
+    """Remove the suggested handles; later edits stay."""
     if session.project is not project:
         return
     project.history.revert(gesture)
@@ -97,7 +97,7 @@ def _take_suggestions_back(
 
 @with_project
 def mirror_handles(session: Session, project: Project) -> None:
-    """Give each selected handle a partner on the other side of the mirror axis, named to match."""
+    """Add a partner of each selected handle across the mirror axis, with the matching name."""
     layer, words = project.layer, project.document.pairs
     pairs = mirrored_handles_by_name(layer.handles, words)
     alone = [
@@ -133,7 +133,7 @@ def _is_inside(domain: MeshedDomain, place: complex) -> bool:
 def toggle_anchor_at_handle(
     _: Session, project: Project, identity: int, *, gesture: object | None = None
 ) -> None:
-    """Make a handle's point the anchor, or let the engine choose again if it is already."""
+    """Make a handle's point the anchor; if it is the anchor, let the engine choose again."""
     place = project.layer.handle(identity).position
     project.history.do(
         shape_commands.set_anchor(project.active, None if project.layer.anchor == place else place),
@@ -145,13 +145,13 @@ def toggle_anchor_at_handle(
 def set_anchor(
     _: Session, project: Project, place: complex, *, gesture: object | None = None
 ) -> None:
-    """Make the shape's point at a place of the screen's plane the anchor."""
+    """Make the shape's point at a shown place the anchor."""
     if project.layer_runtime.shown:
         rest = _at_rest(project.layer_runtime.shown, place)
         project.history.do(shape_commands.set_anchor(project.active, rest), gesture=gesture)
 
 
 def _at_rest(shown: DisplayedFrame, place: complex) -> complex:
-    """Return the place, in the drawing at rest, of the point that is shown at a place."""
+    """Return the rest place of the point shown at a place."""
     found = shown.mesh.locate(np.array([place]), shown.positions)
     return complex(found.positions_on(shown.mesh.domain.mesh.vertices)[0])

@@ -1,4 +1,4 @@
-"""Inserting keys with the poses that frames show."""
+"""Inserting keys of the poses that frames show."""
 
 from collections.abc import Callable
 from functools import partial
@@ -18,7 +18,7 @@ INSERTING = JobKind("Inserting a key", "The key could not be inserted", "hand")
 
 @with_project
 def insert_key(session: Session, project: Project) -> None:
-    """Insert a key of the pose that is shown, at the present frame, in each chosen layer."""
+    """Insert a key of the shown pose at the present frame, in each selected layer."""
     playback.stop_playback(session)
     if project.other_selected_layers:
         here, gesture = playback.current_frame(session, project), object()
@@ -29,7 +29,7 @@ def insert_key(session: Session, project: Project) -> None:
         return
     frame = playback.edited_frame(session, project)
     if any((pull.layer, pull.frame) == (project.active, frame) for pull in project.pulls):
-        # What is on its way there may be a key itself.
+        # A pending change may make a key there itself.
         pending_changes.run_when_idle(session, do(insert_key_at, project.active, frame), "The key")
     else:
         insert_key_at(session, project.active, frame)
@@ -39,7 +39,7 @@ def insert_key(session: Session, project: Project) -> None:
 def insert_key_at(
     session: Session, project: Project, layer: int, frame: int, gesture: object | None = None
 ) -> None:
-    """Insert a key of the pose that a layer has at a frame; those of a gesture are one step."""
+    """Insert a key of the pose of a layer at a frame; inserts of a gesture are one undo step."""
     if layer not in project.layer_runtimes:
         return
     unkeyed = project.history.preview_pose
@@ -64,7 +64,7 @@ def solve_nearest_pose(
     *,
     kind: JobKind,
 ) -> None:
-    """Let the worker find the pose that is nearest to what a clip shows at a frame."""
+    """Solve for the pose nearest to a clip's in-between at a frame, on the worker."""
     puppet = project.layer_runtimes[clip.layer.id]
     rig, sibling = Rig.of(clip.layer, puppet.rig), puppet.store.sampler
 
@@ -84,5 +84,5 @@ def _insert(
         if project.active == layer:
             project.selected_frames = frozenset({frame})
     else:
-        # Other keys came or went meanwhile: the layer is shown otherwise there now.
+        # Other keys changed meanwhile, so the layer's shown pose there has changed.
         insert_key_at(session, layer, frame, gesture)

@@ -1,4 +1,4 @@
-"""Poses that the document has: in keys, or in none where the person wants no keys made."""
+"""Write solved poses to the document: as a key, or as an unkeyed preview pose without auto-key."""
 
 from dataclasses import replace
 
@@ -13,9 +13,9 @@ NO_POSE = "The pose could not be kept"
 
 
 def commit_pose(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
-    """Let the document have a pose of a pull in place of the pull's last one, if it still can.
+    """Replace the last pose of a drag in the document by a newer pose.
 
-    If not, as where its key was deleted or the document refuses it, the pull is over.
+    If this fails, because its key was deleted or a command refuses the pose, the drag ends.
     """
     if pose is pull.kept:
         return
@@ -34,10 +34,10 @@ def commit_pose(session: Session, project: Project, pull: Pull, pose: Pose) -> N
 
 
 def commit_targets(session: Session, project: Project, pull: Pull) -> bool:
-    """Let the document have what a released pull wishes of a key, before any pose is found for it.
+    """Commit the targets of a released drag before the solver has found a pose.
 
-    Returns whether it has; a pull whose start is not known yet, or that several gestures made,
-    has nothing that could be one step.
+    Return whether they were committed. A drag with an unknown start or of several gestures cannot
+    be one undo step.
     """
     if (
         pull.is_held
@@ -53,7 +53,7 @@ def commit_targets(session: Session, project: Project, pull: Pull) -> bool:
 
 
 def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
-    """Let what was copied of a pose on its way go on to another one, too."""
+    """Update copied keys that hold an earlier pose of the drag."""
     kept = pull.kept
     if kept is None or all(k.pose.phi is not kept.phi for c in session.copied for k in c.keys):
         return
@@ -73,7 +73,7 @@ def _follow_copies(session: Session, pull: Pull, pose: Pose) -> None:
 
 
 def _commit_first(session: Session, project: Project, pull: Pull, pose: Pose) -> bool:
-    """Let the document have the first pose of a pull, as one more step; tell whether it can."""
+    """Commit the first pose of a drag as a new undo step; return whether this succeeded."""
     if pull.layer not in project.layer_runtimes:
         return False
     layer = project.document.layer(pull.layer)
@@ -101,9 +101,9 @@ def _commit_first(session: Session, project: Project, pull: Pull, pose: Pose) ->
 
 
 def _frames_now(layer: Layer, pull: Pull) -> set[int]:
-    """Return at which frames a pull's pose belongs now.
+    """Return the present frames of a drag's pose.
 
-    Those are of the key that is pulled, and of its copies since; of a new key it is its own.
+    These are the frames of the dragged key and of its copies. For a new key it is the drag's frame.
     """
     then = pull.clip.layer
     if pull.frame not in then.key_frames:
@@ -114,7 +114,7 @@ def _frames_now(layer: Layer, pull: Pull) -> set[int]:
 
 
 def key_pose_command(session: Session, project: Project, unkeyed: PreviewPose) -> Command:
-    """Return the command that gives a pose to the key at its frame, or inserts one with it."""
+    """Return the command that sets the pose of the key at its frame, or inserts a key."""
     layer, frame, pose = unkeyed.layer, unkeyed.frame, unkeyed.pose
     if frame in project.document.layer(layer).key_frames:
         return key_commands.replace_key_pose(layer, frame, pose)

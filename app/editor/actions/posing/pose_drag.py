@@ -1,4 +1,4 @@
-"""Pulling handles: the wish comes from the pointer, the worker's solver follows."""
+"""Pose drags: targets come from the pointer, and the worker's solver follows."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -23,11 +23,11 @@ def drag_handles(
     gesture: object | None = None,
     hand: BoundedPull | None = None,
 ) -> None:
-    """Wish handles elsewhere in the pose of the present frame; the others keep their wishes.
+    """Set targets of handles in the pose of the present frame; other targets stay.
 
-    Pulls of one gesture are one step of undo, in which the later wish takes the place of the
-    earlier; without one, each is a step until it is let go. An in-between that is not there yet is
-    worked out first; what is wished of it meanwhile is not lost. A hand pulls with bounded force.
+    Drags of one gesture are one undo step, and a later target replaces an earlier one. Without a
+    gesture, each drag until its release is a step. A missing in-between is computed first; targets
+    set meanwhile are kept. `hand` pulls with bounded force.
     """
     wanted = wish if callable(wish) else partial(absolute_targets, wish)
     _change(session, project, gesture, lambda held, by: held.change_targets(by, wanted, hand))
@@ -37,9 +37,9 @@ def drag_handles(
 def move_pose(
     session: Session, project: Project, way: complex, *, gesture: object | None = None
 ) -> None:
-    """Move the pose of the present frame with all its targets, as it is, so far from the start.
+    """Move the pose of the present frame with all its targets, by `way` from the start.
 
-    As with pulls, those of one gesture are one step of undo.
+    Moves of one gesture are one undo step.
     """
     _change(session, project, gesture, lambda held, by: held.move(by, way))
 
@@ -50,7 +50,7 @@ def _change(
     gesture: object | None,
     change: Callable[[Pull, object], None],
 ) -> None:
-    """Change what is pulled by a gesture, or begin to."""
+    """Change the held drag, or begin a drag."""
     if project.layer_runtime.shown is None:
         return
     held = project.pull
@@ -64,14 +64,14 @@ def _change(
 
 @with_project
 def release_drag(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
-    """End the pull; the solver goes on until the pose rests."""
+    """End the drag; the solver goes on until the pose rests."""
     for pull in project.pulls:
         pull.is_held = False
 
 
 @with_project
 def release_drag_forced(session: Session, project: Project) -> None:  # noqa: ARG001 - of an action
-    """End the pull, and let its handles be wanted where they are pulled to, however far that is."""
+    """End the drag, and keep its targets even if the handles cannot reach them."""
     for pull in project.pulls:
         if pull.is_held:
             pull.is_held = False
@@ -79,13 +79,13 @@ def release_drag_forced(session: Session, project: Project) -> None:  # noqa: AR
 
 
 def set_targets(session: Session, wishes: Mapping[int, Target]) -> None:
-    """Wish handles elsewhere, as a field of the panel says."""
+    """Set targets of handles from a field of the panel."""
     _once(session, wishes)
 
 
 @with_project
 def pin_selected_handles(session: Session, project: Project) -> None:
-    """Let the selected handles be wanted where they are, wherever they were wanted before."""
+    """Set the targets of the selected handles to their present places."""
     selected = project.selected_handles
 
     def here(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
@@ -98,7 +98,7 @@ def pin_selected_handles(session: Session, project: Project) -> None:
 
 @with_project
 def nudge_handles(session: Session, project: Project, step: complex) -> None:
-    """Move the selected handles by a few pixels of the picture."""
+    """Move the targets of the selected handles by `step` in pixels of the picture."""
     handles = project.layer.handles
     moved = {h.id for h in handles if h.id in project.selected_handles and not h.locked}
 
@@ -111,7 +111,7 @@ def nudge_handles(session: Session, project: Project, step: complex) -> None:
 
 
 def free_rotation(session: Session, identity: int) -> None:
-    """Let the solver choose how the shape turns at a handle."""
+    """Let the solver choose the rotation of the shape at a handle."""
 
     def free(_: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
         known = {identity} & targets.keys()
@@ -124,9 +124,9 @@ def free_rotation(session: Session, identity: int) -> None:
 def solve_pose_again(
     session: Session, project: Project, asked: Mapping[int, Target], *, gesture: object
 ) -> None:
-    """Let the pose that is shown follow its own wishes once more, as under other limits.
+    """Solve the shown pose for its targets again, for example under other limits.
 
-    Some handles a hand pulls to where they are asked.
+    The handles in `asked` are pulled to these targets with bounded force.
     """
     if pose_at_playhead(session, project) is not None:
         drag_handles(
@@ -137,9 +137,9 @@ def solve_pose_again(
 
 @with_project
 def revert_drag(session: Session, project: Project, gesture: object) -> None:
-    """Take back what a gesture has wished.
+    """Undo the targets of a gesture.
 
-    A pull that has no other wishes ends, with all that it led to.
+    A drag without other targets ends, and its history step is undone.
     """
     for pull in project.pulls:
         if gesture in pull.target_changes:
@@ -151,18 +151,18 @@ def revert_drag(session: Session, project: Project, gesture: object) -> None:
 
 
 def cancel_drag(session: Session, project: Project, pull: Pull) -> None:
-    """End a pull, whose pose stays as it is in the document, or never gets there."""
+    """End a drag; its pose in the document stays, and no later pose is committed."""
     if pull not in project.pending:
-        # It has ended with another one that was given up.
+        # The drag has ended together with another cancelled drag.
         return
     project.pending.remove(pull)
-    # What comes of it is not taken.
+    # The job's result is dropped.
     session.jobs.drop(POSING)
     step_pose_solver(session, project)
 
 
 def end_drag_at(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
-    """Let the document have a pose in place of what a pull comes to."""
+    """Commit a pose instead of the result of a drag."""
     cancel_drag(session, project, pull)
     commit_pose(session, project, pull, pose)
 
@@ -173,7 +173,7 @@ def _once(session: Session, wish: TargetChange | Mapping[int, Target]) -> None:
 
 
 def _begin(session: Session, project: Project, gesture: object) -> Pull:
-    """Begin a pull of the pose at the present frame."""
+    """Begin a drag of the pose at the present frame."""
     playback.stop_playback(session)
     frame, shown = playback.edited_frame(session, project), playback.current_frame(session, project)
     if frame != shown:
@@ -186,7 +186,7 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
     earlier = pulls[-1] if pulls else None
     start = _start(session, project, earlier)
     if earlier is not None and earlier.kept is None:
-        # Nothing of it is to be seen yet: what is wished now comes with it.
+        # No pose of the earlier drag is visible yet, so the new targets join it.
         session.jobs.drop(POSING)
         earlier.clip, earlier.start, earlier.is_held = project.clip, start, True
         return earlier
@@ -205,11 +205,10 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
 
 
 def _start(session: Session, project: Project, earlier: Pull | None) -> DragStart | None:
-    """Return what a pull begins with; None where that is an in-between that is not there yet.
+    """Return the start of a drag; None if its in-between is not computed yet.
 
-    Where tracks or springs act, handles are shown elsewhere than in the pose: that is worked out.
-
-    An earlier pull of the same pose, which is not at rest yet, says what was wished last.
+    With tracks or springs, shown handles differ from the pose, so the in-between is computed. If an
+    earlier drag of the same pose is not at rest, its last targets are used.
     """
     pose, shown, layer = (
         pose_at_playhead(session, project),
@@ -237,7 +236,7 @@ def _start(session: Session, project: Project, earlier: Pull | None) -> DragStar
 
 
 def pose_at_playhead(session: Session, project: Project) -> Pose | None:
-    """Return the pose that the layer rests in at the present frame; None for an in-between."""
+    """Return the layer's pose at the present frame; None for an in-between."""
     if project.unkeyed_pose is not None:
         return project.unkeyed_pose
     clip = project.clip

@@ -1,4 +1,4 @@
-"""Pulls until they rest: how their poses come into the document, seen or not."""
+"""The life of drags until they rest: when their poses are committed to the document."""
 
 from collections.abc import Sequence
 
@@ -9,11 +9,11 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work import Pull
 
-MOST_UNSEEN = 8  # pulls that go on for the case that they are done again
+MOST_UNSEEN = 8  # most undone drags that are still solved, in case they are redone
 
 
 def update_pose_drags(session: Session, project: Project) -> None:
-    """Let the document have what pulls have come to; once a frame."""
+    """Commit the results of all drags; once a frame."""
     for pull in project.pulls:
         _follow_key(project, pull)
         if pull.newest is not None and pull.is_in(project.history):
@@ -24,7 +24,7 @@ def update_pose_drags(session: Session, project: Project) -> None:
             project.pending.remove(pull)
     unseen = [pull for pull in project.pulls if not pull.is_in(project.history)]
     for pull in unseen:
-        # Nobody sees its in-betweens; it waits for nothing but the solver.
+        # An undone drag shows no in-betweens; it waits for the solver only.
         if pull.newest is not None:
             commit_pose(session, project, pull, pull.newest)
     for pull in unseen[:-MOST_UNSEEN]:
@@ -34,10 +34,10 @@ def update_pose_drags(session: Session, project: Project) -> None:
 
 
 def _commit_newest(session: Session, project: Project, pull: Pull, *, is_here: bool) -> None:
-    """Let the document have the newest pose of a pull at whose frame the playhead rests.
+    """Commit the newest pose of a drag at the playhead.
 
-    If it is elsewhere, the document gets the newest pose whose in-betweens are prepared: so the
-    in-betweens that are shown meanwhile stay exact while the pose comes to rest.
+    At another frame, commit the newest pose with prepared in-betweens. The in-betweens shown
+    meanwhile stay exact while the pose comes to rest.
     """
     newest = pull.newest
     if newest is None:
@@ -57,7 +57,7 @@ def _commit_newest(session: Session, project: Project, pull: Pull, *, is_here: b
         pull.ready, pull.tried = pull.tried, None
     if pull.tried is None and newest not in (pull.ready, pull.kept if not is_here else None):
         pull.tried = newest
-    # In-betweens of what stands still are never prepared.
+    # In-betweens of still pictures are never prepared.
     layers = project.document.layers
     is_still = any(layer.id == pull.layer and layer.still for layer in layers)
     if not is_here and pull.is_at_rest and (is_still or project.afterwards):
@@ -67,16 +67,16 @@ def _commit_newest(session: Session, project: Project, pull: Pull, *, is_here: b
 
 
 def candidate_clips(project: Project, *, left: bool = False) -> Sequence[Clip]:
-    """Return clips with poses that the document does not have yet, to prepare their in-betweens.
+    """Return clips with poses that are not committed yet, to prepare their in-betweens.
 
-    With `left`, only of those that the playhead has left: the document waits for them.
+    With `left`, return only clips of drags at other frames than the playhead's.
     """
     tried = (_candidate_clip(project, pull) for pull in project.pulls if pull.is_left or not left)
     return [clip for clip in tried if clip is not None]
 
 
 def commit_all_poses(session: Session, project: Project) -> None:
-    """Let the document have the newest pose of each pull, as it may be the last thing done."""
+    """Commit the newest pose of each drag, before the program may end."""
     for pull in project.pulls:
         if pull.newest is not None:
             commit_pose(session, project, pull, pull.newest)
@@ -93,13 +93,13 @@ def _candidate_clip(project: Project, pull: Pull) -> Clip | None:
 
 
 def _has_inbetweens(project: Project, clip: Clip) -> bool:
-    """Tell whether all in-betweens of a clip are there, or never will be."""
+    """Return whether all in-betweens of a clip exist or have failed."""
     store = project.layer_runtimes[clip.layer.id].store
     return store.has(clip) or store.has_failed(clip)
 
 
 def _follow_key(project: Project, pull: Pull) -> None:
-    """Let a pull be where its key is now."""
+    """Update a drag's frame after its key has moved."""
     if pull.kept is None or pull.layer not in project.layer_runtimes:
         return
     keys = project.document.layer(pull.layer).keys

@@ -1,4 +1,4 @@
-"""The worker's way to a pose: a few Newton steps at a time, each taken into the document."""
+"""Jobs that solve a pose, a few Newton steps at a time, with each step committed."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -24,15 +24,15 @@ from app.solving import DragSolver, Rig, fit_shown_pose
 from engine.deform import BoundedPull
 
 POSING = JobKind("Posing", "This pose could not be found", "hand")
-# While the hand moves: Newton steps of one job at most, and the seconds after which it begins no
-# other: what it has found by then is in the next picture.
+# During a drag: the most Newton steps of one job, and the seconds after which the job begins no
+# further step, so that the next picture shows its result.
 STEPS, HASTE = 2, 0.004
-# While the hand rests: the seconds of one job, as many as fit between two pictures.
+# After the release: the seconds of one job, as many as fit between two pictures.
 REST = 0.012
 
 
 def step_pose_solver(session: Session, project: Project) -> None:
-    """Let the worker, unless it is busy with a pull, go on with the one that is wanted most."""
+    """Queue the next steps of the most urgent drag, unless such a job is queued."""
     if POSING in session.jobs.kinds:
         return
     moving = [pull for pull in project.pulls if not pull.is_at_rest]
@@ -47,7 +47,7 @@ def step_pose_solver(session: Session, project: Project) -> None:
         )
 
     pull = max(moving, key=urgency)
-    # One that the playhead has left goes on once what is shown is there.
+    # A drag at another frame goes on once the shown frame is final.
     if not (
         pull.is_held
         or is_drag_at_playhead(session, project, pull)
@@ -84,7 +84,7 @@ def step_pose_solver(session: Session, project: Project) -> None:
 
 
 def is_drag_at_playhead(session: Session, project: Project, pull: Pull) -> bool:
-    """Tell whether the playhead rests on a pull's frame, where each of its poses is shown."""
+    """Return whether the playhead rests on a drag's frame, where all its poses are shown."""
     frame = playback.current_frame(session, project)
     if project.playhead.since is not None or pull.layer not in project.layer_runtimes:
         return False
@@ -92,7 +92,7 @@ def is_drag_at_playhead(session: Session, project: Project, pull: Pull) -> bool:
 
 
 def is_display_final(session: Session, project: Project) -> bool:
-    """Tell whether what belongs at the playhead is shown, or is known never to be."""
+    """Return whether the shown frame is final, or its final version has failed."""
     shown, store = project.layer_runtime.shown, project.layer_runtime.store
     has_failed = store.has_failed(project.clip) or store.has_failed(project.clip, "correction")
     if project.unkeyed_pose is not None or has_failed:
@@ -100,29 +100,29 @@ def is_display_final(session: Session, project: Project) -> bool:
     if shown is None or shown.placeholder is not None:
         return False
     if project.playhead.since is not None:
-        # What is shown is always that of a moment ago, and nothing finds its own corrections.
+        # During playback the shown frame is always a moment late, and corrections are not computed.
         return True
     return not shown.is_approximate and shown.frame == playback.current_frame(session, project)
 
 
 class _Pace(NamedTuple):
-    """How many Newton steps the worker may take at once, and for how many seconds it begins one."""
+    """The most Newton steps of one job, and the seconds after which it begins no further step."""
 
     most: int
     seconds: float
 
 
 def _pace(pull: Pull) -> _Pace:
-    """Return the pace: while the hand moves, every step is shown; at rest, it is hurried."""
+    """Return the pace: each step is shown during a drag; after the release the solver hurries."""
     if pull.is_rigid:
         return _Pace(0, 0.0)
     return _Pace(STEPS, HASTE) if pull.steps == 0 else _Pace(MOST_STEPS, REST)
 
 
 class _Steps(NamedTuple):
-    """Where the worker has come with a drag, towards what, in how many Newton steps and seconds.
+    """The state of a drag after a job: its targets, Newton steps and seconds.
 
-    The start is what it began with, where it had to be worked out.
+    `start` is set if the job had to compute it.
     """
 
     drag: DragSolver
@@ -141,7 +141,7 @@ def _take_steps(
     pace: _Pace,
     clock: Callable[[], float],
 ) -> _Steps:
-    """Go on with a drag, or begin it; on the worker thread."""
+    """Advance a drag, or begin it; on the worker thread."""
     begun, start = clock(), None
     if not isinstance(drag, DragSolver):
         drag, pose = drag()
@@ -164,7 +164,7 @@ def _take_steps(
 def _begin(
     clip: Clip, frame: int, before: Pose | None, rig: Rig | None, sibling: PoseSampler | None
 ) -> tuple[DragSolver, Pose]:
-    """Return the drag that begins with a pose, or with what is shown at a frame; and that pose."""
+    """Return a drag solver for a pose or the in-between at a frame, and its start pose."""
     rig = Rig.of(clip.layer, rig)
     pose = (
         before
@@ -175,7 +175,7 @@ def _begin(
 
 
 def _note(session: Session, project: Project, pull: Pull, steps: _Steps) -> None:
-    """Take note of where the worker has come, and let it go on if there is more to do."""
+    """Store the result of a job, and queue the next job if the drag is not at rest."""
     if session.project is not project or pull not in project.pending:
         return
     session.solver_seconds = steps.seconds

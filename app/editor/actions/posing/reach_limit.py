@@ -1,4 +1,4 @@
-"""Hands that have let go: handles beyond their reach are wanted where they came to from then on."""
+"""After release, move targets that the limits make unreachable to the handles' places."""
 
 from collections.abc import Callable, Mapping
 
@@ -9,13 +9,13 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work import Pull
 
-# Lets the drawing stretch further, and pulls handles once more to where they were asked.
+# Relaxes the limits, and drags handles once more to their original targets.
 RelaxLimits = Callable[[Session, Mapping[int, Target]], None]
 STOPPED_AT_LIMIT = "{who} stopped at {its} stretch limit."
 
 
 def clamp_unreachable_targets(session: Session, project: Project, loosen: RelaxLimits) -> None:
-    """Let hands that have let go give in once the pose has come to rest; once a frame."""
+    """Clamp the targets of released drags whose pose rests; once a frame."""
     for pull in project.pulls:
         if pull.dragged_targets and pull.is_at_rest and not pull.is_held:
             asked, places = pull.world_targets, pull.reached
@@ -31,7 +31,7 @@ def _show_limit_notice(
     places: Mapping[int, Target],
     loosen: RelaxLimits,
 ) -> None:
-    """Tell what stopped handles short of where they were pulled, and offer the remedy."""
+    """Show why handles stopped before their targets, and offer the remedy."""
     layer, pose = pull.clip.layer, pull.newest
     lacks = {i: abs(place.position - asked[i].position) for i, place in places.items()}
     short = [i for i, lack in lacks.items() if misses_target(layer, lack)]
@@ -63,7 +63,7 @@ def _relax_limits(
     asked: Mapping[int, Target],
     loosen: RelaxLimits,
 ) -> None:
-    """Let a layer stretch further, and pull it once more to where the hand went."""
+    """Relax a layer's limits, and drag it once more to the original targets."""
     if layer != project.active:
         session.show_notice(
             "Another layer is posed now. Choose the one that was pulled, and pull again."

@@ -1,4 +1,4 @@
-"""Stretches that repeat: made of chosen keys, ended, and made into keys."""
+"""Actions on cycles: create from selected keys, end, and bake into keys."""
 
 from collections.abc import Callable
 
@@ -11,9 +11,9 @@ from app.errors import LissomError
 
 
 def selected_range(project: Project) -> tuple[int, int] | None:
-    """Return the first and the last frame of the chosen keys, or else of all of the chosen layers'.
+    """Return the first and last frame of the selected keys, or of all keys of selected layers.
 
-    None where there are fewer than two.
+    None if there are fewer than two keys.
     """
     frames = set[int]().union(*project.selected_keys.values())
     if len(frames) < 2:
@@ -23,14 +23,14 @@ def selected_range(project: Project) -> tuple[int, int] | None:
 
 
 def cycle_at_playhead(session: Session, project: Project, frame: int | None = None) -> Cycle | None:
-    """Return what repeats at a frame, by default the present one, of the layer that is posed."""
+    """Return the active layer's cycle at a frame, by default the present one."""
     here = playback.current_frame(session, project) if frame is None else frame
     return project.layer.cycle_at(here)
 
 
 @with_project
 def create_cycle(session: Session, project: Project) -> None:
-    """Let the stretch of the chosen keys repeat, in all layers that have some or are chosen."""
+    """Make a cycle of the selected keys, in all layers that are selected or have such keys."""
     stretch = selected_range(project)
     if stretch is None:
         return
@@ -45,13 +45,13 @@ def create_cycle(session: Session, project: Project) -> None:
 
 @with_project
 def end_cycle(session: Session, project: Project, frame: int | None = None) -> None:
-    """Let what repeats at a frame, by default the present one, be there once."""
+    """Remove the repeats of the cycle at a frame, by default the present one."""
     _change(session, project, frame, cycle_commands.delete_cycle)
 
 
 @with_project
 def bake_cycle(session: Session, project: Project, frame: int | None = None) -> None:
-    """Make the repeats at a frame, by default the present one, into keys of their own."""
+    """Bake the repeats at a frame into keys; by default the present frame."""
     last = project.document.frames.last
     _change(
         session, project, frame, lambda each, first: cycle_commands.bake_cycle(each, first, last)
@@ -64,7 +64,7 @@ def _change(
     frame: int | None,
     command: Callable[[int, int], Command],
 ) -> None:
-    """Change what repeats at a frame, and what begins with it in other layers of chosen keys."""
+    """Change the cycle at a frame, and cycles of other selected layers that begin with it."""
     cycle = cycle_at_playhead(session, project, frame)
     if cycle is None:
         return
@@ -79,14 +79,14 @@ def _change(
 
 
 def _layers(project: Project) -> list[int]:
-    """Return the layers of chosen keys, with those that are chosen together, or the one posed."""
+    """Return the layers of selected keys and the selected layers, or the active layer."""
     together = project.selected_layers if len(project.selected_layers) > 1 else ()
     layers = {*together, *map(layer_of, project.selected_keys)} or {project.active}
     return sorted(each for each in layers if _may_repeat(project.document, each))
 
 
 def _may_repeat(document: Document, identity: int) -> bool:
-    """Tell whether a layer can have something to repeat: a still picture only beside its pose."""
+    """Return whether a layer can have a cycle; a still picture only without its pose channel."""
     layer = document.layer(identity)
     beside = (
         *layer.attachments[1:],
@@ -99,7 +99,7 @@ def _may_repeat(document: Document, identity: int) -> bool:
 
 
 def _all_of(commands: list[Command], layers: list[int], document: Document) -> Document:
-    """Run a command on each of some layers; of more than one, errors name the layer."""
+    """Run a command on each layer; for several layers, errors name the layer."""
     for layer, command in zip(layers, commands, strict=True):
         try:
             document = command(document)

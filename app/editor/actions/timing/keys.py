@@ -1,4 +1,4 @@
-"""What is done with keys as a whole, and the settings of time beside them."""
+"""Actions on whole keys, and settings of time."""
 
 from dataclasses import replace
 
@@ -28,12 +28,12 @@ EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
 PASS = editing.KeyVerb(key_commands.set_tangent_mode, track_commands.set_track_passing)
 REVERSE = editing.KeyVerb(key_commands.reverse_keys, track_commands.reverse_track_keys)
 SCALE = editing.KeyVerb(key_commands.scale_keys, track_commands.scale_track_keys)
-TURN = editing.KeyVerb(key_commands.set_revolutions)  # a track's keys turn by as much as they say
+TURN = editing.KeyVerb(key_commands.set_revolutions)  # track keys store whole turns
 
 
 @with_project
 def edit_timing(session: Session, project: Project, command: Command) -> None:
-    """Run a command that changes time itself; the playhead stays where it is, or near."""
+    """Run a command that changes frames; the playhead stays at its frame or the nearest one."""
     before = playback.current_frame(session, project)
     editing.edit_document(session, command)
     frame = project.document.frames.clamp(before)
@@ -43,7 +43,7 @@ def edit_timing(session: Session, project: Project, command: Command) -> None:
 
 @with_project
 def insert_key_in_row(session: Session, project: Project) -> None:
-    """Insert a key at the present frame into the chosen row: of the pose, or of a track alone."""
+    """Insert a key at the present frame into the selected row: of the pose, or of a track."""
     track = project.selected_track
     if track is None or project.unkeyed_pose is not None:
         posing.insert_key(session)
@@ -52,29 +52,27 @@ def insert_key_in_row(session: Session, project: Project) -> None:
 
 
 def insert_key_in_row_at(session: Session, frame: int) -> None:
-    """Put the playhead on a frame, and insert a key into the chosen row."""
+    """Put the playhead on a frame, and insert a key into the selected row."""
     playback.scrub(session, frame)
     insert_key_in_row(session)
 
 
 def set_easing(session: Session, keys: KeysByRow, easing: Easing) -> None:
-    """Set how time runs from keys on."""
     editing.edit_document(session, editing.change_keys(EASE, keys, easing))
 
 
 def set_tangent_mode(session: Session, keys: KeysByRow, passing: TangentMode) -> None:
-    """Set how the motion passes keys."""
     editing.edit_document(session, editing.change_keys(PASS, keys, passing))
 
 
 def set_revolutions(session: Session, keys: KeysByRow, turns: int) -> None:
-    """Set how often the shape turns round after keys of poses."""
+    """Set the full turns of the shape after pose keys."""
     editing.edit_document(session, editing.change_keys(TURN, keys, turns))
 
 
 @with_project
 def use_next_tangent_mode(session: Session, project: Project) -> None:
-    """Pass the chosen keys in the next way, or the key at the playhead or before it."""
+    """Set the next tangent mode of the selected keys, or of the key at or before the playhead."""
     keys = _selected_or_at_playhead(session, project)
     passings = list(TangentMode)
     row = project.row if project.row in keys else next(iter(keys))
@@ -85,12 +83,12 @@ def use_next_tangent_mode(session: Session, project: Project) -> None:
 
 @with_project
 def ease_selected_keys(session: Session, project: Project, easing: Easing) -> None:
-    """Set how time runs from the chosen keys on, or from the key at the playhead or before it."""
+    """Set the easing of the selected keys, or of the key at or before the playhead."""
     set_easing(session, _selected_or_at_playhead(session, project), easing)
 
 
 def _selected_or_at_playhead(session: Session, project: Project) -> KeysByRow:
-    """Return the chosen keys, or that of the chosen row at the playhead or before it."""
+    """Return the selected keys, or the selected row's key at or before the playhead."""
     if project.selected_keys:
         return project.selected_keys
     here, row = playback.current_frame(session, project), project.row
@@ -103,13 +101,13 @@ def _selected_or_at_playhead(session: Session, project: Project) -> KeysByRow:
 
 
 def set_default_easing(session: Session, easing: Easing) -> None:
-    """Set how time runs from keys that will be made."""
+    """Set the easing of new keys."""
     session.preferences = replace(session.preferences, easing=easing)
 
 
 @with_project
 def reverse_selected_keys(session: Session, project: Project) -> None:
-    """Let the chosen keys run backwards, or all of the row's if fewer than two are chosen."""
+    """Reverse the selected keys in time, or the whole row if fewer than two are selected."""
     keys = project.selected_keys
     if project.selected_key_count < 2:
         keys = {project.row: frames_in(project.document, project.row)}
@@ -118,9 +116,9 @@ def reverse_selected_keys(session: Session, project: Project) -> None:
 
 @with_project
 def scale_selected_keys(session: Session, project: Project, factor: float) -> None:
-    """Stretch the time of the chosen keys, or of everything if fewer than two are chosen.
+    """Scale the time of the selected keys, or of the animation if fewer than two are selected.
 
-    Tracks whose keys are not chosen have their own time, and keep it.
+    Tracks without selected keys keep their time.
     """
     command = scene_commands.scale_time(factor)
     if project.selected_key_count >= 2:
@@ -130,12 +128,11 @@ def scale_selected_keys(session: Session, project: Project, factor: float) -> No
 
 
 def _span(keys: KeysByRow) -> tuple[int, int]:
-    """Return the first and the last frame of keys."""
     return min(map(min, keys.values())), max(map(max, keys.values()))
 
 
 def _rearrange(session: Session, project: Project, command: Command) -> None:
-    """Run a command that moves the chosen keys, and choose them where they are then."""
+    """Run a command that moves the selected keys, and select them at their new frames."""
     chosen_of, everything = project.selected_keys, project.selected_key_count < 2
     others = {row: frames_in(project.document, row) - chosen_of[row] for row in chosen_of}
     edit_timing(session, command)
@@ -144,24 +141,22 @@ def _rearrange(session: Session, project: Project, command: Command) -> None:
 
 
 def match_loop_ends(session: Session) -> None:
-    """Give the last key the pose of the first one."""
+    """Give the last key the pose of the first key."""
     editing.edit_layer(session, key_commands.match_loop_ends)
 
 
 @with_project
 def toggle_loop(session: Session, project: Project) -> None:
-    """Let the end lead back to the beginning, or not."""
     edit_timing(session, scene_commands.set_loop(loop=not project.document.loop))
 
 
 def set_fps(session: Session, fps: float) -> None:
-    """Set how fast the animation plays; it goes on from where it is."""
+    """Set the frame rate; playback continues at the same frame."""
     edit_timing(session, scene_commands.set_fps(fps))
 
 
 @with_project
 def set_last_frame(session: Session, project: Project, last: int) -> None:
-    """Set where the animation ends."""
     first = project.document.frames.first
     if not first < last <= LAST_FRAME:
         raise LissomError(NO_LAST_FRAME.format(first=first, most=LAST_FRAME, last=last))
@@ -169,20 +164,18 @@ def set_last_frame(session: Session, project: Project, last: int) -> None:
 
 
 def clear_preview_range(session: Session) -> None:
-    """Play all frames, and not a preview range."""
+    """Play all frames."""
     edit_timing(session, scene_commands.set_preview(None))
 
 
 @with_project
 def start_preview_at_playhead(session: Session, project: Project) -> None:
-    """Let the preview range begin at the playhead."""
     frame = playback.current_frame(session, project)
     _set_preview(session, project, frame, max(frame, project.document.played_frames.last))
 
 
 @with_project
 def end_preview_at_playhead(session: Session, project: Project) -> None:
-    """Let the preview range end at the playhead."""
     frame = playback.current_frame(session, project)
     _set_preview(session, project, min(frame, project.document.played_frames.first), frame)
 
@@ -195,7 +188,7 @@ def _set_preview(session: Session, project: Project, first: int, last: int) -> N
 
 @with_project
 def add_marker(session: Session, project: Project, frame: int) -> None:
-    """Mark a frame, unless it is marked already."""
+    """Add a marker at a frame, unless it has one."""
     if any(marker.frame == frame for marker in project.document.markers):
         session.show_notice(f"Frame {frame} has a marker already. Double-click it to name it.")
     else:
@@ -204,20 +197,16 @@ def add_marker(session: Session, project: Project, frame: int) -> None:
 
 @with_project
 def add_marker_at_playhead(session: Session, project: Project) -> None:
-    """Mark the frame at the playhead."""
     add_marker(session, playback.current_frame(session, project))
 
 
 def rename_marker(session: Session, frame: int, name: str) -> None:
-    """Give a marker another name."""
     editing.edit_document(session, scene_commands.rename_marker(frame, name))
 
 
 def delete_marker(session: Session, frame: int) -> None:
-    """Take a marker away."""
     editing.edit_document(session, scene_commands.delete_marker(frame))
 
 
 def set_inbetween_method(session: Session, variant: Variant) -> None:
-    """Set how in-betweens are made."""
     editing.edit_layer(session, shape_commands.set_variant, variant)

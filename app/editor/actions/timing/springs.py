@@ -1,4 +1,4 @@
-"""What is done with springs: their swing becomes keys of a track."""
+"""Actions on springs: baking a spring's swing into keys of a track."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,12 +18,12 @@ from engine.geometry import diameter
 from engine.geometry.kinematics import fit_keys
 
 KEYING = JobKind("Making keys of a spring", "The swing could not be made into keys")
-NEAR = 4e-4  # of the layer's diameter: that the keys' motion may be beside the swing
+NEAR = 4e-4  # of the layer's diameter: largest distance of the keys' motion from the swing
 AT_REST = 0.01  # pixels
 
 
 class _Swing(NamedTuple):
-    """By how much a handle swings beside the pose: at frames from the first to the last (n,)."""
+    """Offsets of a handle from the pose, at frames from first to last, complex (n,)."""
 
     frames: Indices
     offsets: Complexes
@@ -31,7 +31,7 @@ class _Swing(NamedTuple):
 
 @with_project
 def bake_spring(session: Session, project: Project, handle: int) -> None:
-    """Give a handle a track that swings as its spring does, in place of the spring."""
+    """Replace a handle's spring by a track that swings in the same way."""
     layer, spring = project.layer, project.layer.spring_of(handle)
     if spring is None or not spring.enabled or layer.track_of(handle) is not None:
         return
@@ -46,7 +46,7 @@ def bake_spring(session: Session, project: Project, handle: int) -> None:
 def _measure(
     document: Document, identity: int, handle: int, siblings: Mapping[int, PoseSampler]
 ) -> _Swing:
-    """Measure how a handle swings beside the pose that it has without its spring."""
+    """Measure a handle's offset from its pose without the spring."""
     without = track_commands.remove_springs(identity, (handle,))(document)
     point = np.array([document.layer(identity).handle(handle).position])
     swinging, resting = (
@@ -66,7 +66,7 @@ def _measure(
 
 
 def _put(session: Session, project: Project, identity: int, spring: Spring, swing: _Swing) -> None:
-    """Put a swing into a track, in place of its spring, unless this is another one by now."""
+    """Replace a spring by a track with a swing, unless the spring has changed meanwhile."""
     layers = {layer.id: layer for layer in project.document.layers}
     layer = layers.get(identity)
     if layer is None or spring not in layer.springs:
@@ -75,7 +75,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
     if not len(moves):
         session.show_notice("It does not swing: nothing moves its place in the shape.")
         return
-    # It begins and ends at rest, where there is room for that.
+    # The swing begins and ends at rest if there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
     part = slice(first, last + 1)
     near = NEAR * diameter(layer.domain.outline)

@@ -1,4 +1,4 @@
-"""Gestures of the pointer in the timeline, from press to release, and what it shows."""
+"""Pointer gestures in the timeline, and the time range that it shows."""
 
 from dataclasses import replace
 from itertools import count
@@ -48,7 +48,7 @@ COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
 
 @with_project
 def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) -> None:
-    """Show a stretch of time; None fits all frames."""
+    """Show a range of time; None fits all frames."""
     if project.timeline.gesture is None:
         project.timeline.time_range = strip
     else:
@@ -56,7 +56,6 @@ def set_time_range(_: Session, project: Project, strip: TimeRangeView | None) ->
 
 
 def fit_timeline(session: Session) -> None:
-    """Show all frames."""
     set_time_range(session, None)
 
 
@@ -64,7 +63,7 @@ def fit_timeline(session: Session) -> None:
 def scroll_to_playhead(
     session: Session, project: Project, frame: int, strip: TimeRangeView | None
 ) -> None:
-    """Note that the playhead is at a frame, and show a stretch of time that it is in, if given."""
+    """Note the playhead's frame, and show a range of time around it if one is given."""
     project.timeline.last_shown_frame = frame
     if strip is not None:
         set_time_range(session, strip)
@@ -72,7 +71,7 @@ def scroll_to_playhead(
 
 @with_project
 def scroll_rows(_: Session, project: Project, to: float) -> None:
-    """Scroll the rows to a number of em below the first one; the chosen one is seen."""
+    """Scroll the rows to a number of em below the first row; the selected row counts as shown."""
     project.timeline.scrolled = to
     project.timeline.last_shown_rows = project.row, project.timeline.expanded_layers
 
@@ -81,13 +80,13 @@ def scroll_rows(_: Session, project: Project, to: float) -> None:
 def begin_timeline_drag(
     _: Session, project: Project, gesture: TimeGesture, strip: TimeRangeView
 ) -> None:
-    """Begin a gesture; what is shown stays until it ends."""
+    """Begin a gesture; the shown range of time is fixed until it ends."""
     project.timeline.gesture, project.timeline.gesture_time_range = gesture, strip
 
 
 @with_project
 def move_timeline_drag(session: Session, project: Project, frame: float, row: KeyRow) -> None:
-    """Follow the pointer to another time, on a row."""
+    """Follow the pointer to another frame and row."""
     match project.timeline.gesture:
         case KeyBox() as box:
             editing.select_keys_in_rows(session, _inside(project, box, frame, row))
@@ -99,7 +98,6 @@ def move_timeline_drag(session: Session, project: Project, frame: float, row: Ke
 
 @with_project
 def end_timeline_drag(_: Session, project: Project) -> None:
-    """End the gesture where it is."""
     timing = project.timeline
     if timing.time_range is not None:
         timing.time_range = timing.gesture_time_range
@@ -108,7 +106,7 @@ def end_timeline_drag(_: Session, project: Project) -> None:
 
 @with_project
 def cancel_timeline_drag(session: Session, project: Project) -> None:
-    """End the gesture, and take back what it did."""
+    """End the gesture, and undo its edits."""
     gesture = project.timeline.gesture
     if isinstance(gesture, KeyBox):
         editing.select_keys_in_rows(session, gesture.keeps)
@@ -121,14 +119,14 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
 
 @with_project
 def toggle_track_rows(_: Session, project: Project, layer: int) -> None:
-    """Let the tracks of a layer have rows, or fold them away: then none of them is chosen."""
+    """Show or hide the track rows of a layer; a hidden row is deselected."""
     project.timeline.expanded_layers ^= {layer}
     if layer == project.active and layer not in project.timeline.expanded_layers:
         project.selected_track = None
 
 
 def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysByRow:
-    """Return the keys within a box that ends at a frame and a row, and those that it keeps."""
+    """Return the keys in a box that ends at a frame and a row, and the keys that it keeps."""
     document = project.document
     low, high = sorted((box.start, frame))
     order = project.rows
@@ -150,22 +148,19 @@ def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysByR
 
 
 def drag_offset(document: Document, keys: KeysByRow, wanted: int, *, copies: bool) -> int:
-    """Return the number of frames next to `wanted` by which keys can be moved.
+    """Return the number of frames nearest to `wanted` by which keys can be moved.
 
     Parameters
     ----------
-    keys : mapping of KeyRow to frozenset of int
-        Their frames, by their rows.
-    wanted : int
     copies : bool
-        Whether they stay as well; then 0 stands for no copies.
+        Whether the original keys stay; then 0 means no copies.
     """
     there = {row: frames_in(document, row) for row in keys}
     taken = there if copies else {row: there[row] - keys[row] for row in keys}
     low, high = -min(map(min, keys.values())), LAST_FRAME - max(map(max, keys.values()))
     wanted = min(max(wanted, low), high)
     for distance in count():
-        # On the side from which the pointer comes first: keys wait before one that is in the way.
+        # The pointer's side comes first: keys stop before a key that is in the way.
         for by in (wanted - distance, wanted + distance)[:: 1 if wanted > 0 else -1]:
             if by == 0 or (
                 low <= by <= high
@@ -178,7 +173,7 @@ def drag_offset(document: Document, keys: KeysByRow, wanted: int, *, copies: boo
 
 
 def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> None:
-    """Move what is dragged to the pointer's frame, unless something else changed meanwhile."""
+    """Move the dragged item to the pointer's frame, unless another edit came meanwhile."""
     moved = _moved(drag, frame)
     if moved is None:
         return
@@ -189,7 +184,7 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
     try:
         document = command(drag.before)
     except LissomError:
-        # Keys stay where they are before what repeats.
+        # Keys before a cycle stay where they are.
         return
     _become(session, document, command.label)
     if isinstance(drag, KeyDrag):
@@ -200,9 +195,9 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
 
 
 def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
-    """Return the drag with what it moves as near to a frame as can be, and the command for that.
+    """Return the drag, moved as near to a frame as possible, and its command.
 
-    The command is for the document as it was before; None where nothing moves.
+    The command is for the document before the drag. None if nothing moves.
     """
     by, before = round(frame - drag.start), drag.before
     match drag:
@@ -239,7 +234,7 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
 
 
 def _end_cycle(drag: CycleDrag, frame: int) -> Command:
-    """Return the command that puts the dragged end of a cycle where the pointer is, or near."""
+    """Return the command that puts the dragged end of a cycle as near to a frame as possible."""
     layer = drag.before.layer(drag.layer)
     cycle = cycle_commands.cycle_starting_at(layer, drag.first)
     last, until = cycle.last, cycle.until
@@ -252,7 +247,7 @@ def _end_cycle(drag: CycleDrag, frame: int) -> Command:
 
 
 def _trim(drag: EdgeDrag, pointed: float) -> Command:
-    """Return the command that puts the dragged end where the pointer is."""
+    """Return the command that puts the dragged end at the pointer."""
     document = drag.before
     frames, played = document.frames, document.played_frames
     frame = frames.clamp(round(pointed))
@@ -274,5 +269,5 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
 
 
 def _become(session: Session, document: Document, label: str) -> None:
-    """Go on to another document, as part of the gesture's one step of undo."""
+    """Set the document, within the gesture's single undo step."""
     edit_timing(session, Command(label, lambda _: document))

@@ -1,4 +1,4 @@
-"""What is done with tracks: choosing their rows, and keys of single handles."""
+"""Actions on tracks: selecting their rows, and keys of single handles."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ from app.editor.work import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
-AROUND = 1 / 64  # frames beside a key, between which its velocity is measured
+AROUND = 1 / 64  # frames before and after a key, between which its velocity is measured
 CONVERTING_KEYS = JobKind(
     "Placing keys of a track", "The places of the track's keys could not be found"
 )
@@ -34,21 +34,21 @@ CONVERTING_KEYS = JobKind(
 
 @with_project
 def select_track(_: Session, project: Project, handle: int | None) -> None:
-    """Choose the row of a handle's track, so that drags of it go there; None the whole pose's."""
+    """Select the row of a handle's track, which drags then key; None selects the pose row."""
     project.selected_track = handle
 
 
 @with_project
 def key_selected_handles(session: Session, project: Project) -> None:
-    """Key the selected handles alone at the present frame."""
+    """Key the selected handles at the present frame, not the pose."""
     key_handles_at_playhead(session, sorted(project.selected_handles))
 
 
 @with_project
 def key_handles_at_playhead(session: Session, project: Project, handles: Sequence[int]) -> None:
-    """Key handles alone at the present frame, where they are now, and choose their track's row.
+    """Key handles at the present frame where they are, and select their track's row.
 
-    Those that have no track get one together, with the pose; their first key is no offset.
+    Handles without a track get a shared track relative to the pose; its first key has offset 0.
     """
     playback.stop_playback(session)
     posing.release_drag(session)
@@ -68,7 +68,7 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
 
 
 def _key(session: Session, project: Project, track: Track, gesture: object) -> None:
-    """Insert a key into a track at the present frame that changes nothing there."""
+    """Insert a key into a track at the present frame without moving the handle."""
     frame, layer = playback.current_frame(session, project), project.layer
     own = tracking.find_key_frame(session, project.document, track, frame)
     if own is None or own in track.key_frames:
@@ -104,9 +104,9 @@ def _key(session: Session, project: Project, track: Track, gesture: object) -> N
 def set_handle_value(
     session: Session, project: Project, handle: int, place: complex, turn: float | None = None
 ) -> None:
-    """Let the track of a handle have a key at the present frame that wants it at a place.
+    """Key the track of a handle at the present frame with a place.
 
-    Of a track with the pose, 0 is where the pose has it: there the track may begin and end.
+    A track relative to the pose stores an offset from the pose. It may begin and end at offset 0.
     """
     playback.stop_playback(session)
     track = project.layer.track_of(handle)
@@ -123,19 +123,19 @@ def set_handle_value(
 
 
 class _BaseValue(NamedTuple):
-    """Where a handle is in a frame without its track, as places of tracks' keys are told by it."""
+    """A handle's motion at a frame without its track; track keys are relative to it."""
 
-    place: complex  # by the layer itself
-    turned: complex  # of modulus 1: by how much the shape is turned there
-    carried: RigidMotion  # where the layer hangs
+    place: complex  # in the layer's own space
+    turned: complex  # of modulus 1: rotation of the shape at the handle
+    carried: RigidMotion  # motion of the layer by its parents
 
     def planted(self, offset: complex) -> complex:
-        """Return the place in the picture of an offset beside the pose."""
+        """Convert an offset from the pose to a place in the scene."""
         place = np.array([self.place + offset * self.turned])
         return complex(self.carried.apply(place)[0])
 
     def offset(self, planted: complex) -> complex:
-        """Return by how much a place in the picture is beside the pose."""
+        """Convert a place in the scene to an offset from the pose."""
         return (self.carried.apply_inverse(planted) - self.place) * self.turned.conjugate()
 
 
@@ -146,7 +146,7 @@ def _base_value_at(
     frames: Sequence[float],
     siblings: Mapping[int, PoseSampler],
 ) -> list[_BaseValue]:
-    """Return where the first handle of a track is in some frames without it."""
+    """Return the base motion of a track's first handle at some frames."""
     point = np.array([layer.handle(track.handles[0]).position])
     carried = find_parent_motion(document, layer.id, siblings)
     animation = layer_animation(document, layer.id, point, siblings, carried)
@@ -161,7 +161,7 @@ def _base_value_at(
 
 @with_project
 def set_track_space(session: Session, project: Project, handle: int, planted: bool) -> None:  # noqa: FBT001
-    """Let a track's keys be places in the picture, or beside the pose; none moves by that."""
+    """Convert a track's keys to places in the scene or to offsets; the motion stays."""
     layer, track = project.layer, project.layer.track_of(handle)
     if track is None or track.is_scene_space == planted:
         return
@@ -172,7 +172,7 @@ def set_track_space(session: Session, project: Project, handle: int, planted: bo
     def take(found: list[_BaseValue]) -> None:
         now = {each.id: each for each in project.document.layers}.get(layer.id)
         if now is None or track not in now.tracks:
-            # It became another one meanwhile.
+            # The track has changed meanwhile.
             return
         beside = dict(zip(frames, found, strict=True))
         keys = [
@@ -187,9 +187,9 @@ def set_track_space(session: Session, project: Project, handle: int, planted: bo
 
 
 def _frames_around(document: Document, track: Track, key: TrackKey) -> list[float]:
-    """Return the frame of the scene at which a key is seen, and two that tell its velocity.
+    """Return the scene frame of a key, and two nearby frames that give its velocity.
 
-    They are just before it and just after, if it has a velocity of its own.
+    Without a velocity of its own, the key needs no nearby frames.
     """
     seen, frames = display_frame(document, track, key.frame), document.frames
     if key.velocity is None:
@@ -200,7 +200,7 @@ def _frames_around(document: Document, track: Track, key: TrackKey) -> list[floa
 def _replaced(
     key: TrackKey, beside: Sequence[_BaseValue], frames: Sequence[float], *, planted: bool
 ) -> TrackKey:
-    """Return a key with a place in the picture, or beside the pose, that is where it was."""
+    """Convert a key to a place in the scene or to an offset, without moving the handle."""
     there = []
     for frame, each in zip(frames, beside, strict=True):
         place = key.place + (frame - frames[0]) * (key.velocity or 0j)

@@ -1,4 +1,4 @@
-"""The worker's way to corrected frames: the one that is watched first, then all others."""
+"""Jobs for corrected frames: the shown frame first, then all others."""
 
 from collections.abc import Callable, Iterator
 
@@ -13,20 +13,20 @@ from app.motion import CorrectedFrames, CorrectionUpdate
 COMPLAINT = "The handles cannot follow their tracks"
 CORRECTING = JobKind("Corrections", COMPLAINT)
 CORRECTING_SHOWN_FRAME = JobKind("Frame correction", COMPLAINT, "hand")
-# What the tracks of handles that a hand may carry are relative to.
+# Base motions of tracks whose handles may be dragged.
 FINDING_BASE_FRAMES = JobKind("Places on tracks", COMPLAINT, "hand")
 
 Work = Callable[[], CorrectionUpdate]
 
 
 def is_track_drag_pending(session: Session, project: Project) -> bool:
-    """Tell whether a hand has a handle on its track: but for the frame that it sees all waits."""
+    """Return whether a handle is dragged on its track; only the shown frame is computed then."""
     is_recorded = project.recording is not None and not project.recording.is_over
     return is_recorded or (session.active_tool is not None and project.selected_track is not None)
 
 
 def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what finds the corrections of some frames, those nearest to the playhead first."""
+    """Yield the job for corrections of some frames, nearest to the playhead first."""
     frame = playback.current_frame(session, project)
     if CORRECTING not in session.jobs.kinds:
         for clip, puppet, corrected in _corrected(project):
@@ -37,8 +37,8 @@ def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
 
 
 def correction_jobs_for_shown_frame(session: Session, project: Project) -> Iterator[Job]:
-    """Yield what finds the correction of the frame that is watched, and what hands need."""
-    # Pulls come first, but for those that wait until what is seen is there.
+    """Yield jobs for the shown frame's correction, and for base motions that drags need."""
+    # Pose drags come first, except drags that wait for the shown frame.
     if not (project.pulls and session.prepares_ahead) or is_track_drag_pending(session, project):
         yield from _follow(session, project)
         yield from _ground(session, project)
@@ -47,7 +47,7 @@ def correction_jobs_for_shown_frame(session: Session, project: Project) -> Itera
 def _follow(session: Session, project: Project) -> Iterator[Job]:
     is_playing = project.playhead.since is not None
     if CORRECTING_SHOWN_FRAME in session.jobs.kinds or (is_playing and project.recording is None):
-        # Of a frame that only plays it would come too late.
+        # During playback the correction would come too late.
         return
     frame, is_urgent = (
         playback.current_frame(session, project),
@@ -55,7 +55,7 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
     )
     for clip, puppet, corrected in _corrected(project):
         work = corrected.missing_here(project.document, frame, project.samplers)
-        # The next drag of a pose is not to wait until all is prepared.
+        # The next pose drag must not wait until all frames are prepared.
         is_wanted = corrected.is_begun or is_urgent or not session.prepares_ahead
         if work is not None and is_wanted:
             yield _job(session, project, CORRECTING_SHOWN_FRAME, puppet, clip, work)
@@ -90,10 +90,10 @@ def _corrected(project: Project) -> Iterator[tuple[Clip, LayerRuntime, Corrected
 def _job(
     session: Session, project: Project, kind: JobKind, puppet: LayerRuntime, clip: Clip, work: Work
 ) -> Job:
-    """Return a job for some corrections; what fails is not tried again for the same keys."""
+    """Return a job for corrections; a failed job is not repeated for the same keys."""
 
     def done(found: CorrectionUpdate) -> None:
-        # The hand may have gone on since.
+        # The drag may have moved on meanwhile.
         if puppet.corrected is not None:
             puppet.corrected.take(found, is_newest=kind == CORRECTING_SHOWN_FRAME)
             project.free_memory()

@@ -1,4 +1,4 @@
-"""Drags that are recorded while the timeline plays, and fitted by as few keys as will do."""
+"""Drags that are recorded while the timeline plays, and fitted by few keys."""
 
 from dataclasses import replace
 
@@ -17,16 +17,16 @@ from engine.geometry import RigidMotion
 from engine.geometry.kinematics import fit_keys
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
-# How far a fitted motion may be from what was recorded, in pixels of the screen, on which hands
-# tremble: at no smoothing and at all of it.
+# Largest distance of the fitted motion from the recorded one, in pixels of the screen, since
+# tremor is in screen pixels: without smoothing and with full smoothing.
 CLOSEST, SMOOTHEST = 0.3, 12.0
-SMOOTHING = 0.5  # at first
+SMOOTHING = 0.5  # initial value
 NO_RECORDING = "The recording could not be kept"
 
 
 @with_project
 def toggle_recording_armed(session: Session, project: Project) -> None:
-    """Let the next drag of a handle be recorded, or not any more; what was recorded is kept."""
+    """Arm the next drag of a handle for recording, or disarm it; earlier recordings stay."""
     accept_recording(session)
     if session.records:
         session.records = False
@@ -39,7 +39,7 @@ def toggle_recording_armed(session: Session, project: Project) -> None:
 
 
 def set_recording_speed(session: Session, speed: float) -> None:
-    """Set how fast the timeline plays while a drag is recorded."""
+    """Set the playback speed while a drag is recorded."""
     session.recording_speed = speed
 
 
@@ -52,7 +52,7 @@ def start_recording(
     track, document, standing = project.layer.track_of(handle), project.document, project.playhead
     running = replace(standing, speed=session.recording_speed).play(document, session.clock())
     frames, played = document.frames, document.played_frames
-    # Over the seam of a loop it goes on, at most once round; that of a part of it is a jump.
+    # A recording goes on over a loop's end, at most once round. The end of a preview range jumps.
     goes_round = document.loop and played == frames
     project.playhead = running
     project.recording = Recording(
@@ -71,16 +71,16 @@ def start_recording(
 
 @with_project
 def drag_recorded_handle(_: Session, project: Project, place: complex) -> None:
-    """Want the handle that is recorded at another place of the scene."""
+    """Set the target of the recorded handle, a place of the scene."""
     if project.recording is not None:
         project.recording.place = place
 
 
 @with_project
 def stop_recording(session: Session, project: Project, *, has_moved: bool = True) -> None:
-    """End a recording where it is; the playhead goes back to where that began.
+    """End a recording; the playhead goes back to its frame at the start.
 
-    Where the hand has not moved it is kept if the body moved under it.
+    A recording without a pointer move is kept if the body moved under the pointer.
     """
     take = project.recording
     if take is None or take.is_over:
@@ -95,7 +95,7 @@ def stop_recording(session: Session, project: Project, *, has_moved: bool = True
 
 
 def accept_recording(session: Session) -> None:
-    """Keep what was recorded, as it is."""
+    """Keep the recorded keys."""
     stop_recording(session)
     if session.project is not None:
         session.project.recording = None
@@ -103,7 +103,7 @@ def accept_recording(session: Session) -> None:
 
 @with_project
 def discard_recording(session: Session, project: Project) -> None:
-    """Take back what was recorded, or record nothing."""
+    """Undo the recording, or disarm recording."""
     session.records, take = False, project.recording
     if take is not None:
         stop_recording(session)
@@ -112,14 +112,14 @@ def discard_recording(session: Session, project: Project) -> None:
 
 
 def retry_recording(session: Session) -> None:
-    """Take back what was recorded, and let the next drag be recorded in its place."""
+    """Undo the recording, and arm the next drag."""
     discard_recording(session)
     session.records = True
 
 
 @with_project
 def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
-    """Smooth what was recorded, from 0 to 1."""
+    """Smooth the recorded motion, from 0 to 1."""
     take = project.recording
     if take is not None and take.after is not None:
         take.smoothing = smoothing
@@ -127,7 +127,7 @@ def smooth_recording(_: Session, project: Project, smoothing: float) -> None:
 
 
 def update_track_drags(session: Session, project: Project) -> None:
-    """Go on with what hands do with tracks; once a frame."""
+    """Advance track drags and the recording; once a frame."""
     if not (project.track_drags or project.recording):
         return
     project.layer_runtime.corrected = reuse_corrections(
@@ -141,7 +141,7 @@ def update_track_drags(session: Session, project: Project) -> None:
         take.handle == each.id for each in project.layer.handles
     )
     if not is_here or (take.after is not None and take.after is not project.document):
-        # What was done since, even that it was taken back, is what the person goes on with.
+        # A later edit or undo replaces the recording's last result.
         accept_recording(session)
     elif not take.is_over:
         _record(session, project, take)
@@ -156,7 +156,7 @@ def update_track_drags(session: Session, project: Project) -> None:
 
 
 def _record(session: Session, project: Project, take: Recording) -> None:
-    """Take note of where the handle is dragged at this moment, and show that."""
+    """Add a sample of the handle's place at this moment, and show it."""
     since, now, shown = take.playhead.since, session.clock(), project.layer_runtime.shown
     if since is None:
         return
@@ -183,7 +183,7 @@ def _record(session: Session, project: Project, take: Recording) -> None:
 
 
 def _is_click(project: Project, take: Recording) -> bool:
-    """Tell whether the hand has rested on a body that has not moved, as far as that is known."""
+    """Return whether the pointer rested on a body that is not known to have moved."""
     if take.has_moved:
         return False
     times = [sample.time for sample in take.samples]
@@ -194,7 +194,7 @@ def _is_click(project: Project, take: Recording) -> bool:
 
 
 def _write(project: Project, take: Recording) -> None:
-    """Let the track have what was recorded, once it is known what that is relative to."""
+    """Write the recorded motion to the track, once its base motion is known."""
     clip, before = project.clip, take.before
     values = _values(project, take)
     if values is None:
@@ -208,7 +208,7 @@ def _write(project: Project, take: Recording) -> None:
     start, end = fitted[0][0], fitted[-1][0]
     recorded = {own(frame) for frame in range(start, end + 1)}
     keys = {} if before is None else {k.frame: k for k in before.keys if k.frame not in recorded}
-    # After a whole round of a loop, where it began counts and not where it ended.
+    # After a whole round of a loop, the start counts and not the end.
     for frame, place, velocity in reversed(fitted):
         at, number = track_at(fresh, clip, _wrapped(project, frame)), own(frame)
         if number is not None:
@@ -226,10 +226,10 @@ def _write(project: Project, take: Recording) -> None:
 def _fitted(
     project: Project, take: Recording, values: list[complex]
 ) -> list[tuple[int, complex, complex]]:
-    """Return frames, places and velocities of as few keys as will do.
+    """Fit the recorded values by few keys; return their frames, places and velocities.
 
-    They go on over a loop's seam. There is one at the seam: the last frame of a loop is its first
-    one again.
+    Frames count on over the end of a loop. One key is at the end, since the last frame of a loop is
+    its first frame again.
     """
     tolerance = CLOSEST * (SMOOTHEST / CLOSEST) ** take.smoothing / take.scale
     times, seam = [sample.time for sample in take.samples], project.document.frames.last
@@ -238,7 +238,7 @@ def _fitted(
 
 
 def _values(project: Project, take: Recording) -> list[complex] | None:
-    """Return what was recorded as the track's keys have it; None until all of it is known."""
+    """Convert the samples to values of track keys; None until all base motions are known."""
     if take.before is not None and take.before.is_scene_space:
         return [sample.place for sample in take.samples]
     index, values = handle_index(project, take.handle), []
@@ -251,7 +251,7 @@ def _values(project: Project, take: Recording) -> list[complex] | None:
         placements = project.placed_at(project.active, ends)
         if len(grounds) < len(ends) or placements is None:
             return None
-        # The body moves on from frame to frame, and the place of the hand is beside it in both.
+        # The body moves between two frames, so the sample is converted at both.
         one, other = (
             _beside(ground, placement, index, place)
             for ground, placement in zip(grounds, placements, strict=True)
@@ -261,13 +261,13 @@ def _values(project: Project, take: Recording) -> list[complex] | None:
 
 
 def _beside(ground: BaseMotionFrame, placement: RigidMotion, index: int, place: complex) -> complex:
-    """Return by how much a place of the scene is beside a handle's, in the axes of the shape."""
+    """Return the offset of a scene place from a handle, in the axes of the shape."""
     beside = placement.apply_inverse(place) - ground.positions[index]
     return complex(beside * ground.rotations[index].conjugate())
 
 
 def _wrapped(project: Project, frame: int) -> int:
-    """Return a frame that goes on over the seam of a loop where it is in the animation."""
+    """Return the frame of the animation for a frame that counts on over the end of a loop."""
     frames = project.document.frames
     if project.document.loop and frame > frames.last:
         return frames.first + (frame - frames.first) % (frames.last - frames.first)

@@ -1,7 +1,7 @@
-"""Handles that a hand carries: each place of the pointer is a key of the handle's track.
+"""Drags of handles along their tracks: each pointer place becomes a key of the track.
 
-The document has the key at once. What is shown follows as fast as corrections are solved, those of
-the newest place.
+The document has the key at once. The shown frame follows as fast as the worker solves the
+correction for the newest place.
 """
 
 from app.document import Track, track_at, track_commands, velocity_at
@@ -22,7 +22,7 @@ NO_KEY = "The key of the handle could not be kept"
 
 
 def draggable_track(project: Project, handle: int) -> Track | None:
-    """Return the track that a drag of a handle is for, as its row is chosen; None for poses."""
+    """Return the track that a drag of a handle keys; None if the drag keys the pose."""
     chosen = project.selected_track
     track = None if chosen is None else project.layer.track_of(chosen)
     return track if track is not None and handle in track.handles else None
@@ -32,16 +32,10 @@ def draggable_track(project: Project, handle: int) -> Track | None:
 def drag_track_handle(
     session: Session, project: Project, handle: int, place: complex, *, gesture: object
 ) -> None:
-    """Want a handle elsewhere at the present frame by its own track; the pose stays.
+    """Set a handle's target at the present frame on its own track; the pose stays.
 
-    What one gesture does is one step of undo.
-
-    Parameters
-    ----------
-    handle : int
-        The first one of the track's.
-    place : complex
-        On the layer by itself.
+    Edits of one gesture are one undo step. `handle` is the first handle of the track. `place` is in
+    the layer's own space.
     """
     for held in project.track_drags:
         if held.gesture is gesture:
@@ -59,10 +53,9 @@ def drag_track_handle(
 def rotate_track_handle(
     session: Session, project: Project, handle: int, angle: float, *, gesture: object
 ) -> None:
-    """Want the shape turned by an angle at a handle, in radians, by the handle's own track.
+    """Set the rotation of the shape at a handle, in radians, on the handle's track.
 
-    A track that has turned nothing so far turns the shape from then on, as the pose does at its
-    other keys.
+    A track that keyed no rotation keys it from now on; its other keys get the pose's rotation.
     """
     held = next((each for each in project.track_drags if each.gesture is gesture), None)
     track, shown = project.layer.track_of(handle), project.layer_runtime.shown
@@ -89,14 +82,14 @@ def rotate_track_handle(
 
 
 def cancel_track_drag(project: Project, gesture: object) -> None:
-    """Take back what a gesture has wanted of a track and did not get yet."""
+    """Drop a gesture's track targets that are not yet keyed."""
     for held in project.track_drags:
         if held.gesture is gesture:
             project.pending.remove(held)
 
 
 def commit_track_drags(session: Session, project: Project) -> None:
-    """Let tracks have the keys that hands want, as far as these are known; once a frame."""
+    """Key the targets of track drags whose base motion is known; once a frame."""
     for held in project.track_drags:
         is_there = held.layer == project.active and held.handle in [
             handle.id for handle in project.layer.handles
@@ -111,7 +104,7 @@ def commit_track_drags(session: Session, project: Project) -> None:
 
 
 def commit_track_key(session: Session, project: Project, held: TrackDrag) -> bool:
-    """Give a handle's track the key that a hand wants; tell whether nothing is awaited."""
+    """Key the target of a track drag; return whether nothing is awaited any more."""
     handle, frame = held.handle, held.frame
     track = project.layer.track_of(handle)
     own = frame if track is None else find_key_frame(session, project.document, track, frame)

@@ -1,4 +1,4 @@
-"""What tracks' keys are on the layer that is posed: places, and back."""
+"""Conversion between places of the active layer and values of track keys."""
 
 import cmath
 import math
@@ -11,7 +11,7 @@ from app.motion import BaseMotionFrame
 
 
 def find_key_frame(session: Session, document: Document, track: Track, frame: int) -> int | None:
-    """Return the frame of the key that is seen at a frame; where there can be none, it is told."""
+    """Return the frame of the track key for a frame; show a notice if none is possible."""
     own = source_frame(document, track, frame)
     if own is None:
         session.show_notice(
@@ -22,20 +22,19 @@ def find_key_frame(session: Session, document: Document, track: Track, frame: in
 
 
 def base_frame_at(project: Project, frame: int) -> BaseMotionFrame | None:
-    """Return what tracks are relative to at a frame, if it is known yet."""
+    """Return the base motion of tracks at a frame; None while it is unknown."""
     corrected = project.layer_runtime.corrected
     return None if corrected is None else corrected.ground(frame)
 
 
 def handle_index(project: Project, handle: int) -> int:
-    """Return which of the layer's handles it is."""
     return [each.id for each in project.layer.handles].index(handle)
 
 
 def track_target(project: Project, track: Track, frame: int) -> complex | None:
-    """Return where a track wants its first handle at a frame, on the layer by itself.
+    """Return a track's target of its first handle at a frame, in the layer's own space.
 
-    None where it does not act, or where that is not known yet.
+    None if the track has no value there, or while its base motion is unknown.
     """
     at, ground = track_at(track, project.clip, frame), base_frame_at(project, frame)
     shown = project.layer_runtime.shown
@@ -50,9 +49,9 @@ def track_target(project: Project, track: Track, frame: int) -> complex | None:
 
 
 def track_target_angle(project: Project, handle: int, frame: int) -> float | None:
-    """Return by how much a handle's track wants the shape turned there, in radians.
+    """Return a track's target rotation of the shape at a handle, in radians.
 
-    None where it turns nothing, or where that is not known yet.
+    None if the track keys no rotation, or while its base motion is unknown.
     """
     track, ground = project.layer.track_of(handle), base_frame_at(project, frame)
     at = None if track is None or not track.keys_rotation else track_at(track, project.clip, frame)
@@ -62,10 +61,10 @@ def track_target_angle(project: Project, handle: int, frame: int) -> float | Non
 
 
 def to_track_angle(project: Project, handle: int, frame: int, turn: float) -> float | None:
-    """Return what a key of a handle's track has there for a turn of the shape, in radians.
+    """Convert a rotation of the shape to the value of a track key, in radians.
 
-    Of all that are whole turns apart it is the nearest to what the track has there. None where it
-    is not known yet.
+    Among values whole turns apart, it is the nearest to the track's present value. None while the
+    base motion is unknown.
     """
     track, ground = project.layer.track_of(handle), base_frame_at(project, frame)
     if ground is None:
@@ -77,9 +76,9 @@ def to_track_angle(project: Project, handle: int, frame: int, turn: float) -> fl
 
 
 def to_track_offset(project: Project, handle: int, frame: int, place: complex) -> complex | None:
-    """Return what a key of a handle's track has there for a place of the layer by itself.
+    """Convert a place in the layer's own space to the value of a track key.
 
-    A handle without a track gets one with the pose. None where it is not known yet.
+    A new track is relative to the pose. None while the base motion is unknown.
     """
     track, shown = project.layer.track_of(handle), project.layer_runtime.shown
     if track is not None and track.is_scene_space:

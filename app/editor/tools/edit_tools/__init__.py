@@ -1,7 +1,7 @@
-"""Tools that say what a layer is made of: brushes, the knife, the pipette, bones, joints.
+"""Tools that edit a layer's cut-out, stiffness, bones and joints.
 
-In: where the pointer goes.
-Out: strokes and bones, and where the joints of a motion are.
+In: the pointer's places.
+Out: strokes, bones, and the joints of a motion.
 Imports: `app.editor.actions`, `app.editor.tools.tool`.
 """
 

@@ -1,4 +1,4 @@
-"""Cutting out by hand: a round brush, a knife, a pipette, and clicks on holes."""
+"""Cut-out tools: a round brush, a knife, a pipette, and clicks on holes."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -11,13 +11,13 @@ from app.editor.session import Hint, KnifeOverlay, Mark, Session, StrokeOverlay
 from app.editor.tools.tool import PointerHit, Tool
 from engine.domain import CutLine, Stroke
 
-STEP = 0.12  # of the brush's radius: points of a stroke are no nearer together
-REACH = 8.0  # pixels of the screen: a click so near to a line is on it
+STEP = 0.12  # of the brush's radius: least distance of a stroke's points
+REACH = 8.0  # screen pixels: a click within this distance of a line is on the line
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class CutBrushTool(Tool):
-    """The pointer draws a stroke through places; it is done when the button is let go."""
+    """The pointer draws a stroke; the cut-out changes at the release."""
 
     places: list[complex]
     radius: float
@@ -25,7 +25,6 @@ class CutBrushTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
-        """Tell what the brush does, and how it is changed."""
         if session.cutting not in {"keep", "remove"}:
             return ()
         other = "remove" if session.cutting == "keep" else "keep"
@@ -38,7 +37,7 @@ class CutBrushTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin a stroke; with Alt, one that does the opposite."""
+        """Begin a stroke; with Alt, swap keep and remove."""
         if session.cutting not in {"keep", "remove"}:
             return None
         keeps = (session.cutting == "keep") != spot.alt
@@ -46,12 +45,11 @@ class CutBrushTool(Tool):
         return cls(project=project, places=[spot.place], radius=radius, keeps=keeps)
 
     def move(self, _: Session, place: complex) -> None:
-        """Go on to the pointer."""
         if abs(place - self.places[-1]) >= STEP * self.radius:
             self.places.append(place)
 
     def end(self, session: Session, place: complex) -> None:
-        """Keep or remove what it covers."""
+        """Keep or remove the area of the stroke."""
         if place != self.places[-1]:
             self.places.append(place)
         points = np.array(self.places) - self.project.layer.corner
@@ -61,20 +59,18 @@ class CutBrushTool(Tool):
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """What it covers."""
         return (StrokeOverlay(points=tuple(self.places), radius=self.radius, keeps=self.keeps),)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class KnifeTool(Tool):
-    """The pointer draws a line along which the knife parts; a click with Alt takes one away."""
+    """The pointer draws a line along which the knife cuts; a click with Alt removes a line."""
 
     places: list[complex]
     parts: bool
 
     @classmethod
     def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
-        """Tell how a line is drawn, and how one is taken away."""
         if session.cutting != "knife":
             return ()
         return (
@@ -84,18 +80,17 @@ class KnifeTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin a line; with Alt, a click on one."""
+        """Begin a line; with Alt, begin a click on a line."""
         if session.cutting != "knife":
             return None
         return cls(project=project, places=[spot.place], parts=not spot.alt)
 
     def move(self, session: Session, place: complex) -> None:
-        """Go on to the pointer."""
         if self.is_away(session, self.places[-1], place):
             self.places.append(place)
 
     def end(self, session: Session, place: complex) -> None:
-        """Part what it goes through, or take a line away."""
+        """Cut along the line, or remove a line."""
         view = self.project.view(session.screen)
         if not self.parts:
             cut_out_editing.remove_knife_cut(session, place, REACH / view.scale)
@@ -103,24 +98,22 @@ class KnifeTool(Tool):
         if place != self.places[-1]:
             self.places.append(place)
         if len(self.places) < 2 or not self.is_away(session, self.places[0], place):
-            return  # a click is no line
+            return  # a click draws no line
         cut_out_editing.cut_with_knife(
             session, CutLine(points=np.array(self.places) - self.project.layer.corner)
         )
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """The line."""
         return (KnifeOverlay(points=tuple(self.places)),) if self.parts else ()
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class CutClickTool(Tool):
-    """A click that picks the background's colour, or swaps a hole; done when it is let go."""
+    """A click picks the background colour, or swaps a hole, at the release."""
 
     @classmethod
     def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
-        """Tell what a click does."""
         match session.cutting:
             case "pick":
                 return (Hint("click", "on the background to remove its colour"),)
@@ -131,11 +124,9 @@ class CutClickTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, _: PointerHit) -> Self | None:
-        """Begin a click."""
         return cls(project=project) if session.cutting in {"pick", "holes"} else None
 
     def end(self, session: Session, place: complex) -> None:
-        """Pick the colour, or swap the hole."""
         act = (
             cut_out_editing.pick_background_colour
             if session.cutting == "pick"

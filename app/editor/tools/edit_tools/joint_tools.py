@@ -1,4 +1,4 @@
-"""Joints of a motion by hand: each is dragged to where it belongs, or left out by a click."""
+"""Joint tool: a drag places a joint of a motion, and a click leaves it out."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -9,21 +9,20 @@ from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.editor.work import MotionSetup
 
-REACH = 14.0  # pixels of the screen: a joint so near to the pointer is meant
+REACH = 14.0  # screen pixels: reach of the pointer around a joint
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class JointTool(Tool):
-    """The pointer drags a joint; with Alt held a click leaves it out."""
+    """The pointer drags a joint; a click with Alt leaves the joint out."""
 
     name: str
     start: complex
-    draft: MotionSetup  # as it was before
+    draft: MotionSetup  # the draft before the drag
     is_drag: bool = False
 
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell what is done with a joint."""
         name = find_joint_near(session, project, spot.place)
         if name is None:
             return (Hint("drag", "each joint to where it belongs"),)
@@ -31,7 +30,7 @@ class JointTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Take hold of a joint, or leave it out."""
+        """Grab a joint, or leave it out."""
         name, draft = find_joint_near(session, project, spot.place), project.motion_setup
         if draft is None:
             return None
@@ -45,29 +44,26 @@ class JointTool(Tool):
         return cls(project=project, name=name, start=spot.place, draft=draft)
 
     def move(self, session: Session, place: complex) -> None:
-        """Let the joint follow the pointer, on the drawing."""
+        """Move the joint to the pointer, within the drawing."""
         self.is_drag = self.is_drag or self.is_away(session, self.start, place)
         if self.is_drag and self.project.motion_setup is not None:
             self.project.motion_setup = self.draft
             joint_placement.move_shown_joint(session, self.name, place)
 
     def end(self, session: Session, place: complex) -> None:
-        """Leave it where the pointer is."""
         self.move(session, place)
 
     def cancel(self, _: Session) -> None:
-        """Put the joint back."""
         if self.project.motion_setup is not None:
             self.project.motion_setup = self.draft
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        """What can be done until it ends."""
         return (Hint("let go", "where it belongs"),)
 
 
 def find_joint_near(session: Session, project: Project, place: complex) -> str | None:
-    """Return the joint that is nearest to a place, if it is near enough."""
+    """Return the joint nearest to a place, within reach."""
     reach = REACH / project.view(session.screen).scale
     away = {
         name: abs(at - place) for name, at in joint_placement.shown_joint_places(project).items()

@@ -1,4 +1,4 @@
-"""Material by hand: a brush that makes parts stiff or soft, and bones from handle to handle."""
+"""Stiffness tools: a brush that makes parts stiff or soft, and bones between handles."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -8,13 +8,13 @@ from app.editor.project import Project
 from app.editor.session import BoneOverlay, Hint, Mark, Session, StrokeOverlay
 from app.editor.tools.tool import PointerHit, Tool
 
-STEP = 0.25  # of the brush's radius: points of a stroke are no nearer together
-REACH = 14.0  # pixels of the screen: a handle so near to the pointer is meant
+STEP = 0.25  # of the brush's radius: least distance of a stroke's points
+REACH = 14.0  # screen pixels: reach of the pointer around a handle
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class StiffnessBrushTool(Tool):
-    """The pointer draws a stroke through places; what it covers changes when it is let go."""
+    """The pointer draws a stroke; the stiffness changes at the release."""
 
     places: list[complex]
     radius: float
@@ -22,7 +22,6 @@ class StiffnessBrushTool(Tool):
 
     @classmethod
     def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
-        """Tell what the brush does, and how it is changed."""
         what = {
             "stiff": "to make a part stiff",
             "soft": "to make a part soft",
@@ -32,7 +31,6 @@ class StiffnessBrushTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin a stroke."""
         if session.material not in stiffness_editing.BRUSHES:
             return None
         return cls(
@@ -43,35 +41,32 @@ class StiffnessBrushTool(Tool):
         )
 
     def move(self, _: Session, place: complex) -> None:
-        """Go on to the pointer."""
         if abs(place - self.places[-1]) >= STEP * self.radius:
             self.places.append(place)
 
     def end(self, session: Session, place: complex) -> None:
-        """Change what it covers."""
+        """Paint the area of the stroke."""
         if place != self.places[-1]:
             self.places.append(place)
         stiffness_editing.paint_stiffness(session, self.places)
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """What it covers."""
         points = tuple(self.places)
         return (StrokeOverlay(points=points, radius=self.radius, keeps=self.stiffens),)
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class BoneTool(Tool):
-    """The pointer draws a bone from one handle to another one; a click with Alt takes one away."""
+    """The pointer draws a bone from handle to handle; a click with Alt removes a bone."""
 
     handle: int
     place: complex
-    other: int | None = None  # the handle under the pointer
+    other: int | None = None  # the handle under the pointer, if any
     refusal: str = ""
 
     @classmethod
     def hints(cls, session: Session, _: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        """Tell how a bone is made."""
         if session.material != "bone":
             return ()
         if spot.handle is None:
@@ -80,13 +75,13 @@ class BoneTool(Tool):
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
-        """Begin at a handle."""
+        """Begin a bone at a handle."""
         if session.material != "bone" or spot.handle is None:
             return None
         return cls(project=project, handle=spot.handle, place=spot.place)
 
     def move(self, session: Session, place: complex) -> None:
-        """Go on to the pointer, and to a handle that is near to it."""
+        """Follow the pointer, and snap to a handle near it."""
         self.place, before = place, self.other
         self.other = self._near(session, place)
         if self.other is not None and self.other != before:
@@ -95,14 +90,13 @@ class BoneTool(Tool):
             )
 
     def end(self, session: Session, place: complex) -> None:
-        """Put the bone there."""
+        """Add the bone."""
         self.move(session, place)
         if self.other is not None:
             stiffness_editing.add_bone(session, (self.handle, self.other))
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
-        """The bone."""
         places = self._places()
         end = self.place if self.other is None else places.get(self.other, self.place)
         return (
@@ -114,7 +108,7 @@ class BoneTool(Tool):
         )
 
     def _places(self) -> dict[int, complex]:
-        """Return where the handles are, by their ids."""
+        """Return the places of the handles, by id."""
         shown = self.project.layer_runtime.shown
         if shown is None:
             return {}
@@ -123,7 +117,7 @@ class BoneTool(Tool):
         return {handle.id: place for handle, place in zip(handles, places, strict=True)}
 
     def _near(self, session: Session, place: complex) -> int | None:
-        """Return the other handle that is nearest to a place, if it is near enough."""
+        """Return the other handle nearest to a place, within reach."""
         reach = REACH / self.project.view(session.screen).scale
         away = {i: abs(at - place) for i, at in self._places().items() if i != self.handle}
         nearest = min(away, key=lambda i: away[i], default=None)

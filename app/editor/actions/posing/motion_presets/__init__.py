@@ -1,7 +1,7 @@
-"""Ready motions: what a layer is to be given, where its joints are, and giving it.
+"""Motion presets: choosing one for a layer, positioning its joints, and applying it.
 
 In: a session with a project.
-Out: a draft of a motion; then the layer with its keys, in one step of undo.
+Out: a draft of a motion; then the layer with its keys, in one undo step.
 Imports: `app.solving`, `app.editor.pending_changes`, `app.editor.actions.playback` and `editing`.
 """
 

@@ -1,4 +1,4 @@
-"""Giving a motion: the worker solves key after key, and the layer has them in one step of undo."""
+"""Applying a motion preset: the worker solves key after key, and the layer gets one undo step."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -16,12 +16,12 @@ from app.editor.work import JobKind, MotionJob, MotionSetup, Promise
 from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 
 GIVING = JobKind("Giving the motion", "The motion was not given", "hand")
-MOST_TOLD = 3  # joints that are out of reach
+MOST_TOLD = 3  # most unreached joints that a notice names
 
 
 @with_project
 def apply_motion_preset(session: Session, project: Project) -> None:
-    """Give the layer the motion that is drafted, as soon as the document has settled."""
+    """Apply the drafted motion to the layer, as soon as no change is pending."""
     draft = project.motion_setup
     if draft is not None and not preset_setup.apply_motion_disabled_reason(project):
         preset_setup.close_motion_setup(session)
@@ -45,7 +45,7 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
 
 
 def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
-    """Return what the solver is asked for; what is stiff and the limits are as after the first."""
+    """Return the request for the solver; only the first motion may change bones and limits."""
     return MotionRequest(
         motion=draft.motion,
         kind=draft.kind,
@@ -54,7 +54,7 @@ def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
         first=draft.first,
         repeat_count=draft.rounds,
         facing=draft.facing,
-        # Its own handles go where its joints were dragged.
+        # The motion's own handles go to its dragged joints.
         handles={} if draft.applied_motion is None else draft.applied_motion.joints,
         stiff=is_first,
         bones=draft.bones,
@@ -63,9 +63,9 @@ def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
 
 
 def _without(document: Document, draft: MotionSetup) -> Document:
-    """Return a document without the motion that a draft takes the place of.
+    """Return a document without the motion that a draft replaces.
 
-    What it blended in from stays, and one key that is replaced, where there is no other.
+    The key that it blended in from stays. One of its keys stays if the layer has no other.
     """
     given, layer = draft.applied_motion, document.layer(draft.layer)
     if given is None:
@@ -91,7 +91,7 @@ def _without(document: Document, draft: MotionSetup) -> Document:
 def _step(
     session: Session, project: Project, errand: MotionJob, work: Callable[[], MotionSolve]
 ) -> None:
-    """Let the worker take a step."""
+    """Run one step on the worker."""
 
     def failed(error: Exception) -> None:
         project.motion_setup = project.motion_setup or errand.setup
@@ -107,7 +107,7 @@ def _step(
 
 
 def _go_on(session: Session, project: Project, errand: MotionJob) -> None:
-    """Take the next step, or let the layer have the motion."""
+    """Take the next step, or write the motion to the layer."""
     if errand.solve is not None and not errand.solve.is_over:
         _step(session, project, errand, partial(step_motion_solve, errand.solve))
     elif errand.solve is not None:
@@ -115,7 +115,7 @@ def _go_on(session: Session, project: Project, errand: MotionJob) -> None:
 
 
 def _accept(session: Session, project: Project, errand: MotionJob, giving: MotionSolve) -> None:
-    """Let the layer have the motion, and play it; where it changed meanwhile, say so."""
+    """Write the motion to the layer and play it; if the layer changed meanwhile, show a notice."""
     before, draft = errand.before, errand.setup
     if before not in project.document.layers:
         session.show_notice("The motion was not given: the drawing was posed or changed meanwhile.")
@@ -134,7 +134,7 @@ def _accept(session: Session, project: Project, errand: MotionJob, giving: Motio
 
 
 def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
-    """Tell which joints are out of reach, and offer a size at which none is."""
+    """Show a notice of joints that are out of reach, and offer a size that reaches all."""
     if not giving.target_errors:
         return
     parts = [f"{name} by {lag:.0f} px" for name, (lag, _) in giving.target_errors.items()]
@@ -158,7 +158,7 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
 def apply_motion_at_size(
     session: Session, project: Project, layer: int, first: int, size: float
 ) -> None:
-    """Give a motion that begins at a frame again, at another size."""
+    """Apply a motion that begins at a frame again, at another size."""
     found = project.document.layer(layer) if layer in project.layer_runtimes else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
@@ -173,7 +173,7 @@ def apply_motion_at_size(
 
 @with_project
 def cancel_motion_job(session: Session, project: Project) -> None:
-    """Give up the motion that is on its way; its draft is there again."""
+    """Cancel the pending motion; its draft opens again."""
     errand = project.motion_job
     if errand is not None:
         session.jobs.drop(GIVING)

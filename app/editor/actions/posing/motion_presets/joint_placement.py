@@ -1,4 +1,4 @@
-"""Where the joints of a body are: found, dragged, left out, put back and mirrored."""
+"""Placement of joints: found, dragged, left out, restored and mirrored."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,8 +13,8 @@ from engine.domain import suggest_joints
 from engine.geometry import diameter
 from engine.geometry.motions import find_kind, other_side
 
-NEAR = 0.035  # of the diameter: so near to a joint a handle is one
-# Where a joint that was not found is put: so far from the joint that it hangs on, in heights.
+NEAR = 0.035  # of the diameter: a handle within this distance of a joint is the joint
+# Offset of a joint that was not found from its parent joint, in heights of the body.
 BELOW = 0.12
 BESIDE: Mapping[str, complex] = {
     "chest": 2j,
@@ -31,7 +31,7 @@ BESIDE: Mapping[str, complex] = {
 
 
 def find_joints(layer: Layer, kind: str) -> dict[str, complex]:
-    """Return the joints of a kind in a layer: its handles where these are, or by their names."""
+    """Return a body kind's joints in a layer: at its handles, or by the handles' names."""
     body = find_kind(kind)
     joints = dict(suggest_joints(layer.domain.loops, body))
     near = NEAR * diameter(layer.domain.outline)
@@ -48,7 +48,6 @@ def find_joints(layer: Layer, kind: str) -> dict[str, complex]:
 
 @with_project
 def select_joint(_: Session, project: Project, name: str | None) -> None:
-    """Let a joint be the one that is touched."""
     if project.motion_setup is not None:
         project.motion_setup = replace(project.motion_setup, selected_joint=name)
 
@@ -64,7 +63,7 @@ def move_joint(_: Session, project: Project, name: str, place: complex) -> None:
 
 @with_project
 def move_shown_joint(session: Session, project: Project, name: str, place: complex) -> None:
-    """Put a joint where the drawing is shown at a place, or nearest to it."""
+    """Put a joint at a shown place of the drawing, or at the nearest one."""
     shown = project.layer_runtime.shown
     if shown is not None:
         found = shown.mesh.locate(np.array([place]), shown.positions)
@@ -72,7 +71,7 @@ def move_shown_joint(session: Session, project: Project, name: str, place: compl
 
 
 def shown_joint_places(project: Project) -> dict[str, complex]:
-    """Return where the joints of the draft are in what is shown, by their names."""
+    """Return the shown places of the draft's joints, by their names."""
     draft, shown = project.motion_setup, project.layer_runtime.shown
     if draft is None or shown is None or not draft.joints:
         return {}
@@ -83,14 +82,14 @@ def shown_joint_places(project: Project) -> dict[str, complex]:
 
 @with_project
 def exclude_joint(_: Session, project: Project, name: str) -> None:
-    """Leave a joint out, as what is not there."""
+    """Leave a joint out of the motion."""
     if project.motion_setup is not None and name in project.motion_setup.joints:
         project.motion_setup = project.motion_setup.without(name)
 
 
 @with_project
 def include_joint(session: Session, project: Project, name: str) -> None:
-    """Put a joint where it was found, or else beside what it hangs on."""
+    """Put a joint where it was found, or else beside its parent joint."""
     draft = project.motion_setup
     if draft is not None and name not in draft.joints:
         place = draft.suggested.get(name)
@@ -99,16 +98,15 @@ def include_joint(session: Session, project: Project, name: str) -> None:
 
 @with_project
 def reset_joints(_: Session, project: Project) -> None:
-    """Put all joints back where they were found."""
     if project.motion_setup is not None:
         project.motion_setup = project.motion_setup.with_joints(project.motion_setup.suggested)
 
 
 @with_project
 def mirror_joints(session: Session, project: Project) -> None:
-    """Put the joints of one side where those of the other one are, seen in a mirror.
+    """Mirror the joints of one side to the other side.
 
-    The side is that of the joint that was touched last, or the left one.
+    The side is that of the last selected joint, or the left one.
     """
     draft = project.motion_setup
     if draft is None:
@@ -128,26 +126,26 @@ def mirror_joints(session: Session, project: Project) -> None:
 
 
 def mirrored_side(draft: MotionSetup) -> str:
-    """Return the side that is mirrored onto the other one."""
+    """Return the side whose joints are mirrored to the other side."""
     name = draft.selected_joint or ""
     return name[-1] if name.endswith((".L", ".R")) else "L"
 
 
 def _axis(draft: MotionSetup) -> float:
-    """Return x of the body's middle: of its joints that are on neither side."""
+    """Return x of the body's middle, from the joints that are on neither side."""
     middle = [at.real for name, at in draft.joints.items() if name in {"hips", "chest", "head"}]
     outline = draft.domain.outline.real
     return float(np.mean(middle) if middle else (outline.min() + outline.max()) / 2)
 
 
 def _inside(draft: MotionSetup, *places: complex) -> list[complex]:
-    """Return places on the drawing that are nearest to some."""
+    """Return the places on the drawing nearest to the given places."""
     nearest: list[complex] = draft.domain.nearest(np.array(places, dtype=np.complex128)).tolist()
     return nearest
 
 
 def _beside(draft: MotionSetup, name: str) -> complex:
-    """Return where a joint may be that was not found: as the other side's, or near its parent."""
+    """Return a place for a joint that was not found: like the other side, or near its parent."""
     kind, joints = draft.body_kind, draft.joints
     outline = draft.domain.outline
     twin = joints.get(other_side(name))

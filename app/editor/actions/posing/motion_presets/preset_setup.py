@@ -1,4 +1,4 @@
-"""A motion that is about to be given: which one, to what kind of body, and how."""
+"""The draft of a motion preset: motion, body kind and parameters."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -19,7 +19,7 @@ LINKS = 6
 
 
 def motion_disabled_reason(_: Session, project: Project) -> str:
-    """Return why the layer that is posed can be given no motion; empty where it can."""
+    """Return why the active layer cannot get a motion; empty if it can."""
     layer = project.layer
     if layer.still:
         return f"{layer.name} is a still picture: there is no shape on it to be moved."
@@ -30,9 +30,9 @@ def motion_disabled_reason(_: Session, project: Project) -> str:
 
 @with_project
 def begin_motion_setup(session: Session, project: Project) -> None:
-    """Draft a motion for the layer that is posed: the one that it has at this frame, or a new one.
+    """Draft a motion for the active layer: its motion at this frame, or a new one.
 
-    What is drafted already is shown.
+    An existing draft is shown again.
     """
     session.panel_to_focus = PANEL
     if (
@@ -51,13 +51,13 @@ def begin_motion_setup(session: Session, project: Project) -> None:
         project.motion_setup = setup_of_applied_motion(project.layer, here[-1])
     else:
         project.motion_setup = _put_away(project, frame) or _new(project.layer, frame)
-    # It has hints of its own.
+    # Motion setup has its own hints.
     session.tutorial = None
 
 
 @with_project
 def edit_applied_motion(session: Session, project: Project, given: AppliedMotion) -> None:
-    """Draft a motion that the layer was given once more, to give it in another way."""
+    """Draft a layer's applied motion again, to apply it with changes."""
     if given in project.layer.motions:
         playback.scrub(session, given.first)
         begin_motion_setup(session)
@@ -65,7 +65,7 @@ def edit_applied_motion(session: Session, project: Project, given: AppliedMotion
 
 @with_project
 def append_motion(session: Session, project: Project, given: AppliedMotion) -> None:
-    """Draft another motion, to follow one that the layer was given; joints stay as they are."""
+    """Draft another motion to follow an applied motion; joints stay."""
     draft = project.motion_setup
     if draft is None:
         playback.scrub(session, given.last)
@@ -76,7 +76,7 @@ def append_motion(session: Session, project: Project, given: AppliedMotion) -> N
 
 
 def _put_away(project: Project, frame: int) -> MotionSetup | None:
-    """Return the draft that was put away last, if it was of the same shape, and a first motion."""
+    """Return the last closed draft if it has the same shape and no applied motion."""
     draft, layer = project.last_motion_setup, project.layer
     if draft is None or layer.motions or draft.applied_motion is not None:
         return None
@@ -85,9 +85,9 @@ def _put_away(project: Project, frame: int) -> MotionSetup | None:
 
 
 def _new(layer: Layer, frame: int) -> MotionSetup:
-    """Return what a layer is given that has nothing at a frame: as the last one, or as it seems.
+    """Return a draft for a layer without a motion at a frame: like the last motion, or a guess.
 
-    Joints of the motion before are those of this one.
+    The joints of the last motion are reused.
     """
     earlier = [each for each in layer.motions if each.first <= frame]
     if earlier:
@@ -107,7 +107,7 @@ def _new(layer: Layer, frame: int) -> MotionSetup:
 
 
 def setup_of_applied_motion(layer: Layer, given: AppliedMotion) -> MotionSetup:
-    """Return the draft by which a layer was given a motion."""
+    """Return the draft that gives an applied motion."""
     there = {handle.id: handle.position for handle in layer.handles}
     names = given.joints.items()
     joints = {name: there[handle] for name, handle in names if handle in there}
@@ -134,9 +134,9 @@ def limb_joint_handles(given: AppliedMotion) -> set[int]:
 
 
 def _first_motion(kind: str, joints: Collection[str]) -> str:
-    """Return the first motion that fits a kind and its joints, one that gets on before others.
+    """Return the first motion that fits a body kind and its joints; travelling ones first.
 
-    Along few links, as of a fish, no wave runs: it wags its tail.
+    A chain of few links, such as a fish, gets a tail wag instead of a wave.
     """
     if kind == "chain" and len(joints) < LINKS:
         return "wag"
@@ -148,7 +148,7 @@ def _first_motion(kind: str, joints: Collection[str]) -> str:
 
 @with_project
 def set_body_kind(_: Session, project: Project, kind: str) -> None:
-    """Take the drawing for another kind of body; its joints are those that it had, or suggested."""
+    """Set the body kind; its joints are its earlier or suggested ones."""
     draft = project.motion_setup
     if draft is None or kind == draft.kind:
         return
@@ -171,7 +171,7 @@ def set_body_kind(_: Session, project: Project, kind: str) -> None:
 
 @with_project
 def set_motion_preset(_: Session, project: Project, motion: str) -> None:
-    """Choose what it is to do; only what has steps travels."""
+    """Set the motion; only motions with steps travel."""
     draft = project.motion_setup
     if draft is not None and draft.kind in MOTIONS[motion].templates:
         travels = draft.parameters.travel and MOTIONS[motion].template_for(draft.kind).can_travel
@@ -181,7 +181,7 @@ def set_motion_preset(_: Session, project: Project, motion: str) -> None:
 
 @with_project
 def set_motion_parameters(_: Session, project: Project, /, **values: Any) -> None:
-    """Set how it is to be done: speed, size, energy, mirrored, start, travel."""
+    """Set speed, size, energy, mirrored, start or travel."""
     if project.motion_setup is not None:
         parameters = replace(project.motion_setup.parameters, **values)
         project.motion_setup = replace(project.motion_setup, parameters=parameters)
@@ -189,13 +189,13 @@ def set_motion_parameters(_: Session, project: Project, /, **values: Any) -> Non
 
 @with_project
 def set_motion_options(_: Session, project: Project, /, **values: Any) -> None:
-    """Set what else is to be: rounds, facing, bones, whether edits are replaced."""
+    """Set rounds, facing, bones, or whether edits are replaced."""
     if project.motion_setup is not None:
         project.motion_setup = replace(project.motion_setup, **values)
 
 
 def is_applied_motion_edited(project: Project) -> bool:
-    """Tell whether what a draft takes the place of was edited by hand since it was given."""
+    """Return whether the applied motion that a draft replaces was edited by hand."""
     draft = project.motion_setup
     return (
         draft is not None
@@ -205,7 +205,7 @@ def is_applied_motion_edited(project: Project) -> bool:
 
 
 def apply_motion_disabled_reason(project: Project) -> str:
-    """Return why the draft cannot be given as it is; empty where it can."""
+    """Return why the draft cannot be applied; empty if it can."""
     draft = project.motion_setup
     if draft is None:
         return "There is no motion to be given."
@@ -219,13 +219,13 @@ def apply_motion_disabled_reason(project: Project) -> str:
 
 @with_project
 def close_motion_setup(_: Session, project: Project) -> None:
-    """Put the draft away; nothing of it was done to the layer, and its joints are remembered."""
+    """Close the draft without changes to the layer; its joints are remembered."""
     project.last_motion_setup, project.motion_setup = project.motion_setup, None
 
 
 @with_project
 def update_motion_setup(_: Session, project: Project) -> None:
-    """Forget a draft whose layer is not posed any more, or has another shape; once a frame."""
+    """Drop a draft if another layer is active or its shape has changed; once a frame."""
     draft = project.motion_setup
     if draft is None:
         return
