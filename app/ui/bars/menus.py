@@ -35,7 +35,6 @@ def draw_main_menu(
 
 
 def _backdrops(session: Session) -> list[Action]:
-    """Draw the menu of backdrops."""
     if not imgui.begin_menu("Backdrop"):
         return []
     current = session.preferences.backdrop
@@ -65,7 +64,6 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
 
 
 def _path_reaches(session: Session) -> list[Action]:
-    """Draw the menu of the frames that motion paths cover."""
     if not imgui.begin_menu("Frames of motion paths"):
         return []
     current = session.preferences.path_reach
@@ -102,7 +100,6 @@ def _methods(session: Session) -> list[Action]:
 
 
 def _recent(session: Session) -> list[Action]:
-    """Draw the menu of recent files."""
     recent = files.recent_files(session)
     if not imgui.begin_menu("Open recent", bool(recent)):
         return []

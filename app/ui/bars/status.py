@@ -19,8 +19,6 @@ MOST_LISTED = 3  # keys
 
 
 class WarningAction(NamedTuple):
-    """The button beside a warning."""
-
     verb: Callable[[Session], None]
     hint: str  # in its tooltip
 

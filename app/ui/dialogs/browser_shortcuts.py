@@ -23,8 +23,6 @@ FOLDERS = (
 
 
 class BrowserShortcut(NamedTuple):
-    """A folder with its label and icon."""
-
     folder: Path
     name: str
     icon: str

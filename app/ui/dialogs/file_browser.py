@@ -72,7 +72,6 @@ class FileBrowser:
     def draw(
         self, dialog: FileDialog, session: Session, look: Look, thumbnail: LookUp
     ) -> list[Action]:
-        """Draw the browser in the dialog's window."""
         room = imgui.get_main_viewport().size
         size = ImVec2(min(WIDTH * look.em, 0.85 * room.x), min(HEIGHT * look.em, 0.52 * room.y))
         appears = imgui.is_window_appearing()
@@ -237,7 +236,6 @@ def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
 
 
 def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> bool:
-    """Draw an entry. Return whether it was clicked."""
     imgui.table_next_row()
     imgui.table_next_column()
     palette, em = look.palette, look.em

@@ -51,7 +51,6 @@ class NativeDialog:
         return [do(use_own_file_browser if now - self._opened < TOO_SOON else close_dialog)]
 
     def close(self) -> None:
-        """Close the dialog if it is still open."""
         if not self._running.ready(0):
             self._running.kill()
 

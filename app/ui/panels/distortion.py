@@ -52,7 +52,6 @@ QUIET = (
 
 
 def draw_distortion_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the heat map's buttons, the histogram, and the curves."""
     if project.layer_runtime.shown is None:
         return []
     _style_plots(look)

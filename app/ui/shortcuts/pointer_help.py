@@ -7,8 +7,6 @@ from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified
 
 @dataclass(frozen=True, slots=True)
 class PointerHelp:
-    """A gesture and its effect."""
-
     gesture: str
     effect: str
 

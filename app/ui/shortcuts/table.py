@@ -158,7 +158,6 @@ def _brushes(session: Session, _: Project) -> bool:
 
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
-    """Edit the name of the active layer in the list of layers."""
     bring_to_front("Layers")
     layering.ask_layer_name(session, project.active)
 
@@ -170,8 +169,6 @@ def _export(session: Session) -> None:
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpec:
-    """Return the action that shows or hides an overlay."""
-
     def is_shown(session: Session) -> bool:
         return bool(getattr(session.overlays, name))
 

@@ -32,7 +32,6 @@ def draw_knob(look: Look, centre: ImVec2, radius: float, colour: ImVec4) -> None
 
 
 def draw_centred_text(low: ImVec2, high: ImVec2, text: str, colour: int) -> None:
-    """Draw a text in the middle of a box."""
     corner = (low + high - imgui.calc_text_size(text)) / 2
     imgui.get_window_draw_list().add_text(corner, colour, text)
 

@@ -43,7 +43,6 @@ class Scale:
         return math.exp(value) if self.logarithmic else value
 
     def clamp(self, value: float) -> float:
-        """Return the nearest value on the track."""
         low, high = sorted((self.left, self.right))
         return min(max(value, low), high)
 

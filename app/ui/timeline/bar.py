@@ -36,7 +36,6 @@ def draw_transport_bar(session: Session, look: Look, project: Project) -> list[A
 
 
 def _gap(look: Look) -> None:
-    """Separate two groups by a faint line."""
     imgui.same_line(0, WIDE / 2 * look.em)
     corner = imgui.get_cursor_screen_pos()
     height = imgui.get_frame_height()
@@ -114,7 +113,6 @@ def _to_key(look: Look, name: str, icon: str) -> list[Action]:
 
 
 def _frame(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the present frame, the last frame and the present time."""
     actions: list[Action] = []
     document = project.document
     frame = playback.current_frame(session, project)

@@ -187,7 +187,6 @@ def _control_points(
 
 
 def _numbers(look: Look, easing: Easing) -> Easing | None:
-    """Draw number fields for the control points."""
     if easing.curve is None:
         small_text(look, "Holds the pose until the next key.")
         return None

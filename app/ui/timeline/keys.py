@@ -98,7 +98,6 @@ def is_plain_click() -> bool:
 
 
 def draw_key_box(bands: TimelineLayout) -> None:
-    """Draw the selection box."""
     gesture = bands.project.timeline.gesture
     if not isinstance(gesture, KeyBox) or not was_dragged():
         return
@@ -114,7 +113,6 @@ def draw_key_box(bands: TimelineLayout) -> None:
 
 
 def draw_keys(bands: TimelineLayout) -> list[Action]:
-    """Draw the keys of all layers, and handle the pointer on them."""
     actions: list[Action] = []
     bands.push_track_clip()
     for row in bands.rows:
@@ -155,7 +153,6 @@ def _radius(bands: TimelineLayout, row: LayerRow) -> float:
 
 
 def is_key_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
-    """Return whether the drag moves this key."""
     return (
         isinstance(gesture, KeyDrag)
         and row == gesture.row
@@ -227,7 +224,6 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
 
 
 def _warning(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> ImVec4 | None:
-    """Return the colour of a key's warning, if there is one."""
     palette = bands.look.palette
     if not key.pose.certificate.is_certified:
         return palette.danger

@@ -155,7 +155,6 @@ class TimelineLayout:
         return overflow
 
     def _shown_tracks(self, layer: Layer) -> tuple[Track, ...]:
-        """Return the tracks of a layer that have rows."""
         return layer.tracks if layer.id in self.project.timeline.expanded_layers else ()
 
     @property
@@ -168,7 +167,6 @@ class TimelineLayout:
 
     @property
     def pointed_keys(self) -> KeyRow:
-        """The keys' row under the pointer."""
         row = self.pointed_row
         return row_of(row.layer, row.track if isinstance(row, TrackLane) else None)
 
@@ -206,7 +204,6 @@ class TimelineLayout:
 
     @property
     def pointed(self) -> float:
-        """The frame under the pointer."""
         return self.frame(imgui.get_mouse_pos().x)
 
     def shows(self, low: float, high: float) -> bool:
@@ -290,5 +287,4 @@ def was_dragged() -> bool:
 
 
 def format_seconds(frame: float, fps: float) -> str:
-    """Return the time of a frame as text."""
     return f"{frame / fps:.2f}".rstrip("0").rstrip(".") + " s"

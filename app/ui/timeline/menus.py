@@ -104,7 +104,6 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
 
 
 def draw_time_menu(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the menu of the whole timeline, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup("menu of time"):
         actions += _time_items(session, look, project)
@@ -113,7 +112,6 @@ def draw_time_menu(session: Session, look: Look, project: Project) -> list[Actio
 
 
 def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw the entries for the cycle at a frame."""
     actions: list[Action] = []
     cycle = cycles.cycle_at_playhead(bands.session, bands.project, frame)
     if cycle is None or isinstance(bands.project.row, TrackRow):

@@ -46,7 +46,6 @@ FLAGS = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mous
 
 
 def draw_timeline_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the timeline of the open project."""
     actions = draw_transport_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
     bands = TimelineLayout(session, look, project)

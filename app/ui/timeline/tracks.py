@@ -47,7 +47,6 @@ EXPANDER_WIDTH = 1.1  # em: width of the triangle that collapses tracks
 
 
 def format_track_name(layer: Layer, track: Track) -> str:
-    """Return a track's name, from the names of its handles."""
     return ", ".join(layer.handle(identity).name for identity in track.handles)
 
 
@@ -181,7 +180,6 @@ def _runs(frames: Collection[int]) -> list[tuple[int, int]]:
 
 
 def draw_track_keys(bands: TimelineLayout) -> list[Action]:
-    """Draw the keys of tracks, and handle the pointer on them."""
     actions: list[Action] = []
     bands.push_track_clip()
     for lane in filter(bands.shows_row, bands.track_rows):

@@ -121,7 +121,6 @@ class GpuResources:
         return known[2]
 
     def release_but(self, meshes: Collection[DeformMesh]) -> None:
-        """Release the buffers of all other meshes."""
         for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
             self._drawn_meshes.pop((mesh, number)).release()
             self._heated.clear()
@@ -161,7 +160,6 @@ class GpuResources:
 
     @property
     def picture_count(self) -> int:
-        """Number of layers' pictures on the graphics card."""
         return len(self._pictures)
 
     def picture(self, layer: int) -> GpuPicture:

@@ -273,7 +273,6 @@ def _cages(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
 
 
 def _frame(box: BoundingBox, palette: Palette, scale: float) -> Line:
-    """Return the edge of the export's frame."""
     low, high = box
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
     return Line(

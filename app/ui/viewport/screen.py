@@ -48,7 +48,6 @@ class ScreenMapping:
 
     @property
     def _in_scene(self) -> complex:
-        """The pointer in scene coordinates."""
         pixel = (complex(*imgui.get_mouse_pos()) - self._corner) * self.density
         return self.view.to_plane(pixel)
 

@@ -41,7 +41,6 @@ class SplitLayout(NamedTuple):
 
 
 def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayout:
-    """Return the layout of the viewport."""
     split = session.compare_view
     if split is None or session.cutting is not None:
         return SplitLayout(corner, room, corner.x + room.x)

@@ -44,7 +44,6 @@ def draw_bones(look: Look, screen: ScreenMapping) -> None:
 
 
 def draw_bone(look: Look, start: ImVec2, end: ImVec2, colour: ImVec4) -> None:
-    """Draw a bone between two points of the screen."""
     way = complex(end.x - start.x, end.y - start.y)
     if not way:
         return

@@ -255,7 +255,6 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
 
 
 def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
-    """Draw the weight of a handle."""
     if not imgui.begin_menu("Hold"):
         return []
     weigh = handle_commands.set_handle_weight

@@ -120,7 +120,6 @@ class Docking:
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:
-    """Return the splits of a new layout."""
     side = min(SIDE * em, MOST[0] * room.x) / max(room.x - BARS[0] * em, 1.0)
     bottom = min(BOTTOM * em, MOST[1] * room.y) / max(room.y - BARS[1] * em, 1.0)
     return [
@@ -149,7 +148,6 @@ def _sides(
 
 
 def _upwards(node: imgui.internal.DockNode | None) -> Iterator[imgui.internal.DockNode]:
-    """Yield a node and its ancestors."""
     while node is not None:
         yield node
         node = node.parent_node

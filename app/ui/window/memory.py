@@ -58,7 +58,6 @@ def limit_arenas() -> None:
 
 
 def trim_heap() -> None:
-    """Return all free memory to the system."""
     _call("malloc_trim", 0)
 
 

@@ -277,7 +277,6 @@ class Window:
         self._layer_pictures = LayerPictures(renderer.programs.context)
 
     def _accept_files(self) -> None:
-        """Open files that are dropped on the window."""
         window = glfw_utils.glfw_window_hello_imgui()
         self._dropped = accept_files(window, self.take_dropped)
 
@@ -286,7 +285,6 @@ class Window:
         self.queue_action(do(layering.drop_files, paths))
 
     def _rename(self) -> None:
-        """Update the window's title."""
         title = window_title(self.session)
         if title != self._title:
             self._title = title

@@ -195,7 +195,6 @@ class WindowFrame:
 
     @property
     def look(self) -> Look:
-        """The colours, fonts and sizes of this frame."""
         if self._bold is None:
             raise RuntimeError("the window has no fonts before its first frame")
         preferences = self.session.preferences

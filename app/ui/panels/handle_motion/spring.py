@@ -42,7 +42,6 @@ NUMBERS = (
 
 
 def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw the preset and the numbers of a handle's spring."""
     spring, actions = project.layer.spring_of(handle.id), list[Action]()
     heading(look, "Follows", framed=True)
     if spring is not None:

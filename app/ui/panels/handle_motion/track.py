@@ -30,7 +30,6 @@ KINDS = (("pose", "With the pose"), ("picture", "Planted"))
 
 
 def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw the track of a handle, if it has one."""
     track = project.layer.track_of(handle.id)
     if track is None:
         return []
@@ -50,7 +49,6 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
 
 
 def _together(look: Look, project: Project, track: Track) -> None:
-    """Name the handles of a track that moves several."""
     if len(track.handles) > 1:
         names = ", ".join(project.layer.handle(identity).name for identity in track.handles)
         small_text(look, f"It moves {names} together.")

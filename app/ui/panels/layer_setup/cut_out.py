@@ -42,7 +42,6 @@ HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
 
 
 def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the settings and tools of the cut-out."""
     cut_out = project.layer.cut_out
     heading(look, "Background")
     actions = _background(session, look, project, cut_out)

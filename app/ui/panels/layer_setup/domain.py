@@ -33,7 +33,6 @@ SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
 
 
 def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the domain's numbers, and the settings to build a new domain."""
     heading(look, "Show")
     actions = _toggles(session.overlays)
     heading(look, "Facts")

@@ -31,7 +31,6 @@ HOW = {"right": "goes right", "up": "goes up", "turn": "turns, counter-clockwise
 
 
 def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw a layer's opacity at a frame, and its key buttons."""
     actions, opacity = [], opacity_at(document, layer, frame)
     label(look, "Opacity")
     hint = "How much of what lies behind is covered"

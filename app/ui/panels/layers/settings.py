@@ -36,7 +36,6 @@ NOTHING = "nothing"
 
 
 def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw the settings of a layer at a frame."""
     actions = []
     identity = layer.id
     label(look, "Name")
@@ -81,7 +80,6 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
 
 
 def _group(look: Look, group: Group) -> list[Action]:
-    """Draw the settings of a group around the active layer."""
     actions = []
     imgui.push_id(group.name)
     name = group.name.rpartition("/")[2]

@@ -253,7 +253,6 @@ def _tell(document: Document, row: TreeRow) -> None:
 
 
 def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
-    """Draw the triangle that expands a row."""
     em = look.em
     low = ImVec2(left.x, left.y - ROW / 2 * em)
     imgui.set_cursor_screen_pos(low)
@@ -346,7 +345,6 @@ def _picture(
 
 
 def _signs(project: Project, row: TreeRow) -> list[str]:
-    """Return the signs at the end of a row."""
     if row.layer is None:
         opacity = 1.0 if row.group is None else row.group.opacity
         return [f"{100 * opacity:.0f}%"] if opacity < 1 else []

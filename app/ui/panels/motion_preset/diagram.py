@@ -152,7 +152,6 @@ def _places(kind: BodyKind, names: Collection[str]) -> dict[str, tuple[float, fl
 
 
 def _in_box(low: ImVec2, size: ImVec2, place: tuple[float, float]) -> ImVec2:
-    """Return the screen point of a diagram's position."""
     x, y = place
     scale = min(size.y, size.x / 1.4)
     return ImVec2(low.x + size.x / 2 + scale * x, low.y + size.y / 2 - scale * (y - 0.5))

@@ -84,7 +84,6 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
 
 
 def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
-    """Draw an applied motion with its buttons."""
     actions: list[Action] = []
     name = MOTIONS[given.motion].label if given.motion in MOTIONS else given.motion
     imgui.text_unformatted(f"{name}, frames {given.first} – {given.last}")
@@ -149,7 +148,6 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
-    """Draw the motions that fit the kind."""
     heading(look, "What it does")
     actions: list[Action] = []
     fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.templates]
@@ -198,7 +196,6 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _switches(look: Look, draft: MotionSetup) -> list[Action]:
-    """Draw the options that are on or off."""
     actions: list[Action] = []
     now = draft.parameters
     changed, mirrored = imgui.checkbox("Mirrored", now.mirrored)
@@ -242,7 +239,6 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
 
 
 def _where(project: Project, draft: MotionSetup) -> str:
-    """Describe the frames of the motion."""
     period = draft.preset.frames(draft.parameters, project.document.fps) * draft.rounds
     if draft.applied_motion is not None:
         return f"It takes the place of frames {draft.applied_motion.first} – {draft.applied_motion.last}."

@@ -179,7 +179,6 @@ def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action
 
 
 def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int) -> list[Action]:
-    """Draw a switch key, and let it be dragged."""
     em, x = bands.look.em, bands.x(start)
     if not bands.shows(x - EDGE * em, x + EDGE * em):
         return []

@@ -181,7 +181,6 @@ def _hatch(bands: TimelineLayout, row: LayerRow, begin: int | None, end: int | N
 
 
 def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
-    """Draw a layer's transform, opacity and order keys."""
     actions: list[Action] = []
     layer, em, palette = row.layer, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
@@ -278,7 +277,6 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
 
 
 def _menu(row: LayerRow, frame: int) -> list[Action]:
-    """Draw the menu of a visibility key, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of switch {frame}"):
         if imgui.menu_item_simple("Delete"):

@@ -95,7 +95,6 @@ def _field(look: Look, name: str, value: float, text: str) -> float | None:
 
 
 def _menu(bands: TimelineLayout, key: CameraKey) -> list[Action]:
-    """Draw the menu of a key, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup(f"{MENU} {key.frame}"):
         if imgui.menu_item_simple("Go there", "Click"):

@@ -26,7 +26,6 @@ LEAST_NAME = 3.0  # em: names are omitted if less room is left
 
 
 def draw_markers(bands: TimelineLayout) -> list[Action]:
-    """Draw the markers, and handle the pointer on them."""
     markers, em = bands.project.document.markers, bands.look.em
     if not markers:
         return []
@@ -120,7 +119,6 @@ def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
 
 
 def _menu(bands: TimelineLayout, marker: Marker) -> list[Action]:
-    """Draw the menu of a marker, if it is open."""
     asks = False
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of marker {marker.frame}"):

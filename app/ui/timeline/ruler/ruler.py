@@ -127,7 +127,6 @@ def draw_playhead(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _tag_width(bands: TimelineLayout, frame: int) -> float:
-    """Return the width of the playhead's number with its margins."""
     return max(imgui.calc_text_size(f"{frame}").x + 0.9 * bands.look.em, 1.9 * bands.look.em)
 
 

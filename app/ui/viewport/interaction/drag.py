@@ -62,7 +62,6 @@ def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[
 
 
 def draw_gesture_overlays(look: Look, screen: ScreenMapping, marks: Iterable[Mark]) -> None:
-    """Draw the overlays of a gesture over the picture."""
     for mark in marks:
         match mark:
             case BoxOverlay():

@@ -111,7 +111,6 @@ def add_mirror_axis_gizmo(session: Session, look: Look, screen: ScreenMapping) -
 
 
 def draw_mirror_axis(look: Look, axis: MirrorAxisGizmo) -> None:
-    """Draw the axis from top to bottom, with its grip."""
     if axis.x is None:
         return
     palette, y = look.palette, imgui.get_window_pos().y

@@ -40,7 +40,6 @@ class Rect(NamedTuple):
         return inside & (points.imag > self.low.y) & (points.imag < self.high.y)
 
     def nearest(self, point: ImVec2) -> ImVec2:
-        """Return the nearest point of the rectangle."""
         x = min(max(point.x, self.low.x), self.high.x)
         return ImVec2(x, min(max(point.y, self.low.y), self.high.y))
 
