@@ -308,7 +308,7 @@ def _folder_meant(dialog: FileDialog) -> Path | None:
 
 
 def _path_meant(dialog: FileDialog) -> Path | None:
-    """Return the typed path, if the dialog accepts it."""
+    """Return the path of the typed name, if the dialog accepts it."""
     name = dialog.name.strip()
     if not name:
         return None

@@ -29,7 +29,7 @@ def find_system_dialogs() -> str | None:
 
 
 class NativeDialog:
-    """A dialog of the system. It was opened at `since`, in seconds of the clock."""
+    """A dialog of the system, from its opening to its answer. Times are in clock seconds."""
 
     def __init__(self, dialog: FileDialog, now: float) -> None:
         self.dialog = dialog

@@ -176,7 +176,7 @@ def name_popup(
 ) -> str | None:
     """Draw the rename field in its popup, if the popup is open. Return the entered name.
 
-    Names in `taken` are refused; `kind` says in words what the other items are.
+    Names in `taken` are refused. `kind` is a word for the item, for the message.
     """
     if not imgui.begin_popup(popup):
         return None

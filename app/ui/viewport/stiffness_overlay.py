@@ -14,8 +14,8 @@ from app.ui.viewport.screen import ScreenMapping
 from engine.arrays import Floats
 
 EXTENT = log(stiffness_editing.STRONGEST)  # stiffness at the end of the colour scale
-WIDEST, AT = 0.09, 0.2  # of a bone's length: its largest width, and the place of that
-AROUND, TINY = 128, 1e-6  # outline points that colour a place inside; a lower limit of distances
+WIDEST, AT = 0.09, 0.2  # of a bone's length: half its width, and where it is widest
+AROUND, TINY = 128, 1e-6  # nearest outline points of a vertex; least distance
 MOST = 0.7  # em: half a bone's width at most
 
 

@@ -50,7 +50,7 @@ class WindowPart:
     """A part of the window's frame. A notice replaces it after a failure.
 
     A failed part is drawn again when the person asks, or once the document, the selection or the
-    session has changed. Meanwhile no mouse button is down and the animation does not play.
+    session has changed. While a mouse button is down or the animation plays, the part waits.
     """
 
     name: str  # as the subject of a sentence
@@ -147,8 +147,8 @@ class WindowPart:
 class FrameStep:
     """A step of every frame that no person asks for. After a failure it pauses.
 
-    It runs again once the document, the selection or the session has changed, at the earliest after
-    `PAUSE` seconds.
+    It runs again once the document, the selection or the session has changed, and after `PAUSE`
+    seconds at the latest.
     """
 
     run: Callable[[], None]
