@@ -1,6 +1,6 @@
 """The window: panels are functions that read the session and return actions.
 
 In: a session.
-Out: pictures of it, and the actions that the person asks for.
+Out: pictures of the session, and the person's actions.
 Imports: `app.editor`, `app.render`, Dear ImGui.
 """

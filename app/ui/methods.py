@@ -1,4 +1,4 @@
-"""The methods of interpolation as a person reads of them."""
+"""Names and explanations of the interpolation methods, for people who draw."""
 
 from itertools import chain
 from typing import NamedTuple
@@ -7,8 +7,6 @@ from app.document import Baseline, Variant
 
 
 class MethodText(NamedTuple):
-    """A method's name, what it is known for, and what it does."""
-
     name: str
     trait: str
     what: str
@@ -34,7 +32,7 @@ VARIANTS: dict[Variant, MethodText] = {
     ),
     Variant.LINEAR: MethodText("Linear", "may fold", "Every point goes straight; for comparison"),
 }
-# For comparison: none of them is certified, and a drawing is not animated by them.
+# Only for comparison: these methods are not certified, and no drawing is animated with them.
 BASELINES: dict[Baseline, MethodText] = {
     Baseline.ARAP: MethodText(
         "ARAP", "may overshoot", "As rigid as possible (Alexa et al. 2000); for comparison"

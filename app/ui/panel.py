@@ -1,4 +1,4 @@
-"""What a panel is to the window."""
+"""A dockable panel of the window."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,34 +12,34 @@ from app.ui.style import Look
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Panel:
-    """A dockable part of the window, with its icon in a tab, and the place where it is at first.
+    """A dockable part of the window, with the icon of its tab and its initial dock.
 
-    What draws it reads the session and its project, and returns what the person asked for. Without
-    a project it is not called.
+    `draw` reads the session and its project, and returns the person's actions. Without a project
+    it is not called.
     """
 
     title: str
     icon: str
     draw: Callable[[Session, Look, Project], list[Action]]
     place: Literal["MainDockSpace", "side", "bottom"] = "side"
-    # What is drawn first, and stays in sight where `draw` fails.
+    # Drawn before the panel. It stays visible if `draw` fails.
     draw_background: Callable[[Session, Look, Project], list[Action]] | None = None
 
     @property
     def labels(self) -> tuple[str, str, str]:
-        """The tab's texts, from the fullest one to the icon alone; their id is the title."""
+        """The tab's texts, from the longest to the icon alone. The title is their ImGui id."""
         texts = (f"{self.icon}  {self.title}", self.title, self.icon)
         full, title, icon = (f"{text}###{self.title}" for text in texts)
         return full, title, icon
 
     @property
     def label(self) -> str:
-        """The name of the panel's window, whatever is shown of it."""
+        """The name of the panel's window. Its id stays the same while the text changes."""
         return self.labels[0]
 
 
 def bring_to_front(title: str) -> bool:
-    """Show a panel in the next frame; return whether it was in front already."""
+    """Show a panel in the next frame. Return whether it was in front already."""
     for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
         if panel.label.endswith(f"###{title}"):
             panel.focus_window_at_next_frame = True
@@ -47,7 +47,7 @@ def bring_to_front(title: str) -> bool:
 
 
 def is_in_front(title: str) -> bool:
-    """Tell whether a panel is seen, and not the tab of another one in its place."""
+    """Return whether a panel is visible. A tab behind another tab is not."""
     window = imgui.internal.find_window_by_name(f"###{title}")
     node = None if window is None else window.dock_node
     return window is not None and (node is None or node.selected_tab_id == window.tab_id)

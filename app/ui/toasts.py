@@ -1,4 +1,4 @@
-"""Messages in the lower right corner, which go by themselves unless they are looked at."""
+"""Messages in the lower right corner. They disappear unless the pointer is on them."""
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
@@ -18,7 +18,7 @@ ICONS = {
 
 
 def draw_toasts(session: Session, look: Look) -> list[Action]:
-    """Draw the newest messages; those whose time is over ask to be dismissed."""
+    """Draw the newest messages. Return actions that dismiss the expired ones."""
     actions: list[Action] = []
     viewport = imgui.get_main_viewport()
     gap = 1.0 * look.em
@@ -67,7 +67,7 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
     imgui.push_text_wrap_pos(imgui.get_window_width() - 2.6 * look.em)
     imgui.text_unformatted(toast.text)
     imgui.pop_text_wrap_pos()
-    details = f"Details##{toast.born}"  # those of others may be open
+    details = f"Details##{toast.born}"  # other messages may have a popup open
     if toast.details and imgui.tree_node_ex(details, imgui.TreeNodeFlags_.no_tree_push_on_open):
         small_text(look, toast.details.strip()[-1500:])
     if toast.details and imgui.small_button("Copy"):

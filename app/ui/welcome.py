@@ -1,4 +1,4 @@
-"""What is shown before a picture is opened: samples, recent files, and how to begin."""
+"""The view before a picture is open: samples, recent files, and ways to begin."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -31,9 +31,9 @@ from app.ui.style import (
 )
 
 CARD, TALL, GAP, ROW = 11.5, 11.2, 1.0, 2.5  # em
-FIRST, FOOT = 6.4, 3.5  # em: height of the card that begins, and of the words on the others
-TUTORIAL_SAMPLE = "Giraffe"  # the sample by which one begins
-SAMPLE_FPS = 10.0  # pictures of a moving sample in a second
+FIRST, FOOT = 6.4, 3.5  # em: height of the first card, and of the text on the other cards
+TUTORIAL_SAMPLE = "Giraffe"  # the sample of the tutorial
+SAMPLE_FPS = 10.0  # pictures per second of a sample that moves
 WIDTH = 4 * CARD + 3 * GAP
 MOST_RECENT = 6
 FLAGS = (
@@ -48,14 +48,14 @@ FLAGS = (
 
 
 class Previews(NamedTuple):
-    """Where small pictures are looked up: that of a file, and those of a small animation."""
+    """Looks up thumbnails of files, and frames of sample animations."""
 
     still: Callable[[Path], Thumbnail | None]
     moving: Callable[[Path], list[Thumbnail]]
 
 
 def draw_welcome(session: Session, look: Look, pictures: Previews) -> list[Action]:
-    """Cover the window with samples to open and the ways to open one's own picture."""
+    """Cover the window with samples, and buttons that open the person's own picture."""
     viewport = imgui.get_main_viewport()
     imgui.set_next_window_pos(viewport.work_pos)
     status = imgui.get_frame_height() + look.em
@@ -69,7 +69,7 @@ def draw_welcome(session: Session, look: Look, pictures: Previews) -> list[Actio
     imgui.set_cursor_pos(ImVec2(left, max(1.5 * look.em, 0.07 * viewport.work_size.y)))
     imgui.begin_group()
     actions = _greeting(session, look)
-    # Who has files of their own looks for these, and not for what there is to try.
+    # Recent files come first: people who have files look for them, not for samples.
     actions += _recent(session, look, pictures)
     actions += _first(look, pictures)
     actions += _samples(look, pictures)
@@ -98,7 +98,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
 
 
 def _first(look: Look, pictures: Previews) -> list[Action]:
-    """Draw the way to a first animation, by the giraffe or by an own drawing."""
+    """Draw the cards that begin a first animation, with the giraffe or with an own drawing."""
     sample = next((each for each in files.sample_files() if each.name == TUTORIAL_SAMPLE), None)
     if sample is None:
         return []
@@ -159,7 +159,7 @@ def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
 
 
 def _frame(look: Look, corner: ImVec2, size: ImVec2, *, is_hot: bool) -> None:
-    """Draw the ground of a card, which shows whether the pointer is on it."""
+    """Draw the background of a card, brighter under the pointer."""
     palette, draw_list, opposite = look.palette, imgui.get_window_draw_list(), corner + size
     ground, edge, width = palette.panel, palette.line, 1.0
     if is_hot:
@@ -171,14 +171,14 @@ def _frame(look: Look, corner: ImVec2, size: ImVec2, *, is_hot: bool) -> None:
 def _show_sample(
     sample: files.SampleFile, pictures: Previews, corner: ImVec2, room: ImVec2
 ) -> None:
-    """Show a sample, and how it moves while the pointer is on its card, the last item."""
+    """Draw a sample. It moves while the pointer is on its card, which is the last item."""
     began, now = imgui.get_id(f"{sample.name} since"), imgui.get_time()
     storage = imgui.get_state_storage()
     image = pictures.still(sample.picture)
     if not imgui.is_item_hovered():
         storage.set_float(began, now)
     elif moments := pictures.moving(sample.moving):
-        # Another picture is due soon, whatever else goes on.
+        # The next picture of the sample is due soon, even if nothing else changes.
         hello_imgui.request_refresh()
         image = moments[int((now - storage.get_float(began, now)) * SAMPLE_FPS) % len(moments)]
     if image is not None:
@@ -194,7 +194,7 @@ def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
     for index, (path, is_there) in enumerate(recent):
         if index % 2:
             imgui.same_line(0, GAP * look.em)
-        # Greyed and not disabled: a click takes it off the list.
+        # The text is grey but the row is not disabled: a click removes the file from the list.
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         if _row(look, path, index, pictures.still(path) if is_there else None, is_there=is_there):
@@ -205,7 +205,7 @@ def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
 
 
 def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_there: bool) -> bool:
-    """Show a recent file: its picture, its name, and its folder below."""
+    """Draw a recent file: its picture, its name, and its folder below the name."""
     em, corner = look.em, imgui.get_cursor_screen_pos()
     size = ImVec2((WIDTH - GAP) / 2 * em, ROW * em)
     end = corner + size
@@ -224,6 +224,6 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
 
 
 def _write(text: str, left: float, middle: float) -> None:
-    """Draw a line of text over what was drawn last, with its middle at a height."""
+    """Draw a line of text over the last item, centred at a height."""
     place = ImVec2(left, middle - imgui.get_text_line_height() / 2)
     imgui.get_window_draw_list().add_text(place, imgui.get_color_u32(imgui.Col_.text), text)

@@ -1,4 +1,4 @@
-"""What surrounds the panels: menus above, icons at the left, the status below.
+"""The bars around the panels: menus at the top, icons at the left, status at the bottom.
 
 In: a session.
 Out: actions.

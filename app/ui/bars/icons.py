@@ -1,4 +1,4 @@
-"""The slim bar of switches at the left."""
+"""The bar of icon buttons at the left."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -6,7 +6,7 @@ from app.editor import Action, Project, Session
 from app.ui.shortcuts import draw_action_button
 from app.ui.style import Look
 
-# By their names in the table of shortcuts; there is a gap between two groups.
+# Names in the table of actions. A gap separates two groups.
 GROUPS = (
     ("fit", "move"),
     ("handles", "wireframe", "outline", "heat map", "split view", "onion skin", "motion paths"),
@@ -15,7 +15,6 @@ GROUPS = (
 
 
 def draw_icon_bar(session: Session, look: Look, _: Project) -> list[Action]:
-    """Draw the bar."""
     actions: list[Action] = []
     for number, names in enumerate(GROUPS):
         if number:

@@ -21,7 +21,7 @@ BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black":
 def draw_main_menu(
     session: Session, _: Look, *, title: str, panels: Sequence[Panel]
 ) -> list[Action]:
-    """Draw what is in an open menu, as the table of shortcuts has it; `panels` are the window's."""
+    """Draw the entries of a menu from the table of actions; `panels` are the window's."""
     actions: list[Action] = []
     for name, binding in MENUS[title].items():
         if binding.has_separator:
@@ -35,7 +35,6 @@ def draw_main_menu(
 
 
 def _backdrops(session: Session) -> list[Action]:
-    """Draw the menu of what lies behind the drawing."""
     if not imgui.begin_menu("Backdrop"):
         return []
     current = session.preferences.backdrop
@@ -52,7 +51,7 @@ def _backdrops(session: Session) -> list[Action]:
 
 
 def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
-    """Draw the menu of the tabs at the side, by their names: their icons may be out of sight."""
+    """Draw the menu of panels by name, because their tabs may be out of view."""
     if not imgui.begin_menu("Tabs", session.project is not None):
         return []
     actions = [
@@ -65,7 +64,6 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
 
 
 def _path_reaches(session: Session) -> list[Action]:
-    """Draw the menu of the frames that motion paths are of."""
     if not imgui.begin_menu("Frames of motion paths"):
         return []
     current = session.preferences.path_reach
@@ -79,7 +77,7 @@ def _path_reaches(session: Session) -> list[Action]:
 
 
 def _new_keys(session: Session) -> list[Action]:
-    """Draw the menu of how time runs from keys that will be made."""
+    """Draw the menu of the tangent and easing of new keys."""
     if not imgui.begin_menu("Easing of new keys"):
         return []
     actions = [
@@ -92,7 +90,7 @@ def _new_keys(session: Session) -> list[Action]:
 
 
 def _methods(session: Session) -> list[Action]:
-    """Draw the menu of how in-betweens are made, for which a narrow timeline has no room."""
+    """Draw the menu of interpolation methods. A narrow timeline has no space for it."""
     project = session.project
     if not imgui.begin_menu("In-betweens", project is not None):
         return []
@@ -102,13 +100,12 @@ def _methods(session: Session) -> list[Action]:
 
 
 def _recent(session: Session) -> list[Action]:
-    """Draw the menu of the files that were open last."""
     recent = files.recent_files(session)
     if not imgui.begin_menu("Open recent", bool(recent)):
         return []
     actions = []
     for index, (path, is_there) in enumerate(recent):
-        # Greyed and not disabled: a click takes it off the list.
+        # The text is grey but the entry is not disabled: a click removes the file from the list.
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
         note = "" if is_there else "not found"
@@ -120,7 +117,7 @@ def _recent(session: Session) -> list[Action]:
     return actions
 
 
-# What is more than an entry, by the name of the entry above it.
+# Submenus, by the name of the entry above each.
 BELOW: dict[str, Callable[[Session], list[Action]]] = {
     "open": _recent,
     "motion paths": _path_reaches,

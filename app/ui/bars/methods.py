@@ -1,4 +1,4 @@
-"""How in-betweens of a layer are made, as entries of a menu."""
+"""Menu entries of the interpolation methods."""
 
 from imgui_bundle import imgui
 
@@ -10,7 +10,7 @@ from app.ui.style import draw_tooltip
 
 
 def draw_method_menu(project: Project) -> list[Action]:
-    """Draw the entries, within a menu or a list that is open."""
+    """Draw the entries in the open menu or list."""
     actions: list[Action] = []
     for variant, text in VARIANTS.items():
         if imgui.menu_item(text.title, "", variant == project.layer.variant)[0]:

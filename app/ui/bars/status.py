@@ -11,16 +11,14 @@ from app.editor.actions import exporting, resolving, upkeep
 from app.errors import display_name
 from app.ui.style import Look, draw_tooltip, shorten_text
 
-LEAST_ROOM = 6.0  # em: narrower, a hint is left out
-SLOW = 0.3  # seconds after which a job is told of; shorter ones would only flicker
-ENDLESS = 5.0  # seconds after which a job can be given up
-SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key, below which that is told
+LEAST_ROOM = 6.0  # em: hints are omitted if less width is left
+SLOW = 0.3  # seconds after which a job is reported; reports of shorter jobs would flicker
+ENDLESS = 5.0  # seconds after which a job can be cancelled
+SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key: below these, the status bar reports it
 MOST_LISTED = 3  # keys
 
 
 class WarningAction(NamedTuple):
-    """What a button beside a warning does."""
-
     verb: Callable[[Session], None]
     hint: str  # in its tooltip
 
@@ -36,7 +34,7 @@ RELAX_MOTION_LIMITS = WarningAction(
 
 
 class StatusItem(NamedTuple):
-    """Something at the right of the status bar."""
+    """An item at the right end of the status bar."""
 
     text: str
     hint: str  # in its tooltip
@@ -44,7 +42,7 @@ class StatusItem(NamedTuple):
 
 
 def draw_status_bar(session: Session, look: Look) -> list[Action]:
-    """Draw the status bar: what goes on, and how the project and the window are."""
+    """Draw the status bar: running jobs, warnings, and the state of project and window."""
     gap = 1.6 * look.em
     told = list_status_items(session)
     width = sum(imgui.calc_text_size(fact.text).x + gap for fact in told)
@@ -87,9 +85,9 @@ def draw_status_bar(session: Session, look: Look) -> list[Action]:
 
 
 def describe_pose_limit(session: Session) -> str:
-    """Return which handle the limits hold back in what is shown, and how far; else "".
+    """Return which handle the limits hold back in the shown frame, and how far; else "".
 
-    It is wanted elsewhere by the pose, or by its track.
+    The handle's pose or its track has a target elsewhere.
     """
     project = session.project
     shown = project.layer_runtime.shown if project else None
@@ -111,11 +109,11 @@ def describe_pose_limit(session: Session) -> str:
 
 
 def describe_motion_limit(session: Session) -> str:
-    """Return at which keys the limits slow the motion down that should pass through; else ""."""
+    """Return at which smooth keys the limits slow the motion down; else ""."""
     project = session.project
     if project is None or project.is_posing or project.playhead.since is not None:
         return ""
-    # It changes with what the worker has delivered.
+    # The text changes with each result of the worker.
     known, source = project.timeline.slowed, (project.clip, session.jobs.delivered)
     if not known.follows(source):
         shares = project.layer_runtime.store.velocity_shares(project.clip)
@@ -134,7 +132,7 @@ def describe_motion_limit(session: Session) -> str:
 
 
 def _export(session: Session) -> str:
-    """Return in words how far the export is that is drawn; else ""."""
+    """Return the progress of the running export in words; else ""."""
     run = session.export
     if run is None:
         return ""
@@ -145,7 +143,7 @@ def _export(session: Session) -> str:
 
 
 def _cancel(session: Session, look: Look, slow: Sequence[JobKind]) -> list[Action]:
-    """Offer to end what runs for so long that it may never end, or tells how far it is."""
+    """Draw the cancel button of jobs that may never end or report progress."""
     telling = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
     endless = session.jobs.running_for(ENDLESS) or telling
     if not endless:
@@ -157,7 +155,7 @@ def _cancel(session: Session, look: Look, slow: Sequence[JobKind]) -> list[Actio
 
 
 def _warn(session: Session, look: Look, text: str, remedy: WarningAction) -> list[Action]:
-    """Tell what the limits prevent, and offer the remedy."""
+    """Draw a warning about the limits, with the button of its remedy."""
     imgui.text_colored(look.palette.warning, text)
     project = session.project
     if project is None or relax_limits(project.layer.bounds) is None:
@@ -169,7 +167,7 @@ def _warn(session: Session, look: Look, text: str, remedy: WarningAction) -> lis
 
 
 def list_status_items(session: Session) -> list[StatusItem]:
-    """Return what the right end of the bar says."""
+    """Return the items at the right end of the status bar."""
     facts = []
     project = session.project
     if project is not None:
@@ -188,7 +186,7 @@ def list_status_items(session: Session) -> list[StatusItem]:
 
 
 def _distortion(project: Project) -> StatusItem | None:
-    """Return the largest distortion that is shown, of the kind that is nearest to its bound."""
+    """Return the largest distortion of the shown frame, of the kind nearest to its limit."""
     shown, curves = project.layer_runtime.shown, project.curves.value
     if shown is None:
         return None
@@ -221,6 +219,6 @@ def _spinner(look: Look) -> None:
     imspinner.spinner_ang(
         "##busy", radius, 0.14 * look.em, colour, ImColor(0, 0, 0, 0), speed=6.0, angle=4.5
     )
-    # Beside it and not on its line, on which texts stand lower.
+    # Beside the item and not on its line, where text stands lower.
     beside = imgui.get_item_rect_size().x + style.item_spacing.x
     imgui.set_cursor_pos(start + ImVec2(beside, 0))

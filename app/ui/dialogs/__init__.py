@@ -1,6 +1,6 @@
-"""Questions, and the choice of a file.
+"""Questions and file dialogs.
 
-In: the dialog that the session has open.
+In: the open dialog of the session.
 Out: the actions of its answers.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """

@@ -1,4 +1,4 @@
-"""The places that our file browser offers beside its list."""
+"""The folder shortcuts beside the list of the built-in file browser."""
 
 import os
 import re
@@ -13,7 +13,7 @@ from app.errors import display_name
 from app.storage import home_folder
 
 MOST_RECENT = 5
-# Their names on the disk where nobody says otherwise, and in the file in which a desktop does.
+# Default folder name, and key in the desktop's file user-dirs.dirs.
 FOLDERS = (
     ("Desktop", "DESKTOP", icons.ICON_FA_DESKTOP),
     ("Documents", "DOCUMENTS", icons.ICON_FA_FILE_LINES),
@@ -23,15 +23,13 @@ FOLDERS = (
 
 
 class BrowserShortcut(NamedTuple):
-    """A folder to go to, its name, and its icon."""
-
     folder: Path
     name: str
     icon: str
 
 
 def list_standard_shortcuts() -> tuple[BrowserShortcut, ...]:
-    """Return the person's own folder, and those in it that a system makes for everybody."""
+    """Return the home folder and its usual subfolders, if they exist."""
     home = home_folder()
     named = _named_by_desktop(home)
     places = [BrowserShortcut(home, "Home", icons.ICON_FA_HOUSE)]
@@ -43,7 +41,7 @@ def list_standard_shortcuts() -> tuple[BrowserShortcut, ...]:
 
 
 def list_recent_shortcuts(recent: Iterable[Path]) -> tuple[BrowserShortcut, ...]:
-    """Return the folders of files that were open last, the newest first."""
+    """Return the folders of recently opened files, the newest first."""
     folders = dict.fromkeys(path.parent for path in recent)
     found = [folder for folder in folders if _is_there(folder)]
     icon = icons.ICON_FA_CLOCK_ROTATE_LEFT
@@ -54,7 +52,7 @@ def list_recent_shortcuts(recent: Iterable[Path]) -> tuple[BrowserShortcut, ...]
 
 
 def _named_by_desktop(home: Path) -> dict[str, Path]:
-    """Return the folders that user-dirs.dirs names, as freedesktop.org's xdg-user-dirs has it."""
+    """Return the folders of user-dirs.dirs, as in freedesktop.org's xdg-user-dirs."""
     if sys.platform in {"win32", "darwin"}:
         return {}
     settings = Path(os.environ.get("XDG_CONFIG_HOME") or home / ".config")

@@ -1,4 +1,4 @@
-"""The dialog that is open: a question, the sheet of keys, or a choice of a file."""
+"""The open dialog: a question, the sheet of shortcuts, or a file dialog."""
 
 from collections.abc import Mapping
 from itertools import combinations_with_replacement
@@ -26,23 +26,22 @@ from app.ui.dialogs.recovery import draw_recovery_dialog
 from app.ui.shortcuts import MENUS, POINTER_HELP
 from app.ui.style import Look, heading, main_button
 
-HEADING = 2  # rows that the heading of a group takes
+HEADING = 2  # rows of a group's heading
 GOING_ON = (
     browse_files,
     use_own_file_browser,
     error_reports.edit_report_text,
-)  # with the dialog that is open
+)  # with the open dialog
 
 
 class Dialogs:
-    """Shows what the session asks; of the system's own dialogs at most one."""
+    """Shows the session's dialog. At most one system dialog is open."""
 
     def __init__(self) -> None:
         self._browser = FileBrowser()
         self._native: NativeDialog | None = None
 
     def draw(self, session: Session, look: Look, thumbnail: LookUp) -> list[Action]:
-        """Draw the open dialog, if there is one."""
         self._follow_session(session)
         dialog = session.dialog
         _use_keyboard(is_used=isinstance(dialog, (Question, RecoveryDialog)))
@@ -71,13 +70,13 @@ class Dialogs:
         return actions
 
     def close(self) -> None:
-        """Take a dialog of the system away; the program would wait for it at its end."""
+        """Close the system's dialog. Otherwise the program would wait for it at its end."""
         if self._native is not None:
             self._native.close()
             self._native = None
 
     def _follow_session(self, session: Session) -> None:
-        """Open and close dialogs of the system as the session says."""
+        """Open and close system dialogs to match the session."""
         dialog = session.dialog if session.system_dialogs else None
         if self._native is not None and self._native.dialog is not dialog:
             self.close()
@@ -115,7 +114,7 @@ def _title(dialog: Dialog) -> str:
 
 
 def _use_keyboard(*, is_used: bool) -> None:
-    """Let Tab and arrows go from button to button, and Enter press one.
+    """Let Tab and arrows move between buttons, and Enter press one.
 
     Elsewhere these keys have other meanings: arrows nudge handles, Space plays.
     """
@@ -123,7 +122,7 @@ def _use_keyboard(*, is_used: bool) -> None:
     if bool(io.config_flags & flag) == is_used:
         return
     io.config_flags ^= flag
-    # Shown where keys press a button; gone with the question, or it would mark something else.
+    # Visible while keys press a button. After the question the cursor would mark something else.
     imgui.set_nav_cursor_visible(is_used)
 
 
@@ -140,7 +139,7 @@ def _waiting(look: Look) -> list[Action]:
 
 def _question(question: Question, look: Look) -> list[Action]:
     actions: list[Action] = []
-    # Keys press a button only where one sees which.
+    # Keys press a button only while the cursor shows which one.
     imgui.set_nav_cursor_visible(True)
     imgui.push_text_wrap_pos(30 * look.em)
     imgui.text_unformatted(display_name(question.text))
@@ -171,7 +170,7 @@ def _shortcuts(look: Look) -> None:
     }
     rows["Pointer"] = [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
     style = imgui.get_style()
-    # Closer than elsewhere: all keys are to be seen at once.
+    # Tighter than elsewhere, so that all shortcuts are visible at once.
     imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))
     columns = _columns({group: len(rows[group]) for group in rows})
     if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
@@ -191,7 +190,7 @@ def _shortcuts(look: Look) -> None:
 
 
 def _columns(sizes: Mapping[str, int]) -> tuple[list[str], ...]:
-    """Part groups of so many rows into three columns, in their order and as low as can be."""
+    """Split groups into three columns of nearly equal height, in order. `sizes` are in rows."""
     names = list(sizes)
     cuts = combinations_with_replacement(range(len(names) + 1), 2)
     parted = [(names[:i], names[i:j], names[j:]) for i, j in cuts]

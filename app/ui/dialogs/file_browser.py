@@ -1,4 +1,4 @@
-"""Our own file browser, for machines without file dialogs of the system."""
+"""The built-in file browser, for machines without system file dialogs."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -31,10 +31,10 @@ from app.ui.style import (
 )
 
 LookUp = Callable[[Path], Thumbnail | None]
-WIDTH, HEIGHT = 52.0, 24.0  # em, where the window has room for them
+WIDTH, HEIGHT = 52.0, 24.0  # em, if the window is large enough
 PLACES, SIZE, CHANGED, BUTTON = 10.0, 5.5, 9.5, 7.0  # em
 ROW = 1.9  # em
-LARGEST_SHOWN = 20_000_000  # bytes: what takes longer to read is shown by an icon
+LARGEST_SHOWN = 20_000_000  # bytes: larger pictures have an icon instead of a thumbnail
 PLACE_FLAGS = imgui.SelectableFlags_.no_auto_close_popups
 SEPARATOR = "/"
 UP = ALT | int(imgui.Key.up_arrow)
@@ -51,7 +51,7 @@ TABLE_FLAGS = (
     | imgui.TableFlags_.pad_outer_x
 )
 ENTER = (imgui.Key.enter, imgui.Key.keypad_enter)
-# By what the columns sort.
+# Sort key of each column.
 ORDERS: tuple[Callable[[Entry], Any], ...] = (
     lambda entry: entry.path.name.casefold(),
     lambda entry: entry.size,
@@ -60,19 +60,18 @@ ORDERS: tuple[Callable[[Entry], Any], ...] = (
 
 
 class FileBrowser:
-    """The browser; it reads a folder again only when that has changed."""
+    """The file browser. It reads a folder again only if the folder has changed."""
 
     def __init__(self) -> None:
         self._usual: tuple[BrowserShortcut, ...] = ()
         self._recent: tuple[BrowserShortcut, ...] = ()
         self._listing: Listing | None = None
-        self._order = (0, False)  # column, and whether downwards
+        self._order = (0, False)  # column, and whether descending
         self._entries: list[Entry] = []  # of the listing, in this order
 
     def draw(
         self, dialog: FileDialog, session: Session, look: Look, thumbnail: LookUp
     ) -> list[Action]:
-        """Draw the browser in the dialog's window."""
         room = imgui.get_main_viewport().size
         size = ImVec2(min(WIDTH * look.em, 0.85 * room.x), min(HEIGHT * look.em, 0.52 * room.y))
         appears = imgui.is_window_appearing()
@@ -95,7 +94,7 @@ class FileBrowser:
         text = now.verb if now.writes else "Open"
         if main_button(look, text, BUTTON * look.em, enabled=possible):
             is_accepted = True
-            # What is saved goes by the name that is there, even where a folder is marked.
+            # A save uses the typed name, even if a folder is marked.
             folder = None if now.writes else folder
         imgui.same_line()
         if imgui.button("Cancel", ImVec2(BUTTON * look.em, 0)):
@@ -111,7 +110,7 @@ class FileBrowser:
         return [] if now is dialog else [do(browse_files, now)]
 
     def _step(self, dialog: FileDialog) -> tuple[FileDialog, bool]:
-        """Mark the entry that the arrow keys lead to; return whether they were used."""
+        """Move the marked entry by the arrow keys. Return whether they were used."""
         down, up = (imgui.is_key_pressed(key) for key in (imgui.Key.down_arrow, imgui.Key.up_arrow))
         if up and imgui.get_io().key_alt:
             return _enter(dialog, dialog.folder.parent), False
@@ -125,7 +124,7 @@ class FileBrowser:
         return _mark(dialog, self._entries[min(max(index, 0), len(names) - 1)]), True
 
     def _places(self, dialog: FileDialog, look: Look, height: float) -> FileDialog:
-        """Draw the person's own folders, and those of the files that were open last."""
+        """Draw the home folders, and the folders of recently opened files."""
         imgui.begin_child("places", ImVec2(PLACES * look.em, height))
         for title, places in (("Places", self._usual), ("Recent", self._recent)):
             if not places:
@@ -154,7 +153,7 @@ class FileBrowser:
         *,
         shows_marked: bool,
     ) -> tuple[FileDialog, bool]:
-        """Draw the entries; return what is marked then, and whether it was double-clicked."""
+        """Draw the entries. Return the dialog with its marked entry; True if double-clicked."""
         is_opened = False
         if not imgui.begin_table("entries", 3, TABLE_FLAGS, size):
             return dialog, is_opened
@@ -174,7 +173,7 @@ class FileBrowser:
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
                 entry = self._entries[index]
-                imgui.push_id(index)  # two names may look alike
+                imgui.push_id(index)  # two names may look the same
                 if _row(entry, look, thumbnail, is_marked=index == marked):
                     dialog = _mark(dialog, entry)
                     is_opened = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
@@ -189,7 +188,7 @@ class FileBrowser:
         return dialog, is_opened
 
     def _read(self, dialog: FileDialog) -> None:
-        """Bring the entries up to date with the folder and with the order of the table."""
+        """Update the entries from the folder and the table's sort order."""
         listing = self._listing
         if listing is None or not listing.is_current(dialog.folder, dialog.suffixes):
             self._listing = read_folder(dialog.folder, dialog.suffixes)
@@ -205,7 +204,7 @@ class FileBrowser:
 
 
 def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
-    """Draw the ways out of the folder: up, home, and the folders that it is in."""
+    """Draw the buttons that leave the folder: up, home, and each parent folder."""
     start = imgui.get_cursor_pos_x()
     if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=format_chord(UP)):
         return _enter(dialog, dialog.folder.parent)
@@ -230,14 +229,13 @@ def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
         imgui.pop_style_color()
         if folder is not shown[-1]:
             imgui.same_line(0, 0)
-            # The root ends with one itself.
+            # The name of the root is empty; its separator is drawn already.
             imgui.text_disabled(SEPARATOR if folder.name else "")
             imgui.same_line(0, 0)
     return dialog
 
 
 def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> bool:
-    """Draw an entry; return whether it was clicked."""
     imgui.table_next_row()
     imgui.table_next_column()
     palette, em = look.palette, look.em
@@ -269,11 +267,11 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
 
 
 def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool) -> FileDialog:
-    """Draw the field of the name, which takes what is typed as soon as the browser opens."""
+    """Draw the field for the name, which has the keyboard focus when the browser opens."""
     if is_new:
         imgui.set_keyboard_focus_here()
     if is_set:
-        # A field that is being typed into does not look at what it is given, unless it is told to.
+        # An active text field ignores a new value unless it is reloaded explicitly.
         state = imgui.internal.get_input_text_state(imgui.get_id(NAME_FIELD))
         if state is not None:
             state.reload_user_buf_and_move_to_end()
@@ -292,7 +290,7 @@ def _mark(dialog: FileDialog, entry: Entry) -> FileDialog:
 
 
 def _enter(dialog: FileDialog, folder: Path) -> FileDialog:
-    """Go to another folder; the name of a file to write stays, unless it led there."""
+    """Go to another folder. Keep the name of a file to save, unless the name was this folder."""
     left = dialog.folder.name if folder == dialog.folder.parent else ""
     is_path = Path(dialog.name).name != dialog.name
     name = dialog.name if dialog.writes and not is_path else ""
@@ -300,7 +298,7 @@ def _enter(dialog: FileDialog, folder: Path) -> FileDialog:
 
 
 def _folder_meant(dialog: FileDialog) -> Path | None:
-    """Return the folder that is marked or typed, if there is one to go to."""
+    """Return the marked or typed folder, if it exists."""
     name = dialog.marked or dialog.name.strip()
     is_path = Path(name).name != name
     if not name or (dialog.writes and not dialog.marked and not is_path):
@@ -310,7 +308,7 @@ def _folder_meant(dialog: FileDialog) -> Path | None:
 
 
 def _path_meant(dialog: FileDialog) -> Path | None:
-    """Return the path that is named, if it can be what the dialog asks for."""
+    """Return the path of the typed name, if the dialog accepts it."""
     name = dialog.name.strip()
     if not name:
         return None
@@ -319,9 +317,9 @@ def _path_meant(dialog: FileDialog) -> Path | None:
 
 
 def _is(kind: Callable[[Path], bool], path: Path) -> bool:
-    """Tell whether a path that somebody typed is a file or a folder."""
+    """Return whether a typed path is a file or a folder, as `kind` tests."""
     try:
         return kind(path)
     except OSError:
-        # Too long for a name, or behind a folder that may not be entered.
+        # The name is too long, or a folder before it may not be entered.
         return False

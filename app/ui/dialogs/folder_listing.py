@@ -1,4 +1,4 @@
-"""What our file browser lists of a folder."""
+"""The contents of a folder, for the built-in file browser."""
 
 import os
 import time
@@ -10,7 +10,7 @@ UNITS = ("bytes", "kB", "MB", "GB")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Entry:
-    """A folder or a file; its size is in bytes, its time in seconds since 1970."""
+    """A folder or a file; size in bytes, time in seconds since 1970."""
 
     path: Path
     is_folder: bool
@@ -19,7 +19,7 @@ class Entry:
 
     @property
     def size_in_words(self) -> str:
-        """The size as people read it; nothing for a folder."""
+        """The size as text; empty for a folder."""
         if self.is_folder:
             return ""
         power = 0
@@ -30,30 +30,30 @@ class Entry:
 
     @property
     def changed_in_words(self) -> str:
-        """Day and minute of the last change, in the local time; nothing if no calendar has them."""
+        """Local day and minute of the last change. Empty if the calendar cannot express it."""
         try:
             return time.strftime("%Y-%m-%d  %H:%M", time.localtime(self.changed))
         except (OverflowError, ValueError, OSError):
-            return ""  # of clocks that went wild
+            return ""  # the clock was wrong
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Listing:
-    """What a folder holds, or why that cannot be told."""
+    """The entries of a folder, or the reason why it cannot be read."""
 
     folder: Path
-    suffixes: tuple[str, ...]  # of the files that are listed
-    version: tuple[int, ...]  # another one if the folder has changed since
+    suffixes: tuple[str, ...]  # of the listed files
+    version: tuple[int, ...]  # changes whenever the folder changes
     entries: tuple[Entry, ...] = ()
-    problem: str = ""  # empty where there is none
+    problem: str = ""  # empty if there is none
 
     def is_current(self, folder: Path, suffixes: tuple[str, ...]) -> bool:
-        """Tell whether reading this folder would give the same."""
+        """Return whether reading the folder again would give the same listing."""
         return (folder, suffixes, _version(folder)) == (self.folder, self.suffixes, self.version)
 
 
 def read_folder(folder: Path, suffixes: tuple[str, ...]) -> Listing:
-    """List the folders, and the files of some kinds, that are not hidden."""
+    """List the visible folders, and the visible files with these suffixes."""
     version = _version(folder)
     try:
         with os.scandir(folder) as found:
@@ -70,7 +70,7 @@ def read_folder(folder: Path, suffixes: tuple[str, ...]) -> Listing:
 
 
 def _entry(found: os.DirEntry[str]) -> Entry | None:
-    """Return what the list shows of a file or a folder, or None if it cannot even be looked at."""
+    """Return the list's entry of a file or a folder, or None if its status cannot be read."""
     try:
         status = found.stat()
         is_folder = found.is_dir()
@@ -86,5 +86,5 @@ def _version(folder: Path) -> tuple[int, ...]:
         status = folder.stat()
     except OSError:
         return ()
-    # The second one changes with the permission to read it.
+    # The second time changes with the read permission.
     return status.st_mtime_ns, status.st_ctime_ns

@@ -1,4 +1,4 @@
-"""A file dialog of the system: it runs beside the window, which waits for it."""
+"""A file dialog of the system. It runs beside the window, which waits for the answer."""
 
 import shutil
 import sys
@@ -12,24 +12,24 @@ from app.editor.actions import choose_file, close_dialog, show_dialog, use_own_f
 from app.errors import display_name
 from app.export import choose_frame_folder
 
-# Any of them shows the file dialogs of a Linux desktop.
+# Each of these programs shows the file dialogs of a Linux desktop.
 PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
-# Nobody finds and cancels a dialog so soon: one that is gone by then never came up. The system
-# tells no more of the two than that nothing was chosen.
+# A person cannot cancel a dialog so soon. A dialog that ends earlier never appeared: the system
+# reports in both cases only that nothing was chosen.
 TOO_SOON = 0.5  # seconds
-MOST_NAMED = 4  # kinds of files in the name of a filter
+MOST_NAMED = 4  # suffixes in the name of a filter
 REPLACE = "Replace the file?"
 
 
 def find_system_dialogs() -> str | None:
-    """Return what shows the system's own file dialogs, in words; None where nothing does."""
+    """Return the name of the program that shows the system's file dialogs, or None."""
     if sys.platform in {"win32", "darwin"}:
         return "the system's own"
     return next(filter(shutil.which, PROGRAMS), None)
 
 
 class NativeDialog:
-    """One dialog of the system, from its opening, by the clock's seconds, to its answer."""
+    """A dialog of the system, from its opening to its answer. Times are in clock seconds."""
 
     def __init__(self, dialog: FileDialog, now: float) -> None:
         self.dialog = dialog
@@ -37,13 +37,13 @@ class NativeDialog:
         self._running = _open(dialog)
 
     def poll(self, now: float) -> list[Action]:
-        """Return what follows from the person's answer, once it is there; never waits."""
+        """Return the actions of the person's answer, if there is one. Never waits."""
         if not self._running.ready(0):
             return []
         try:
             result = self._running.result()
         except UnicodeDecodeError:
-            # A name that is not UTF-8, of which it knows no other form.
+            # The path is not UTF-8, and the system has no other form of it.
             return [do(use_own_file_browser)]
         chosen = result if isinstance(result, str) else next(iter(result), "")
         if chosen:
@@ -51,7 +51,6 @@ class NativeDialog:
         return [do(use_own_file_browser if now - self._opened < TOO_SOON else close_dialog)]
 
     def close(self) -> None:
-        """Take the dialog away if it is still there."""
         if not self._running.ready(0):
             self._running.kill()
 
@@ -64,20 +63,20 @@ Running = (
 
 
 def _open(dialog: FileDialog) -> Running:
-    # With a slash at its end a folder is where to begin, and not what to choose.
+    # With a slash at its end, the folder is where to begin and not the preselected file.
     folder = display_name(f"{dialog.folder}/")
     if dialog.wants_folder:
         return portable_file_dialogs.select_folder(dialog.title, folder)
     filters = _filters(dialog.suffixes)
     if dialog.writes:
-        # macOS begins only at what exists.
+        # macOS accepts only an existing start folder.
         start = folder if sys.platform == "darwin" else display_name(dialog.folder / dialog.name)
         return portable_file_dialogs.save_file(dialog.title, start, filters)
     return portable_file_dialogs.open_file(dialog.title, folder, filters)
 
 
 def _filters(suffixes: tuple[str, ...]) -> list[str]:
-    """Return name and patterns; cameras and old programs write suffixes in capitals."""
+    """Return names and patterns of the filter. Cameras and old programs write capital suffixes."""
     names = ", ".join(suffixes[:MOST_NAMED]) + (", …" if len(suffixes) > MOST_NAMED else "")
     return [names, " ".join(f"*{form}" for s in suffixes for form in (s, s.upper()))]
 
@@ -88,7 +87,7 @@ def _follow(dialog: FileDialog, chosen: Path) -> Action:
     path = dialog.path_of(str(chosen))
     if path == chosen or not path.exists():
         return do(choose_file, dialog, path)
-    # The system has asked about the name without its suffix only.
+    # The system has asked only about the name without its suffix.
     question = Question(
         title=REPLACE,
         text=f"{path.name} is there already.",

@@ -1,4 +1,4 @@
-"""A report of a problem, to be looked through and saved."""
+"""A problem report that can be read and saved."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -6,11 +6,11 @@ from app.editor import Action, ProblemReport, do, error_reports
 from app.editor.actions import close_dialog
 from app.ui.style import Look, main_button
 
-WIDTH, HEIGHT, MARGIN = 46.0, 22.0, 6.0  # em: of the text, and what the window has around it
+WIDTH, HEIGHT, MARGIN = 46.0, 22.0, 6.0  # em: size of the text, margin of the window
 
 
 def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
-    """Draw the text, which can be changed, and what can be done with it."""
+    """Draw the text, which can be edited, and the buttons."""
     actions: list[Action] = []
     room = imgui.get_main_viewport().size
     width = min(WIDTH * look.em, 0.9 * room.x - MARGIN * look.em)

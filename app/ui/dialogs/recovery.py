@@ -1,4 +1,4 @@
-"""The choice among unsaved work of earlier times."""
+"""The list of recovered work from earlier sessions."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -10,11 +10,11 @@ from app.ui.style import Look, draw_tooltip, main_button, shorten_text
 
 WIDEST = 14.0  # em, of a name
 WIDTH, SUMMARY_AT, BUTTONS_AT = 36.0, 14.5, 27.5  # em
-TALLEST = 20.0  # em, of all rows; the others are scrolled to
+TALLEST = 20.0  # em, height of the rows before they scroll
 
 
 def draw_recovery_dialog(recovery: RecoveryDialog, look: Look) -> list[Action]:
-    """Draw what there is, each with what can be done with it."""
+    """Draw each recovered project with its buttons."""
     actions: list[Action] = []
     imgui.push_text_wrap_pos(30 * look.em)
     imgui.text_unformatted(

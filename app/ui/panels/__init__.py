@@ -1,4 +1,4 @@
-"""One panel a module: `draw(session, look)` reads the session and returns the person's actions.
+"""The panels: each `draw_…` function reads the session and returns the person's actions.
 
 In: a session.
 Out: actions.

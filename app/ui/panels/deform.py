@@ -1,4 +1,4 @@
-"""How far poses may stretch the drawing, how far they do, and what the solver is at."""
+"""The panel of limits: their values, the distortion of poses, and the state of the solver."""
 
 from dataclasses import dataclass, replace
 
@@ -34,12 +34,12 @@ from app.ui.style import (
 from engine.maps import Bounds, Certificate
 
 _DETAILS = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.frame_padding
-NEAR = 0.85  # of a bound: from here on a bar warns
+NEAR = 0.85  # share of a limit above which its bar warns
 
 
 @dataclass(frozen=True, slots=True)
 class LimitRow:
-    """One of the bounds: its field in `Bounds` and `Certificate`, and how it is shown."""
+    """A limit: its field in `Bounds` and `Certificate`, and its labels."""
 
     field: str
     name: str
@@ -49,7 +49,7 @@ class LimitRow:
     unit: str = ""
 
 
-# From no distortion at the left to what hardly bounds anything at the right.
+# From no distortion at the left to nearly no limit at the right.
 LIMITS = (
     LimitRow(
         "k",
@@ -75,11 +75,11 @@ LIMITS = (
         " ×",
     ),
 )
-LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest bounds on the tracks
+LEAST = {"k": 0.05, "sigma_a": 1.05, "sigma_b": 0.95}  # the tightest limits on the sliders
 
 
 def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the bounds with what the pose makes of them, the solver's state, and all keys."""
+    """Draw the limits with the distortion of the pose, the solver's state, and all keys."""
     if project.layer_runtime.shown is None:
         return []
     bounds = _wanted_bounds(project)
@@ -103,7 +103,7 @@ def _wanted_bounds(project: Project) -> Bounds:
 
 
 def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
-    """Return the certificates of the pose that is shown, or of the two keys around it."""
+    """Return the certificates of the shown pose, or of the two keys around an in-between."""
     shown, clip = project.layer_runtime.shown, project.clip
     if shown is not None and shown.pose is not None:
         return (shown.pose.certificate,), "this pose"
@@ -112,7 +112,7 @@ def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
 
 
 def _stretch(look: Look, bounds: Bounds) -> list[Action]:
-    """Draw the one word for all three bounds, and what it means."""
+    """Draw the presets for all three limits, and the hint of the chosen preset."""
     heading(look, "Stretch")
     present = find_limit_preset(bounds)
     words = [(stretch.name, stretch.name) for stretch in LIMIT_PRESETS]
@@ -124,7 +124,7 @@ def _stretch(look: Look, bounds: Bounds) -> list[Action]:
 def _limit(
     look: Look, limit: LimitRow, bounds: Bounds, reached: tuple[Certificate, ...]
 ) -> list[Action]:
-    """Draw one bound: its name and value on one line, under them the track that it ends."""
+    """Draw a limit: its name and value on one line, below them a bar that the limit ends."""
     palette = look.palette
     bound = float(getattr(bounds, limit.field))
     used = max((float(getattr(c, limit.field)) for c in reached), key=limit.scale.share)
@@ -209,7 +209,7 @@ def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
 
 
 def _keys(session: Session, look: Look, project: Project) -> list[Action]:
-    """List what every key reaches; a click goes there."""
+    """List the distortion of every key. A click moves the playhead to the key."""
     actions: list[Action] = []
     layer, palette = project.layer, look.palette
     flags = imgui.TableFlags_.sizing_stretch_prop | imgui.TableFlags_.pad_outer_x

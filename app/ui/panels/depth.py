@@ -1,4 +1,4 @@
-"""What is painted in front around a handle, where the drawing lies over itself."""
+"""The depth of a handle: which part is painted in front where the drawing overlaps itself."""
 
 from imgui_bundle import imgui
 
@@ -14,7 +14,7 @@ DEPTHS = Scale(left=-1.0, right=1.0)
 def draw_depth_settings(
     session: Session, look: Look, project: Project, handle: Handle
 ) -> list[Action]:
-    """Draw the depth of a handle, its extent, and from which key on it holds."""
+    """Draw the depth of a handle, its extent, and its first key."""
     heading(look, "In front")
     layer, frame = project.layer, playback.edited_frame(session, project)
     key = layer.key(frame) if frame in layer.key_frames else None
@@ -23,7 +23,7 @@ def draw_depth_settings(
     if len(layer.keys) > 1:
         actions += _from_key(look, handle, key)
     imgui.end_group()
-    # The drawing is tinted as long as the pointer is at these settings.
+    # The drawing is tinted while the pointer is on these settings.
     is_pointed = imgui.is_item_hovered(imgui.HoveredFlags_.rect_only) and imgui.is_window_hovered(
         imgui.HoveredFlags_.allow_when_blocked_by_active_item
     )
@@ -55,7 +55,7 @@ def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:
 
 
 def _from_key(look: Look, handle: Handle, key: Keyframe | None) -> list[Action]:
-    """Draw whether the depth is that of a key, from which on it holds."""
+    """Draw whether the depth belongs to a key and holds from there on."""
     front = key.depths.get(handle.id) if key else None
     imgui.begin_disabled(key is None)
     changed, keyed = imgui.checkbox("From this key on", front is not None)

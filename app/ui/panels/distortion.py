@@ -1,4 +1,4 @@
-"""How far the drawing is distorted: on the drawing, over its area, and over time."""
+"""The distortion of the drawing: on the drawing, over its area, and over time."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -36,12 +36,12 @@ SPLITS = (("divider", "Divider"), ("beside", "Side by side"))
 KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
 BINS = 48
 HISTOGRAM, STRIP = 4.6, 0.45  # em
-PLOT, LARGEST_PLOT = 4.2, 10.0  # em: heights of a plot at least and at most
-LIMIT = 0.11  # em: width of the line at the limit
-FRAMES = 1.35  # em: what the frames take below the lower one
-SEGMENTS = 72  # of one point's line over all time at most, or a few in each interval
-MOST = 2.5  # of one method's own range, that both may take: another may go without bound
-HEADROOM = 1.4  # above the largest value, for the title
+PLOT, LARGEST_PLOT = 4.2, 10.0  # em: smallest and largest height of a plot
+LIMIT = 0.11  # em: width of the limit's line
+FRAMES = 1.35  # em: height of the frame numbers below the lower plot
+SEGMENTS = 72  # pieces of one point's line at most, or a few in each segment
+MOST = 2.5  # largest common range, times the own method's: another method may have no limit
+HEADROOM = 1.4  # of the largest value: space for the title
 QUIET = (
     implot.Flags_.no_legend
     | implot.Flags_.no_mouse_text
@@ -52,7 +52,6 @@ QUIET = (
 
 
 def draw_distortion_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the choice of the heat map, the histogram, and the curves."""
     if project.layer_runtime.shown is None:
         return []
     _style_plots(look)
@@ -73,7 +72,7 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
 
 
 def _compare(session: Session, look: Look) -> list[Action]:
-    """Choose what the viewport shows beside the drawing's own method, and how."""
+    """Draw the choice of the compared method and of its layout in the viewport."""
     actions: list[Action] = []
     split = session.compare_view
     imgui.set_next_item_width(-1)
@@ -115,7 +114,7 @@ def _style_plots(look: Look) -> None:
 
 
 class _Histogram(NamedTuple):
-    """Which parts of the area have values between the edges, one more; and the worst value."""
+    """Shares of the area between the edges (one more than shares), and the worst value."""
 
     shares: tuple[float, ...]
     edges: tuple[float, ...]
@@ -138,7 +137,7 @@ def _histogram(shown: DisplayedFrame, heat_map: HeatMap, low: float, high: float
 
 @lru_cache(maxsize=2)
 def _areas(mesh: Mesh) -> Floats:
-    """Return which part of the area is around each vertex, (v,)."""
+    """Return the share of the area around each vertex, (v,)."""
     areas = np.bincount(mesh.triangles.ravel(), np.repeat(mesh.areas(), 3), len(mesh.vertices))
     return np.asarray(areas / areas.sum())
 
@@ -153,7 +152,7 @@ def _colours(first: float, last: float, low: float, high: float) -> tuple[int, .
 
 
 def _spread(look: Look, project: Project, shown: DisplayedFrame, heat_map: HeatMap) -> None:
-    """Draw which part of the drawing has how much, in the colours of the heat map."""
+    """Draw the histogram of distortion over the area, in the colours of the heat map."""
     low, high = heat_limits(project, heat_map)
     histogram = _histogram(shown, heat_map, low, high)
     edges = histogram.edges
@@ -172,7 +171,7 @@ def _spread(look: Look, project: Project, shown: DisplayedFrame, heat_map: HeatM
 
 
 def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
-    """Draw the bars, and under them the colours that the drawing has."""
+    """Draw the bars, and a strip of the heat map's colours below them."""
     draw_list = implot.get_plot_draw_list()
     implot.push_plot_clip_rect()
     floor = implot.get_plot_pos().y + implot.get_plot_size().y
@@ -224,7 +223,7 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _plot_height(look: Look) -> float:
-    """Return how high the upper of the two plots is, so that all fits the panel if it can."""
+    """Return the height of the upper plot with which both plots fit the panel."""
     spacing = imgui.get_style().item_spacing.y
     below = SMALL * imgui.get_text_line_height() + imgui.get_frame_height() + 3 * spacing
     room = (imgui.get_content_region_avail().y - below - FRAMES * look.em) / 2 - spacing
@@ -232,9 +231,9 @@ def _plot_height(look: Look) -> float:
 
 
 class _Plot(NamedTuple):
-    """What is drawn over time: a line of all points, and the range and bound of its values.
+    """A plot over time: the line of all points, and the range and limit of its values.
 
-    Of two plots with the same frames only the lower one names them.
+    Of two plots with the same frames, only the lower one has frame numbers.
     """
 
     title: str
@@ -265,10 +264,10 @@ def _plots(kind: CurveKind, curves: Curves, bounds: Bounds) -> tuple[_Plot, _Plo
 
 
 def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
-    """Return the points' lines, of fewer pieces where intervals are too many to tell them apart."""
+    """Return the points' lines, with fewer pieces in each of many segments."""
     wanted = max(4, SEGMENTS * TIMES // len(curves.frames))
     pieces = np.linspace(0, TIMES - 1, min(wanted, TIMES)).round().astype(int)
-    kept = np.append(pieces, TIMES)  # the break after each interval, too
+    kept = np.append(pieces, TIMES)  # and the break after each segment
     frames, lines = (line.reshape(-1, TIMES + 1) for line in split_at_keys(curves, values))
     return frames[:, kept].ravel(), lines[:, kept].ravel()
 
@@ -276,7 +275,7 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
 def _draw_comparison_tooltip(
     look: Look, twin: ComparisonRuntime, own: Curves, other: Curves
 ) -> None:
-    """Tell which curves are whose, and how far each goes."""
+    """Show the name and the extremes of each method's curves."""
     if (other.clip.layer, other.clip.baseline or twin.method) != (twin.layer, twin.method):
         small_text(look, "Measuring the other method…")
         return
@@ -295,7 +294,7 @@ def _plot(
     plots: tuple[_Plot, _Plot | None],
     height: float,
 ) -> list[Action]:
-    """Draw the curves of the worst points, and another method's; a click moves the playhead."""
+    """Draw the curves of the worst points, also the compared method's. A click scrubs."""
     plot, other = plots
     actions: list[Action] = []
     project, palette = session.project, look.palette
@@ -321,7 +320,7 @@ def _plot(
     corner = implot.get_plot_pos()
     place = corner + ImVec2(0.5 * look.em, 0.2 * look.em)
     implot.get_plot_draw_list().add_text(place, colour_u32(palette.text), plot.title)
-    # A plot that takes no inputs of its own never counts as hovered.
+    # ImPlot never reports a plot without own inputs as hovered.
     is_over = imgui.is_mouse_hovering_rect(corner, corner + implot.get_plot_size())
     if is_over and imgui.is_window_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
@@ -339,7 +338,7 @@ def _trace(name: str, plot: _Plot, colour: ImVec4) -> None:
 def _rule(
     name: str, values: Sequence[float], colour: ImVec4, *, width: float = 1.0, across: bool = False
 ) -> None:
-    """Draw lines through all of a plot: upright, or across it."""
+    """Draw lines through a whole plot: vertical, or horizontal if `across`."""
     line = implot.Spec()
     line.line_color, line.line_weight = colour, width
     if across:

@@ -1,4 +1,4 @@
-"""What the next export makes, where to, and how far it is."""
+"""The export panel: settings, file, and progress."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ MEASURES = "Measuring where the motion reaches…"
 LEAVES = "The motion leaves the frame; “All motion” shows all of it."
 CAMERA_HINT = "Each frame is what the camera shows then."
 KEEPS = "All of the motion is in the frame."
-PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: at least and at most
+PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: smallest and largest height
 
 
 def draw_export_panel(session: Session, look: Look, project: Project) -> list[Action]:
@@ -54,7 +54,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     motion = project.extent.value or bounding_box(project.layer_runtime.shown.positions)
     view = frame_view(settings, project.document, motion)
     box = find_shown_box(view)
-    # The camera's frame is shown at all times.
+    # The camera's frame is always visible.
     actions = [] if project.document.camera else [do(exporting.preview_export_frame, box)]
     heading(look, "Picture")
     chosen = _format(look, settings)
@@ -80,7 +80,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
 
 
 def _format(look: Look, settings: ExportSettings) -> ExportSettings:
-    """Draw the formats in groups, each with what it is good for."""
+    """Draw the formats in groups, each with its use."""
     label(look, "Format")
     now = EXPORT_FORMATS[settings.format]
     if imgui.begin_combo("##format", now.label, imgui.ComboFlags_.height_largest):
@@ -116,7 +116,7 @@ def _picture(look: Look, project: Project, settings: ExportSettings) -> ExportSe
 
 
 def _details(look: Look, settings: ExportSettings) -> ExportSettings:
-    """Draw what only some formats have."""
+    """Draw the settings of single formats."""
     format_ = EXPORT_FORMATS[settings.format]
     if not format_.suffixes:
         settings = _names(look, settings)
@@ -134,7 +134,7 @@ def _names(look: Look, settings: ExportSettings) -> ExportSettings:
     try:
         entered = replace(settings, names=names) if names else settings
     except LissomError as error:
-        # It is told while it is typed; then the field shows again what holds.
+        # The error is visible during typing. Afterwards the field shows the valid value again.
         small_text(look, str(error), look.palette.danger)
         return settings
     return entered if done else settings
@@ -172,7 +172,7 @@ def _background(look: Look, settings: ExportSettings) -> ExportSettings:
 def _size(
     session: Session, look: Look, settings: ExportSettings, view: View
 ) -> tuple[ExportSettings, list[Action]]:
-    """Draw width and height, a lock of their ratio, and the way back to the drawing's own size."""
+    """Draw width and height, a lock of their ratio, and a reset to the drawing's size."""
     actions: list[Action] = []
     label(look, "Size")
     gap = imgui.get_style().item_inner_spacing.x
@@ -203,7 +203,7 @@ def _size(
 
 
 def _canvas(look: Look, project: Project) -> list[Action]:
-    """Draw the size of the canvas, from the origin on, and the way back to the picture's."""
+    """Draw the size of the canvas, whose origin is fixed, and a reset to the picture's size."""
     document = project.document
     label(look, "Canvas")
     gap = imgui.get_style().item_inner_spacing.x
@@ -268,7 +268,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
         actions.append(do(exporting.ask_export_destination))
     run = session.export
     if exporting.is_export_under_way(session):
-        # Below zero, a bar only shows that something goes on.
+        # A negative share animates the bar without a value.
         share, text = -0.5 * imgui.get_time(), "Preparing…"
         if run is not None:
             total = len(run.plan.times)
@@ -287,7 +287,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _preview_height(look: Look) -> float:
-    """Return how high the preview is, so that the button below fits the panel if it can."""
+    """Return the height of the preview with which the button below fits the panel."""
     spacing, line = imgui.get_style().item_spacing.y, imgui.get_text_line_height()
     below = 4 * imgui.get_frame_height() + 3 * line + 0.6 * look.em + 10 * spacing
     room = imgui.get_content_region_avail().y - below
@@ -297,7 +297,7 @@ def _preview_height(look: Look) -> float:
 def _preview(
     look: Look, project: Project, settings: ExportSettings, frame: BoundingBox, motion: BoundingBox
 ) -> None:
-    """Draw the export's frame around the drawing and all that moves."""
+    """Draw the export's frame around the drawing and the whole motion."""
     canvas = BoundingBox(0j, complex(*project.document.canvas))
     around = frame.joined(canvas).joined(motion)
     width, height = imgui.get_content_region_avail().x, _preview_height(look)
@@ -342,7 +342,7 @@ def _preview(
 
 
 def _note(look: Look, text: str) -> None:
-    """Write one of the notes, in the room that the longest of them takes."""
+    """Write a note, with the height of the longest note."""
     width, notes = imgui.get_content_region_avail().x, (MEASURES, LEAVES, KEEPS)
     with push_text_size(SMALL):
         room = max(imgui.calc_text_size(note, wrap_width=width).y for note in notes)

@@ -1,4 +1,4 @@
-"""What single formats of export ask, as the table of formats says it."""
+"""Options of single export formats, from the table of formats."""
 
 from dataclasses import replace
 from typing import Any, TypeVar
@@ -12,7 +12,7 @@ T = TypeVar("T", bound=FormatOptions)
 
 
 def draw_format_options(look: Look, options: T) -> T:
-    """Draw the options of a format, one below the other; return them with what was chosen."""
+    """Draw the options of a format, one below the other. Return the changed options."""
     for name, option in options.option_fields().items():
         label(look, option.label)
         value = _chosen(look, name, option, getattr(options, name))
@@ -21,11 +21,11 @@ def draw_format_options(look: Look, options: T) -> T:
 
 
 def _chosen(look: Look, name: str, option: Option, value: Any) -> Any:
-    """Draw an option; return the value that was chosen, or the present one."""
+    """Draw an option. Return the chosen value, or the present value."""
     has_number = value is not None and not isinstance(value, bool)
     if option.choices:
         words = [(word, word) for _, word in option.choices]
-        # A number that has no word of its own goes by the one for numbers, which is the last.
+        # A value without a label belongs to the last choice, which stands for any number.
         present = next((word for each, word in option.choices if each == value), words[-1][0])
         room = 4.0 * look.em if has_number else 0.0
         chosen = option_buttons(look, name, words, present, room=room)

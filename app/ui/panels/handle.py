@@ -1,4 +1,4 @@
-"""The handles: their names, weights and wishes, and the anchor."""
+"""The panel of handles: names, weights and targets, and the anchor."""
 
 import math
 from collections.abc import Sequence
@@ -51,7 +51,7 @@ WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
 
 
 def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the list of handles and the one that is selected."""
+    """Draw the list of handles, and the details of the selected handle."""
     if project.layer_runtime.shown is None:
         return []
     layer = project.layer
@@ -117,7 +117,7 @@ def _list(look: Look, project: Project) -> list[Action]:
 
 
 def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> list[Action]:
-    """Draw a row of the list: the handle's name, and by how many pixels it falls short."""
+    """Draw a row of the list: the handle's name, and its target error in pixels."""
     actions: list[Action] = []
     palette = look.palette
     is_anchor = handle.position == project.layer.anchor
@@ -148,7 +148,7 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
 
 
 def _find_target_errors(project: Project) -> TargetErrors:
-    """Return which handles fall short in the pose that is shown; of an in-between none."""
+    """Return the target errors of the shown pose; none for an in-between."""
     shown = project.layer_runtime.shown
     if shown is None or shown.pose is None:
         return TargetErrors(errors={}, at_limits=False)
@@ -177,7 +177,7 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
 
 
 def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
-    """Draw how firmly the selected handles hold, and what is done with all of them at once."""
+    """Draw the weight of the selected handles, and the buttons that apply to all of them."""
     actions: list[Action] = []
     identities = frozenset(handle.id for handle in chosen)
     weights = {handle.weight for handle in chosen}
@@ -205,7 +205,7 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
 
 
 def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw where the pose wants a handle; as many lines between keys, where it wants nothing."""
+    """Draw the handle's target in the pose. Between keys the rows stay, without a target."""
     actions: list[Action] = []
     shown = project.layer_runtime.shown
     identities = [each.id for each in shown.clip.layer.handles] if shown else []
@@ -237,7 +237,7 @@ def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
 
 
 def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target) -> list[Action]:
-    """Draw whether the pose turns the shape at a handle, and by how much."""
+    """Draw whether the pose fixes the rotation at a handle, and the angle."""
     label(look, "Turn")
     is_turned = target.rotation is not None
     changed, turns = imgui.checkbox("##turns", is_turned)
@@ -261,7 +261,7 @@ def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target)
 
 
 def _point(look: Look, project: Project, text: str, place: complex, hint: str) -> complex | None:
-    """Draw two fields for a place, as people count pixels: y down; return it if one was entered."""
+    """Draw two fields for a place in screen convention, y down. Return the entered place."""
     height = project.document.canvas[1]
     label(look, text)
     entered = []
@@ -277,7 +277,7 @@ def _point(look: Look, project: Project, text: str, place: complex, hint: str) -
 
 
 def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
-    """Tell what the in-betweens' place and turn follow, and let that be chosen."""
+    """Describe the anchor, the reference point of the in-betweens, and let it be set."""
     layer = project.layer
     holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
     if layer.anchor is None:

@@ -1,4 +1,4 @@
-"""The library of poses: pictures that are clicked, dragged onto the timeline or blended in."""
+"""The library of poses: thumbnails that can be applied, blended in, or dragged to the timeline."""
 
 from collections.abc import Callable, Sequence
 from itertools import groupby
@@ -31,7 +31,7 @@ from app.ui.style import (
     text_button,
 )
 
-TILE, LEAST_GAP = 6.6, 0.6  # em: side of a picture, and between two
+TILE, LEAST_GAP = 6.6, 0.6  # em: side of a thumbnail, smallest distance
 SHARES = Scale(left=0.0, right=1.0)
 Pictures = Callable[[int, Pose, int], int | None]
 
@@ -39,7 +39,7 @@ Pictures = Callable[[int, Pose, int], int | None]
 def draw_poses_panel(
     session: Session, look: Look, project: Project, pictures: Pictures
 ) -> list[Action]:
-    """Draw the poses that are kept, each as a picture of some pixels a side, and flipping them."""
+    """Draw the library's poses as thumbnails, and the buttons that flip them."""
     if project.layer_runtime.shown is None:
         return []
     heading(look, "Poses", framed=True)
@@ -62,7 +62,7 @@ def draw_poses_panel(
 def _libraries(
     look: Look, project: Project, offers: Sequence[library.PoseOffer], pictures: Pictures
 ) -> list[Action]:
-    """Draw the layer's own poses, then those of each other layer below its name."""
+    """Draw the layer's own poses, then the poses of each other layer below its name."""
     actions: list[Action] = []
     numbered = enumerate(offers)
     for owner, group in groupby(numbered, key=lambda each: each[1].owner.id):
@@ -161,7 +161,7 @@ def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float)
     begun, name, owner = project.blend_preview, offer.kept.name, offer.owner.id
     is_this = begun is not None and (begun.name, begun.owner) == (name, owner)
     share = begun.share if begun is not None and is_this else 0.0
-    # Near the name above it.
+    # Close to the name above.
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * look.em)
     moved = slider_track(look, "blend", share, SHARES, width, colour=look.palette.accent)
     draw_tooltip(

@@ -10,14 +10,14 @@ LARGEST = 65_535
 
 
 class EnteredSize(NamedTuple):
-    """A size in pixels, and whether it was the width that was entered."""
+    """A size in pixels, and whether the width was entered."""
 
     size: tuple[int, int]
     by_width: bool
 
 
 def draw_size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSize | None:
-    """Draw two fields, with so many pixels left beside them; return what was entered, if it was."""
+    """Draw two fields, and leave `room` pixels beside them. Return an entered size."""
     gap = imgui.get_style().item_inner_spacing.x
     times = imgui.calc_text_size("×").x
     each = (imgui.get_content_region_avail().x - room - times - 2 * gap) / 2

@@ -1,6 +1,6 @@
-"""What a person can do by name: one table, from which menus, buttons, tooltips and keys are made.
+"""All named actions: one table makes menus, buttons, tooltips and shortcuts.
 
-In: a session, and the keys that are pressed.
+In: a session, and the pressed keys.
 Out: actions.
 Imports: `app.editor`, `app.ui.style`.
 """

@@ -1,4 +1,4 @@
-"""What an action is that has a name."""
+"""A named action."""
 
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
@@ -6,50 +6,49 @@ from dataclasses import KW_ONLY, dataclass
 from app.editor import Action, Project, Session
 from app.ui.shortcuts.keys import IS_MAC, format_chord, parse_chords
 
-Test = Callable[[Session, Project], object]  # passed where it returns what counts as true
+Test = Callable[[Session, Project], object]  # true by the truth value of its result
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ActionSpec:
-    """Something that can be done, and all ways that lead to it."""
+    """A named action, with its menu entry, keys, icon and condition."""
 
-    label: str  # in menus and in the sheet of keys
+    label: str  # in menus and in the sheet of shortcuts
     action: Action
-    keys: str = ""  # chords of keys, parted by commas; any of them does it
+    keys: str = ""  # key chords, separated by commas; each of them runs the action
     _: KW_ONLY
-    has_separator: bool = False  # whether a line parts it from the entry above in its menu
-    mac_keys: str = ""  # in their place on macOS, where the system has them for itself
-    key_text: str = ""  # its keys in words, where they are not pressed as such
+    has_separator: bool = False  # whether its menu has a separator above the entry
+    mac_keys: str = ""  # replaces `keys` on macOS, where the system reserves them
+    key_text: str = ""  # text for the menu where the action has no key chord
     icon: str = ""
-    hint: str = ""  # tooltip; the label where it is empty
-    # Whether it can be done only with an open project. Without one, `detail` and `possible` are not
-    # asked.
+    hint: str = ""  # tooltip; if empty, the label
+    # Whether the action needs an open project. Without a project, `detail` and `condition` are not
+    # called.
     needs_project: bool = True
-    # What it would do now, in words that follow the label in its menu.
+    # Text that follows the label in the menu: the present effect of the action.
     detail: Callable[[Session, Project], str] | None = None
-    condition: Test | None = None  # whether it can be done now; always where there is none
-    # Why it cannot be done now, in a sentence; empty where it can. In place of `possible`.
+    condition: Test | None = None  # whether the action is possible now; None: always
+    # A sentence why the action is disabled now; empty if it is possible. It replaces `condition`.
     explain_disabled: Callable[[Session, Project], str] | None = None
-    active: Callable[[Session], object] | None = None  # whether what it switches is on
-    repeats_while_held: bool = False  # whether it is done again while the key is held
+    active: Callable[[Session], object] | None = None  # whether its option is on
+    repeats_while_held: bool = False  # whether the action repeats while its key is held
 
     def chords(self, *, is_mac: bool = IS_MAC) -> tuple[int, ...]:
-        """Return the key chords that do it on this system, or on another one."""
+        """The key chords of the action on this system, or on the given one."""
         return parse_chords((is_mac and self.mac_keys) or self.keys)
 
     @property
     def shown_keys(self) -> str:
-        """The first of the keys, as menus show it."""
+        """The first key chord, as menus show it."""
         return format_chord(self.chords()[0]) if self.keys else self.key_text
 
     def menu_title(self, session: Session) -> str:
-        """Return the text of its menu entry now; its id is the label."""
+        """The text of the menu entry now. Its ImGui id is the label."""
         project = session.project
         detail = self.detail(session, project) if self.detail and project else ""
         return f"{self.label} {detail}###{self.label}" if detail else self.label
 
     def is_possible(self, session: Session) -> bool:
-        """Tell whether it can be done now."""
         if session.project is None:
             return not self.needs_project
         if self.explain_disabled is not None:
@@ -57,7 +56,7 @@ class ActionSpec:
         return self.condition is None or bool(self.condition(session, session.project))
 
     def disabled_reason(self, session: Session) -> str:
-        """Return in a sentence why it cannot be done now; empty where it can, or nothing says."""
+        """Why the action is disabled now, in a sentence. Empty if it is possible, or by default."""
         project = session.project
         return (
             ""
@@ -66,5 +65,5 @@ class ActionSpec:
         )
 
     def is_active(self, session: Session) -> bool:
-        """Tell whether what it switches is on, also where it cannot be switched now."""
+        """Return whether the switched option is on, even if the action is disabled now."""
         return bool(self.active and self.active(session))

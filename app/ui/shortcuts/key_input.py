@@ -1,4 +1,4 @@
-"""What the keyboard asks for, wherever the pointer is."""
+"""Shortcuts: they work wherever the pointer is."""
 
 from imgui_bundle import imgui
 
@@ -18,10 +18,10 @@ def collect_key_actions(session: Session) -> list[Action]:
         return []
     if _close_menu() or imgui.get_io().want_text_input:
         return []
-    # First, as what is copied or selected depends on it.
+    # First, because copy and select depend on the focus.
     actions = _follow_focus(session)
     for binding in BINDINGS.values():
-        # What is typed during a drag is for the tool in hand.
+        # Typed characters belong to the active drag.
         keys = [
             key for key in binding.chords() if session.active_tool is None or not _is_typed(key)
         ]
@@ -38,7 +38,7 @@ def collect_key_actions(session: Session) -> list[Action]:
 
 
 def _follow_focus(session: Session) -> list[Action]:
-    """Note whether the timeline or the drawing has the pointer, or else the focus."""
+    """Set the focus to timeline or drawing: under the pointer, or else in ImGui's focus."""
     context = imgui.get_current_context()
     for window in (context.hovered_window, context.nav_window):
         title = window.root_window.name.rpartition("###")[2] if window is not None else ""
@@ -53,18 +53,18 @@ def _follow_focus(session: Session) -> list[Action]:
 
 
 def _is_typed(key: int) -> bool:
-    """Tell whether a key may be part of a number, or of a word."""
+    """Return whether a key can be part of a number or a word."""
     return not int(key) & CTRL and key != Key.delete
 
 
 def _close_menu() -> bool:
-    """Close the menu or popup in front by Escape; return whether there was one."""
+    """Close the front menu or popup by Escape. Return whether there was one."""
     popups = imgui.get_current_context().open_popup_stack
-    # A field that is typed into has Escape for itself.
+    # A text field that is being edited handles Escape itself.
     if not popups.size() or not imgui.shortcut(Key.escape, imgui.InputFlags_.route_global):
         return False
     level = popups.size() - 1
-    # With its menu: while the pointer is on its entry there, it would open again.
+    # The parent menu closes too. It would reopen the child while the pointer is on its entry.
     while level and popups[level].window.flags & imgui.WindowFlags_.child_menu:
         level -= 1
     imgui.internal.close_popup_to_level(level, restore_focus_to_window_under_popup=True)
@@ -84,7 +84,7 @@ def _nudges(session: Session) -> list[Action]:
 
 
 def _space(session: Session) -> list[Action]:
-    """Return playing where Space was tapped, and not held to move the view."""
+    """Return the play action if Space was tapped. Space that is held moves the view."""
     if session.project is None or not imgui.is_key_released(Key.space):
         return []
     return [do(playback.toggle_play_on_space)]

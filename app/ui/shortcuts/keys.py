@@ -1,4 +1,4 @@
-"""Keys in words, as the system writes them that Lissom runs on."""
+"""Key chords as text, written as this system writes them."""
 
 import sys
 from functools import cache
@@ -6,12 +6,12 @@ from functools import cache
 from imgui_bundle import imgui
 
 Key = imgui.Key
-# On macOS Dear ImGui takes the command key for Ctrl.
+# On macOS Dear ImGui treats the command key as Ctrl.
 IS_MAC = sys.platform == "darwin"
-# Whole numbers: combined as members, these keys fail to form a flag in Python 3.11.2.
+# Plain integers: combined as enum members, these keys fail to form a flag in Python 3.11.2.
 CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
 MODIFIERS = {CTRL: "Ctrl", SHIFT: "Shift", ALT: "Alt"}
-# In the order in which Apple writes them.
+# In Apple's order.
 MAC_MODIFIERS = {ALT: "⌥", SHIFT: "⇧", CTRL: "⌘"}
 KEY_NAMES = {
     "UpArrow": "Up",
@@ -26,7 +26,7 @@ KEY_NAMES = {
     "LeftBracket": "[",
     "RightBracket": "]",
 }
-# As they are written in the table of bindings: "PageUp", "1", "F9".
+# Names as the table of actions writes them: "PageUp", "1", "F9".
 KEYS = {
     "".join(part.capitalize() for part in name.split("_")): int(key)
     for name, key in Key.__members__.items()
@@ -52,5 +52,5 @@ def format_chord(chord: int, *, is_mac: bool = IS_MAC) -> str:
 
 @cache
 def format_modified(modifier: int, what: str, *, is_mac: bool = IS_MAC) -> str:
-    """Return what the pointer does while a modifier is held: "Ctrl+click", or "⌘ click"."""
+    """Return a pointer gesture with a modifier: "Ctrl+click", or "⌘ click" on macOS."""
     return f"{MAC_MODIFIERS[modifier]} {what}" if is_mac else f"{MODIFIERS[modifier]}+{what}"

@@ -1,11 +1,11 @@
-"""Which page of the manual tells of what is in front."""
+"""The manual's page for each tab."""
 
 from app.editor import Session
 from app.editor.actions import viewing
 from app.ui.panel import is_in_front
 
 START = "index"
-# By the tab at the side.
+# Page by the title of the tab.
 PAGES = {
     "Handle": "handles",
     "Layers": "layers",
@@ -21,12 +21,12 @@ PAGES = {
 
 
 def open_manual_page(session: Session) -> None:
-    """Open the manual at what is in hand, or else at the tab in front."""
+    """Open the manual at the page of the active tool, or else of the front tab."""
     viewing.open_manual(session, find_manual_page(session))
 
 
 def find_manual_page(session: Session) -> str:
-    """Return the page of the manual about what a person does just now."""
+    """Return the manual's page about the active tool, or else about the front tab."""
     project = session.project
     if project is None:
         return START

@@ -1,4 +1,4 @@
-"""What the pointer does, for the sheet of keys; the viewport and the timeline handle it."""
+"""Pointer gestures for the sheet of shortcuts. The viewport and the timeline handle them."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,6 @@ from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified
 
 @dataclass(frozen=True, slots=True)
 class PointerHelp:
-    """How something is done, and what that is."""
-
     gesture: str
     effect: str
 

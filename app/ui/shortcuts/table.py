@@ -1,4 +1,4 @@
-"""All actions that have a name, in the order of the menus: adding one is adding it here."""
+"""All named actions, in menu order. A new action needs only an entry here."""
 
 from functools import partial
 from typing import Any
@@ -64,7 +64,7 @@ def _stretch(_: Session, project: Project) -> str:
 
 
 def _onto(session: Session, project: Project, way: paste_destinations.PasteMode) -> str:
-    """Tell onto which layers is pasted, where that is not the one that is posed alone."""
+    """Name the layers that receive the paste, unless it is only the active layer."""
     onto = [
         each.layer for each in paste_destinations.find_paste_destinations(session, project, way)
     ]
@@ -78,7 +78,7 @@ def _all(session: Session, _: Project) -> str:
 
 
 def _is_idle(session: Session, project: Project) -> bool:
-    """Tell whether nothing is under way that Esc ends first."""
+    """Return whether nothing is active that Esc ends before it clears the selection."""
     in_hand = (
         session.active_tool
         or not session.is_posing
@@ -98,17 +98,17 @@ def _can_leave(session: Session, project: Project) -> bool:
 
 
 def _records(session: Session, project: Project) -> bool:
-    """Tell whether a drag is to be recorded, or was and is not kept yet."""
+    """Return whether a drag will be recorded, or a recorded drag is not yet kept or discarded."""
     return session.active_tool is None and (session.records or project.recording is not None)
 
 
 def _gives(session: Session, project: Project) -> bool:
-    """Tell whether a motion is on its way, and nothing is in hand that Esc ends first."""
+    """Return whether a motion preset is being applied and Esc ends nothing else first."""
     return project.motion_job is not None and session.active_tool is None and session.is_posing
 
 
 def _has_sides(_: Session, project: Project) -> bool:
-    """Tell whether a motion is drafted for a body that is seen from the front."""
+    """Return whether a motion preset is being set up for a body seen from the front."""
     return project.motion_setup is not None and project.motion_setup.kind == "biped-front"
 
 
@@ -121,7 +121,7 @@ def _frees_arrows(session: Session, project: Project) -> bool:
 
 
 def _can_delete(_: Session, project: Project) -> bool:
-    """Tell whether something is selected: keys, handles, or a joint of a motion."""
+    """Return whether keys, handles or a joint of a motion preset are selected."""
     joint = project.motion_setup is not None and project.motion_setup.selected_joint
     return bool(joint or project.selected_handles or project.selected_keys)
 
@@ -158,20 +158,17 @@ def _brushes(session: Session, _: Project) -> bool:
 
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
-    """Ask for the name of the layer that is posed, in the list of layers."""
     bring_to_front("Layers")
     layering.ask_layer_name(session, project.active)
 
 
 def _export(session: Session) -> None:
-    """Show what the export makes; where that is seen already, ask where to and begin."""
+    """Show the export panel. If it is in front already, ask for the file and begin."""
     if bring_to_front("Export"):
         exporting.ask_destination_and_export(session)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpec:
-    """Return what shows or hides an overlay."""
-
     def is_shown(session: Session) -> bool:
         return bool(getattr(session.overlays, name))
 
@@ -179,7 +176,6 @@ def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpe
 
 
 def _reset_layout(_: Session) -> None:
-    """Put the panels back where they are at first."""
     hello_imgui.get_runner_params().docking_params.layout_reset = True
 
 

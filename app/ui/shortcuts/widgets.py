@@ -1,4 +1,4 @@
-"""Menu entries and buttons of what the table names."""
+"""Menu entries and buttons of named actions."""
 
 from imgui_bundle import imgui, imgui_ctx
 
@@ -8,7 +8,6 @@ from app.ui.style import Look, draw_tooltip, icon_button, text_button
 
 
 def draw_action_item(session: Session, name: str) -> list[Action]:
-    """Draw the menu entry of a named action."""
     binding = BINDINGS[name]
     clicked, _ = imgui.menu_item(
         binding.menu_title(session),
@@ -23,7 +22,7 @@ def draw_action_item(session: Session, name: str) -> list[Action]:
 
 
 def draw_action_text_button(session: Session, name: str, width: float) -> list[Action]:
-    """Draw the button of a named action with its icon and its words."""
+    """Draw the button of a named action, with its icon and its label."""
     binding = BINDINGS[name]
     is_active = binding.is_active(session)
     slot = imgui.Col_.button_active if is_active else imgui.Col_.button
@@ -39,7 +38,7 @@ def draw_action_text_button(session: Session, name: str, width: float) -> list[A
 
 
 def draw_action_button(session: Session, look: Look, name: str, icon: str = "") -> list[Action]:
-    """Draw the button of a named action, with its icon or another one."""
+    """Draw the square button of a named action, with its icon or the given one."""
     binding = BINDINGS[name]
     is_pressed = icon_button(
         look,

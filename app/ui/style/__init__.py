@@ -1,4 +1,4 @@
-"""How the window looks: themes, and the few widgets that every panel is made of.
+"""The look of the window: themes, and the widgets that all panels share.
 
 In: a theme and a scale.
 Out: a `Look`, and widgets.

@@ -1,4 +1,4 @@
-"""Sliders that leave their number readable: a thin track, and the value in a field beside it."""
+"""Sliders with a thin track, and the value in a field beside it, where it stays readable."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ BAR, KNOB = 0.28, 0.42  # em: thickness of the track, radius of the knob
 
 
 class SliderEdit(NamedTuple):
-    """A value that was entered; while the knob is dragged it is not final yet."""
+    """An entered value. While the knob is dragged, the value is not final."""
 
     value: float
     is_final: bool
@@ -22,9 +22,9 @@ class SliderEdit(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scale:
-    """What a slider's track spans, from its left end to its right one, which may be the smaller.
+    """The range of a slider's track, from its left to its right end. The left end may be larger.
 
-    Where it is logarithmic, equal ways are equal ratios.
+    On a logarithmic track, equal distances are equal ratios.
     """
 
     left: float
@@ -32,18 +32,17 @@ class Scale:
     logarithmic: bool = False
 
     def share(self, value: float) -> float:
-        """Return how far along the track a value is, 0 to 1."""
+        """Return the position of a value on the track, 0 to 1."""
         low, high, value = (self._straight(x) for x in (self.left, self.right, self.clamp(value)))
         return (value - low) / (high - low)
 
     def value(self, share: float) -> float:
-        """Return the value at a part of the track."""
+        """Return the value at a position on the track, 0 to 1."""
         low, high = self._straight(self.left), self._straight(self.right)
         value = low + min(max(share, 0.0), 1.0) * (high - low)
         return math.exp(value) if self.logarithmic else value
 
     def clamp(self, value: float) -> float:
-        """Return the value of the track that is nearest."""
         low, high = sorted((self.left, self.right))
         return min(max(value, low), high)
 
@@ -61,15 +60,14 @@ def slider(
     hint: str = "",
     field: float = FIELD,
 ) -> SliderEdit | None:
-    """Draw a track with a knob, and the value in a field, over the rest of the line's width.
+    """Draw a track with a knob and a value field, over the rest of the line's width.
 
     Parameters
     ----------
     name : str
         Id of the field; the track's is `name track`.
-    value : float
     text : str
-        How the number is written, as C formats it.
+        C format of the number.
     hint : str
         Tooltip of both.
     field : float
@@ -87,7 +85,7 @@ def slider(
 
 
 def number_field(name: str, value: float, text: str = "%.2f") -> float | None:
-    """Draw a field for a number; return it when it was entered and is another."""
+    """Draw a field for a number. Return the number when a different one was entered."""
     _, entered = imgui.input_float(f"##{name}", value, 0.0, 0.0, text)
     done = imgui.is_item_deactivated_after_edit()
     return entered if done and math.isfinite(entered) and entered != value else None
@@ -103,20 +101,16 @@ def slider_track(
     colour: ImVec4,
     used: float | None = None,
 ) -> SliderEdit | None:
-    """Draw a thin track whose knob is dragged along it.
+    """Draw a thin track with a knob that can be dragged.
 
     Parameters
     ----------
-    name : str
-        Its id.
-    value : float
-        Where the knob is.
     width : float
         Pixels.
     colour : ImVec4
-        Of the part of the track that is filled.
+        Of the filled part of the track.
     used : float, optional
-        Up to where it is filled; up to the knob by default.
+        End of the filled part; by default the knob.
     """
     palette, draw_list = look.palette, imgui.get_window_draw_list()
     corner, height = imgui.get_cursor_screen_pos(), imgui.get_frame_height()
@@ -128,7 +122,7 @@ def slider_track(
     edit = None
     if is_held or imgui.is_item_deactivated():
         share = (imgui.get_mouse_pos().x - low) / (high - low)
-        # In the frame of the press, another widget may have ended its own edit.
+        # In the frame of the press, another widget may have finished its own edit.
         if not imgui.is_item_activated():
             edit = SliderEdit(scale.value(share), is_final=not is_held)
             value = edit.value

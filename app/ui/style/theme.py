@@ -1,12 +1,12 @@
-"""The two themes: colours, spacing, rounding and type, given to Dear ImGui in one place."""
+"""The two themes: colours, spacing, rounding and fonts, given to Dear ImGui in one place."""
 
 from dataclasses import dataclass, field
 
 from imgui_bundle import ImVec2, ImVec4, hello_imgui, imgui
 
 FONT_SIZE = 15.0  # pixels at scale 1
-SMALL, LARGE, TITLE = 0.87, 1.2, 2.1  # sizes of type, relative to the text's
-CHOSEN = 0.18  # opacity of the accent colour behind the row that is chosen of a list
+SMALL, LARGE, TITLE = 0.87, 1.2, 2.1  # font sizes, relative to the text's
+CHOSEN = 0.18  # opacity of the accent colour behind the selected row of a list
 
 
 def rgb(code: str) -> ImVec4:
@@ -16,24 +16,23 @@ def rgb(code: str) -> ImVec4:
 
 
 def with_alpha(colour: ImVec4, alpha: float) -> ImVec4:
-    """Return a colour with another opacity."""
     return ImVec4(colour.x, colour.y, colour.z, alpha)
 
 
 def colour_u32(colour: ImVec4, alpha: float = 1.0) -> int:
-    """Return a colour as draw lists take it, more transparent by `alpha`."""
+    """Return a colour as draw lists need it. `alpha` multiplies its opacity."""
     return imgui.color_convert_float4_to_u32(ImVec4(colour.x, colour.y, colour.z, colour.w * alpha))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Palette:
-    """The colours of a theme, named by what they are for.
+    """The colours of a theme, named by their use.
 
-    Those of texts have a contrast of 4.5 or more with all surfaces, also where a row is chosen.
+    Text colours have a contrast of 4.5 or more with all surfaces and with selected rows.
     """
 
     is_dark: bool
-    desk: ImVec4  # behind everything, and around the drawing
+    desk: ImVec4  # behind all panels, and around the drawing
     panel: ImVec4
     raised: ImVec4  # fields and buttons
     hovered: ImVec4
@@ -44,7 +43,7 @@ class Palette:
     accent: ImVec4
     on_accent: ImVec4
     good: ImVec4
-    warning: ImVec4  # also: a pose that no key holds
+    warning: ImVec4  # also for a pose that is not in a key
     danger: ImVec4
     anchor: ImVec4
     paper: ImVec4  # the two squares of the checker
@@ -94,37 +93,37 @@ PALETTES = {"dark": DARK, "light": LIGHT}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Look:
-    """What panels draw with: colours, fonts and the size of one text line's em."""
+    """Colours, fonts and the em size that panels draw with."""
 
     palette: Palette
     bold: imgui.ImFont
     em: float  # pixels
-    # Upper left and lower right corners of what was drawn in this frame and may be pointed at.
+    # Upper left and lower right corners of this frame's items that the tutorial can point at.
     places: dict[str, tuple[ImVec2, ImVec2]] = field(default_factory=dict)
 
     def note_place(self, name: str) -> None:
-        """Note where the last item is, for whoever is led there."""
+        """Record the rectangle of the last item, for the tutorial."""
         self.places[name] = imgui.get_item_rect_min(), imgui.get_item_rect_max()
 
 
 def interface_scale(scale: float) -> float:
-    """Return how many pixels of the window a pixel of the design takes.
+    """Return how many pixels of the window one pixel of the design takes.
 
     Parameters
     ----------
     scale : float
-        What the person chose; the system's own scale is on top of it.
+        The person's choice. It multiplies the system's own scale.
     """
     return scale * imgui.get_style().font_scale_dpi
 
 
 def pixel_density() -> float:
-    """Return how many pixels of a picture there are to a pixel of the window."""
+    """Return how many pixels of a framebuffer one pixel of the window has."""
     return imgui.get_io().display_framebuffer_scale.x or 1.0
 
 
 def load_fonts() -> imgui.ImFont:
-    """Load the text font (with icons) as the default; return the bold one."""
+    """Load the text font (with icons) as the default. Return the bold font."""
     _load_with_icons("Roboto/Roboto-Regular.ttf")
     return _load_with_icons("Roboto/Roboto-Bold.ttf")
 
@@ -133,24 +132,24 @@ def _load_with_icons(name: str) -> imgui.ImFont:
     font = hello_imgui.load_font(f"fonts/{name}", FONT_SIZE)
     icons = hello_imgui.FontLoadingParams(merge_to_last_font=True)
     hello_imgui.load_font("fonts/Font_Awesome_6_Free-Solid-900.otf", 0.9 * FONT_SIZE, icons)
-    # Last, for what the others lack: the signs of the keys of a Mac.
+    # Last, for glyphs that the other fonts lack: the key symbols of a Mac.
     hello_imgui.load_font("fonts/Inconsolata-Medium.ttf", FONT_SIZE, icons)
     return font
 
 
 def apply_theme(palette: Palette, scale: float) -> None:
-    """Give Dear ImGui the theme's colours and, enlarged by `scale`, its sizes."""
+    """Set Dear ImGui's colours from the theme, and its sizes, multiplied by `scale`."""
     style = imgui.get_style()
     dpi = style.font_scale_dpi
     fresh = imgui.Style()
-    # All of them anew: scaling multiplies what is there.
+    # Reset all sizes first, because scaling multiplies the present ones.
     for name in dir(fresh):
         value = getattr(fresh, name)
         if not name.startswith(("_", "font")) and isinstance(value, (bool, int, float, ImVec2)):
             setattr(style, name, value)
     for name, size in _SIZES.items():
         setattr(style, name, ImVec2(*size) if isinstance(size, tuple) else size)
-    style._main_scale = 1.0  # noqa: SLF001 - what scaling multiplies, too; it has no public name
+    style._main_scale = 1.0  # noqa: SLF001 - scaling multiplies it, too; it has no public name
     style.scale_all_sizes(scale * dpi)
     style.font_size_base = FONT_SIZE
     style.window_menu_button_position = imgui.Dir.none
@@ -240,7 +239,7 @@ def _colour(style: imgui.Style, palette: Palette) -> None:
         "docking_empty_bg": palette.desk,
         "plot_lines": palette.accent,
         "plot_lines_hovered": palette.accent,
-        # Of bars of progress, which texts are written over.
+        # For progress bars, which have text on top.
         "plot_histogram": with_alpha(palette.accent, 0.4),
         "plot_histogram_hovered": palette.accent,
         "table_header_bg": palette.raised,

@@ -1,4 +1,4 @@
-"""The few widgets that every panel is made of."""
+"""The widgets that all panels share."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
@@ -9,24 +9,23 @@ from app.ui.style.theme import SMALL, Look
 
 LABEL_WIDTH, NAME_WIDTH = 6.2, 14.0  # em
 FILL = -imgui.FLT_MIN  # as a width: the rest of the line
-TOAST = "##toast"  # begins the names of the windows of messages
-POSE_PAYLOAD = "pose of the library"  # what is dragged from there to the timeline
-TIP_ROOM = (28.0, 8.0)  # em: width and height that hardly any tooltip exceeds
+TOAST = "##toast"  # prefix of the windows of toasts
+POSE_PAYLOAD = "pose of the library"  # drag-and-drop type of a library pose
+TIP_ROOM = (28.0, 8.0)  # em: width and height of nearly all tooltips
 
 
 def push_text_size(size: float, font: imgui.ImFont | None = None) -> AbstractContextManager[object]:
-    """Write in another size of type, relative to the text's, and maybe in another font."""
+    """Write in another font size, relative to the text's, and optionally in another font."""
     return imgui_ctx.push_font(font, size * imgui.get_style().font_size_base)
 
 
 def bold_text(look: Look, text: str) -> None:
-    """Write something bold."""
     with imgui_ctx.push_font(look.bold, 0):
         imgui.text(text)
 
 
 def heading(look: Look, text: str, *, framed: bool = False) -> None:
-    """Begin a group of settings; `framed` where a button follows on the line."""
+    """Begin a group of settings; `framed` if a button follows on the same line."""
     if imgui.get_cursor_pos_y() > imgui.get_cursor_start_pos().y:
         imgui.dummy(ImVec2(0, 0.3 * look.em))
     if framed:
@@ -35,13 +34,13 @@ def heading(look: Look, text: str, *, framed: bool = False) -> None:
 
 
 def small_text(look: Look, text: str, colour: ImVec4 | None = None) -> None:
-    """Write a remark, smaller than the text and by default dimmer, wrapped to the panel."""
+    """Write a note, smaller than the text, wrapped to the panel, by default dimmer."""
     with push_text_size(SMALL), imgui_ctx.push_text_wrap_pos(0.0):
         imgui.text_colored(colour or look.palette.dim, text)
 
 
 def label(look: Look, text: str) -> None:
-    """Name the field that follows on the same line, which takes the rest of its width."""
+    """Label the next field on the same line, which takes the rest of the width."""
     imgui.align_text_to_frame_padding()
     imgui.text_colored(look.palette.dim, text)
     imgui.same_line(LABEL_WIDTH * look.em)
@@ -49,18 +48,18 @@ def label(look: Look, text: str) -> None:
 
 
 def align_right(width: float) -> None:
-    """Go on at the end of the line, where `width` pixels are left."""
+    """Move to the end of the line, so that `width` pixels are left."""
     imgui.same_line()
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
 
 
 def begin_tooltip() -> bool:
-    """Begin a tooltip where the pointer rests on the last item; it covers no message.
+    """Begin a tooltip if the pointer rests on the last item. It covers no toast.
 
     Returns
     -------
     bool
-        Whether it shows; then it is to be ended by `imgui.end_tooltip`.
+        Whether the tooltip is visible; then the caller must call `imgui.end_tooltip`.
     """
     if not imgui.is_item_hovered(imgui.HoveredFlags_.for_tooltip):
         return False
@@ -70,14 +69,14 @@ def begin_tooltip() -> bool:
         if not window.was_active or not window.name.startswith(TOAST):
             continue
         if mouse.x + room[0] > window.pos.x and mouse.y + room[1] > window.pos.y:
-            # Messages are in the lower right corner: up and to the left there is none.
+            # Toasts are in the lower right corner, so the space up and to the left is free.
             corner = ImVec2(mouse.x - 0.4 * em, mouse.y - 0.4 * em)
             imgui.set_next_window_pos(corner, imgui.Cond_.always, ImVec2(1, 1))
     return imgui.begin_tooltip()
 
 
 def draw_tooltip(text: str, keys: str = "") -> None:
-    """Explain the last item where the pointer rests on it, and name its keys."""
+    """Show a tooltip with its shortcut if the pointer rests on the last item."""
     if begin_tooltip():
         room = TIP_ROOM[0] * imgui.get_font_size()
         imgui.push_text_wrap_pos(room)
@@ -100,17 +99,16 @@ def icon_button(
     active: bool = False,
     enabled: bool = True,
 ) -> bool:
-    """Draw a square button with an icon; return whether it was pressed.
+    """Draw a square button with an icon. Return whether it was pressed.
 
     Parameters
     ----------
-    icon, name : str
-        What it shows, and its id.
-    hint, keys : str
-        Of its tooltip.
+    name : str
+        Its id.
+    keys : str
+        Shortcut in the tooltip.
     active : bool
-        Whether what it switches is on.
-    enabled : bool
+        Whether the option that the button switches is on.
     """
     palette = look.palette
     imgui.begin_disabled(not enabled)
@@ -125,7 +123,7 @@ def icon_button(
 
 
 def main_button(look: Look, text: str, width: float = 0.0, *, enabled: bool = True) -> bool:
-    """Draw the button of a panel's main purpose, in the accent colour."""
+    """Draw the main button of a panel, in the accent colour."""
     palette = look.palette
     imgui.begin_disabled(not enabled)
     for slot in (imgui.Col_.button, imgui.Col_.button_hovered, imgui.Col_.button_active):
@@ -140,7 +138,7 @@ def main_button(look: Look, text: str, width: float = 0.0, *, enabled: bool = Tr
 def text_button(
     text: str, width: float = 0.0, hint: str = "", keys: str = "", *, enabled: bool = True
 ) -> bool:
-    """Draw a button with words, and its tooltip; return whether it was pressed."""
+    """Draw a button with text and tooltip. Return whether it was pressed."""
     imgui.begin_disabled(not enabled)
     pressed = imgui.button(text, ImVec2(width, 0))
     imgui.end_disabled()
@@ -150,12 +148,12 @@ def text_button(
 
 
 def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> Iterator[float]:
-    """Lay items side by side over the rest of the line: yield the width of each, before it.
+    """Lay items side by side over the rest of the line: yield each item's width before it.
 
     Parameters
     ----------
     gap : float, optional
-        Pixels between two; by default those between any two items.
+        Pixels between two items; by default the style's spacing.
     room : float
         Pixels to leave free at the end of the line.
     """
@@ -168,7 +166,7 @@ def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> It
 
 
 def progress_bar(share: float, text: str) -> bool:
-    """Draw how far something is, and a button that cancels it; return whether it was pressed."""
+    """Draw a progress bar with a cancel button. Return whether the button was pressed."""
     imgui.progress_bar(share, ImVec2(FILL, 0), text)
     return imgui.button("Cancel###stop", ImVec2(FILL, 0))
 
@@ -176,9 +174,9 @@ def progress_bar(share: float, text: str) -> bool:
 def name_popup(
     look: Look, popup: str, name: str, taken: Iterable[str] = (), kind: str = ""
 ) -> str | None:
-    """Draw the field for another name in a popup, if that is open; return what was entered.
+    """Draw the rename field in its popup, if the popup is open. Return the entered name.
 
-    No name is entered that is `taken` by another one of its kind, which is given in words.
+    Names in `taken` are refused. `kind` is a word for the item, for the message.
     """
     if not imgui.begin_popup(popup):
         return None
@@ -199,7 +197,7 @@ def name_popup(
 
 
 def colour_field(name: str, code: str, flags: int = 0) -> str | None:
-    """Draw a field for a colour, "#rrggbb"; return it when another one was chosen."""
+    """Draw a field for a colour, "#rrggbb". Return the colour when a different one was chosen."""
     levels = [level / 255 for level in bytes.fromhex(code[1:])]
     changed, levels = imgui.color_edit3(f"##{name}", levels, flags)
     if not changed:
@@ -215,15 +213,13 @@ def option_buttons(
     *,
     room: float = 0.0,
 ) -> str | None:
-    """Draw alternatives side by side; return the one that was newly chosen.
+    """Draw alternatives side by side. Return the newly chosen value.
 
     Parameters
     ----------
     name : str
         Its id.
     options : sequence of (value, text)
-    current : str
-        The value that is chosen now.
     room : float
         Pixels to leave free at the end of the line.
     """
@@ -245,7 +241,7 @@ def option_buttons(
 def show_picture(
     texture: int, size: tuple[int, int], corner: ImVec2, room: ImVec2, *, opacity: float = 1.0
 ) -> None:
-    """Draw a texture of so many pixels as large as there is room for it, in the middle."""
+    """Draw a texture centred in a box, as large as fits. `size` is in pixels."""
     scale = min(room.x / size[0], room.y / size[1])
     width, height = scale * size[0], scale * size[1]
     x = corner.x + (room.x - width) / 2
@@ -259,7 +255,7 @@ def show_picture(
 
 
 def shorten_text(text: str, width: float) -> str:
-    """Return a text as far as it fits into `width` pixels, with an ellipsis where it does not."""
+    """Cut a text to `width` pixels, with an ellipsis if it is longer."""
     if imgui.calc_text_size(text).x <= width:
         return text
     fits, too_long = 0, len(text)
@@ -273,10 +269,10 @@ def shorten_text(text: str, width: float) -> str:
 
 
 def is_hovered_or_held() -> bool:
-    """Tell whether the pointer is over the last item, or holds it."""
+    """Return whether the last item is hovered or active."""
     return imgui.is_item_hovered() or imgui.is_item_active()
 
 
 def is_pressed() -> bool:
-    """Tell whether the left button of the mouse was pressed on the last item just now."""
+    """Return whether the left mouse button was pressed on the last item in this frame."""
     return imgui.is_item_activated() and imgui.is_mouse_clicked(imgui.MouseButton_.left)

@@ -1,4 +1,4 @@
-"""Keys in time: transport, ruler, track, easing.
+"""The timeline: transport, ruler, tracks, easing.
 
 In: the document's keys and the playhead.
 Out: actions on keys and time.

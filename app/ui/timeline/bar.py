@@ -1,4 +1,4 @@
-"""The bar above the track: playing, keys, the numbers of time, and how in-betweens are made."""
+"""The bar above the tracks: transport, key buttons, frame numbers, and the interpolation method."""
 
 from collections.abc import Callable
 
@@ -14,10 +14,9 @@ from app.ui.style import Look, colour_u32, draw_tooltip, icon_button
 from app.ui.timeline.layout import format_seconds
 from app.ui.timeline.menus import draw_time_menu
 
-# Names and what they mean.
-GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em between what belongs together closely, and less so
-FRAMES = 13.0  # em: room that the numbers of frames need
-SLOWEST, FASTEST = 1.0, 240.0  # frames per second that dragging reaches
+GAP, TIGHT, WIDE = 0.35, 0.1, 1.1  # em: between related items, inside a group, between groups
+FRAMES = 13.0  # em: width of the frame numbers
+SLOWEST, FASTEST = 1.0, 240.0  # range of a drag, in frames per second
 KEY_BUTTONS = (
     ("previous key", icons.ICON_FA_ANGLES_LEFT),
     ("next key", icons.ICON_FA_ANGLES_RIGHT),
@@ -25,7 +24,6 @@ KEY_BUTTONS = (
 
 
 def draw_transport_bar(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the bar."""
     actions = _transport(session, look, project)
     _gap(look)
     actions += _key_buttons(session, look, project)
@@ -38,7 +36,6 @@ def draw_transport_bar(session: Session, look: Look, project: Project) -> list[A
 
 
 def _gap(look: Look) -> None:
-    """Part two groups by a faint line."""
     imgui.same_line(0, WIDE / 2 * look.em)
     corner = imgui.get_cursor_screen_pos()
     height = imgui.get_frame_height()
@@ -116,7 +113,6 @@ def _to_key(look: Look, name: str, icon: str) -> list[Action]:
 
 
 def _frame(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the present frame, the last one and the present time."""
     actions: list[Action] = []
     document = project.document
     frame = playback.current_frame(session, project)
@@ -142,7 +138,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _right(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw at the right what there is room for: the last of these first."""
+    """Draw the items at the right that fit. The last of them has priority."""
     em, square = look.em, 1.15 * imgui.get_frame_height()
     parts: list[tuple[float, Callable[[], list[Action]]]] = [
         (8.0 * em, lambda: _variant(project)),

@@ -1,4 +1,4 @@
-"""Poses of the library that are dropped on the track."""
+"""Library poses that are dropped on the tracks."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -10,7 +10,7 @@ from app.ui.timeline.layout import TimelineLayout, draw_time_tag
 
 
 def accept_dropped_pose(bands: TimelineLayout) -> list[Action]:
-    """Show where a pose that is dragged here would make a key; make it where it is let go."""
+    """Preview the key that a dragged pose would make. Make the key when the pose is dropped."""
     payload = imgui.get_drag_drop_payload_py_id()
     if payload is None or payload.type != POSE_PAYLOAD:
         return []

@@ -1,4 +1,4 @@
-"""Easing curves: how they look, and how they are changed."""
+"""Easing curves: drawing and editing."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -17,16 +17,16 @@ from app.ui.style import (
     small_text,
 )
 
-SIDE = 12.0  # em: of the editor's square
+SIDE = 12.0  # em: side of the editor
 TILE = 4.4  # em: width of a preset
 LABELS = {"linear": "Linear", "in": "In", "out": "Out", "in-out": "In-out", "hold": "Hold"}
-DIGITS = 3  # to which the pointer sets control points
+DIGITS = 3  # decimals of a dragged control point
 
 
 def draw_easing_curve(
     easing: Easing, corner: ImVec2, size: ImVec2, colour: int, thickness: float
 ) -> None:
-    """Draw how much of the way is done over time, from the lower left to the upper right."""
+    """Draw progress over time, from the lower left to the upper right."""
     draw_list = imgui.get_window_draw_list()
     if easing.curve is None:
         bottom, right = corner.y + size.y, corner.x + size.x - thickness / 2
@@ -41,7 +41,7 @@ def draw_easing_curve(
 def fill_easing_curve(
     easing: Easing, corner: ImVec2, size: ImVec2, below: float, colour: int
 ) -> None:
-    """Fill what is under a curve, and a stripe below it."""
+    """Fill the area under a curve, and a stripe `below` it."""
     if easing.curve is None or size.x < 1 or size.y < 1:
         return
     draw_list = imgui.get_window_draw_list()
@@ -64,9 +64,9 @@ def _point(x: float, y: float, corner: ImVec2, size: ImVec2) -> ImVec2:
 
 
 def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) -> list[Action]:
-    """Draw the popup in which the way from a key to the next one is changed, if it is open.
+    """Draw the popup that edits the easing after a key, if the popup is open.
 
-    It changes those of all chosen keys, if the key is one of them.
+    If the key is selected, the change applies to all selected keys.
     """
     imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(look.em, 0.8 * look.em))
     is_open = imgui.begin_popup(name)
@@ -127,13 +127,13 @@ def _tile(look: Look, name: str, preset: Easing, *, current: bool) -> bool:
 
 
 def _editor(look: Look, easing: Easing) -> Easing | None:
-    """Draw the curve large; its two control points can be dragged."""
+    """Draw the curve large, with two draggable control points."""
     palette, draw_list, em = look.palette, imgui.get_window_draw_list(), look.em
     low = imgui.get_cursor_screen_pos()
     room = ImVec2(SIDE * 1.9 * em, SIDE * em)
     high = low + room
     draw_list.add_rect_filled(low, high, colour_u32(palette.desk), 0.4 * em)
-    # As wide as high, so that linear is at 45 degrees.
+    # A square, so that linear easing is at 45 degrees.
     pad = 1.0 * em
     side = room.y - 2 * pad
     corner, size = ImVec2(low.x + (room.x - side) / 2, low.y + pad), ImVec2(side, side)
@@ -187,7 +187,6 @@ def _control_points(
 
 
 def _numbers(look: Look, easing: Easing) -> Easing | None:
-    """Draw the control points as numbers."""
     if easing.curve is None:
         small_text(look, "Holds the pose until the next key.")
         return None

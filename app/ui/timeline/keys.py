@@ -1,4 +1,4 @@
-"""Keys of all layers, marked by how they are passed, and the box that chooses them."""
+"""Pose keys of all layers, with their tangent marks, and the selection box."""
 
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
@@ -32,13 +32,13 @@ from app.ui.timeline.layout import (
 from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu, draw_track_menu
 from app.ui.timeline.track_residuals import describe_residual
 
-REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal, with room and among many
-SMALLER = 0.7  # keys of layers that are not the active one, as a part of what theirs would be
-GRIP = 1.45  # half the side of the box in which the pointer takes a key, as a part of that
+REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal: normally, and if keys are dense
+SMALLER = 0.7  # size of other layers' keys, relative to the active layer's
+GRIP = 1.45  # half the side of a key's hit box, relative to half its diagonal
 
 
 def draw_track_background(bands: TimelineLayout) -> list[Action]:
-    """Draw the frames that there are, and take what the pointer does where nothing else is."""
+    """Draw the animation's frames, and handle the pointer on the empty area."""
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     low, high = ImVec2(bands.left, bands.track_top), ImVec2(bands.right, bands.track_bottom)
     draw_list.add_rect_filled(low, high, colour_u32(palette.desk), ROUNDING * bands.look.em)
@@ -76,7 +76,7 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
 
 
 def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
-    """Let the layer of a row be the active one, choose the row, and choose keys."""
+    """Activate the row's layer, and select the row and the given keys."""
     return [
         do(layering.set_active_layer, layer_of(row)),
         do(tracks.select_track, row.handle if isinstance(row, TrackRow) else None),
@@ -85,20 +85,19 @@ def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
 
 
 def begin_key_box(bands: TimelineLayout) -> list[Action]:
-    """Begin to choose keys by a box; with Shift besides those that are chosen."""
+    """Begin a box selection of keys. With Shift, it adds to the selected keys."""
     keeps = bands.project.selected_keys if imgui.get_io().key_shift else {}
     box = KeyBox(start=bands.pointed, row=bands.pointed_keys, keeps=keeps)
     return [do(timeline_drag.begin_timeline_drag, box, bands.time_view)]
 
 
 def is_plain_click() -> bool:
-    """Tell whether the left button was let go just now where it was pressed, without Shift."""
+    """Return whether the left button was released without a drag and without Shift."""
     released = imgui.is_mouse_released(imgui.MouseButton_.left)
     return released and not was_dragged() and not imgui.get_io().key_shift
 
 
 def draw_key_box(bands: TimelineLayout) -> None:
-    """Draw the box that the pointer spans."""
     gesture = bands.project.timeline.gesture
     if not isinstance(gesture, KeyBox) or not was_dragged():
         return
@@ -114,12 +113,11 @@ def draw_key_box(bands: TimelineLayout) -> None:
 
 
 def draw_keys(bands: TimelineLayout) -> list[Action]:
-    """Draw the keys of all layers, and take what the pointer does to them."""
     actions: list[Action] = []
     bands.push_track_clip()
     for row in bands.rows:
         if bands.shows_row(row) and (not row.layer.still or row.is_active):
-            # The same buttons when another layer becomes the active one.
+            # By layer, so that buttons stay the same when another layer becomes active.
             imgui.push_id(f"row {row.layer.id}")
             actions += _draw_row(bands, row)
             imgui.pop_id()
@@ -148,14 +146,13 @@ def _draw_row(bands: TimelineLayout, row: LayerRow) -> list[Action]:
 
 
 def _radius(bands: TimelineLayout, row: LayerRow) -> float:
-    """Return how large keys are, in pixels: smaller where they would cover each other."""
+    """Return the keys' radius in pixels: smaller if keys would overlap."""
     gap = find_least_gap(row.layer, None)
     part = 1.0 if row.is_active else SMALLER
     return part * min(max(0.48 * gap * bands.time_view.scale, SMALLEST), REACH) * bands.look.em
 
 
 def is_key_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
-    """Tell whether a key of a row is the one that is dragged."""
     return (
         isinstance(gesture, KeyDrag)
         and row == gesture.row
@@ -164,7 +161,7 @@ def is_key_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool
 
 
 def find_drag_origin(gesture: TimeGesture | None, row: KeyRow, frame: int) -> int:
-    """Return at which frame a key was before the drag, so that its button stays the same one."""
+    """Return the key's frame before the drag, so that its button keeps its id."""
     if isinstance(gesture, KeyDrag) and not gesture.copies:
         before = frame - gesture.by
         return before if before in gesture.keys.get(row, ()) else frame
@@ -172,7 +169,7 @@ def find_drag_origin(gesture: TimeGesture | None, row: KeyRow, frame: int) -> in
 
 
 def begin_key_drag(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
-    """Take what the pointer does to the last item, the key of a row at a frame."""
+    """Handle the pointer on a row's key, which is the last item."""
     actions = _press(bands, row, frame) if is_pressed() else []
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         chosen_of = bands.project.selected_keys
@@ -227,7 +224,6 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
 
 
 def _warning(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> ImVec4 | None:
-    """Return the colour of a key's warning if there is one."""
     palette = bands.look.palette
     if not key.pose.certificate.is_certified:
         return palette.danger
@@ -235,14 +231,14 @@ def _warning(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> ImVec4 | No
 
 
 def label_dragged_key(bands: TimelineLayout, row: KeyRow, frame: int, x: float) -> None:
-    """Write beside a key to which frame it is dragged, if it is."""
+    """Write the new frame beside a key that is being dragged."""
     gesture = bands.project.timeline.gesture
     if isinstance(gesture, KeyDrag) and gesture.by and is_key_dragged(gesture, row, frame):
         draw_time_tag(bands, x, f"{frame}  ({gesture.by:+d})")
 
 
 def draw_key_mark(passing: TangentMode, centre: ImVec2, radius: float, colour: int) -> None:
-    """Draw a key's mark: round where the motion goes on, pointed, pinched, or square for a hold."""
+    """Draw a key's mark by tangent mode: round, pointed, pinched, or square for a hold."""
     draw_list, x, y = imgui.get_window_draw_list(), centre.x, centre.y
     across = radius / 2**0.5
     match passing:
@@ -274,7 +270,7 @@ def draw_key_mark(passing: TangentMode, centre: ImVec2, radius: float, colour: i
 
 
 def describe_target_errors(project: Project, key: Keyframe) -> list[str]:
-    """Return which handles fall short of their targets in a key of the active layer, in words."""
+    """Describe the handles that miss their targets in a key of the active layer."""
     short = project.timeline.target_errors.value.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.layer.handles}
     return [
@@ -285,7 +281,6 @@ def describe_target_errors(project: Project, key: Keyframe) -> list[str]:
 
 
 def _draw_key_tooltip(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> None:
-    """Explain a key in a tooltip."""
     if not begin_tooltip():
         return
     palette, document = bands.look.palette, bands.project.document

@@ -1,4 +1,4 @@
-"""Where times are on the screen, for all that is drawn in the timeline."""
+"""The timeline's layout: the mapping between frames and pixels, and the rows."""
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
@@ -12,23 +12,23 @@ from app.document import LAST_FRAME, Layer, Track, TreeRow, memoized_on
 from app.editor import KeyRow, Project, Session, TimeRangeView, display_frame, row_of
 from app.ui.style import Look, draw_tag, tag_size
 
-PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the track
-MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the band of markers, with their names or without
-BAR, BAR_SHARE = 3.6, 0.62  # em: height of intervals at most, and as a part of the track's
-CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height bars take more, and the overview goes
+PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the tracks
+MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the marker band, with names or without
+BAR, BAR_SHARE = 3.6, 0.62  # em: largest height of segment bars, and as a share of the row's
+CRAMPED, CRAMPED_SHARE = 5.5, 0.85  # em: below this height, bars are higher, without overview
 ROUNDING = 0.4  # em
-NAMES, NAMES_SHARE = 11.0, 0.25  # em: width of the layers' names at most, and as a part of all
-THIN, TALL = 1.25, 2.8  # em: height of tracks' rows, and of the row of a layer that is alone
-LEAST_MARK_GAP = 0.4  # em between two marks of a row: what is closer is drawn once
-EVEN, ROOMY = 2.0, 3.4  # em: heights of the rows of layers, at least and at most
+NAMES, NAMES_SHARE = 11.0, 0.25  # em: largest width of the names, and as a share of all
+THIN, TALL = 1.25, 2.8  # em: height of a track's row, and of the row of a single layer
+LEAST_MARK_GAP = 0.4  # em between two marks of a row; closer marks are drawn once
+EVEN, ROOMY = 2.0, 3.4  # em: smallest and largest height of layers' rows
 
 
 class HasFrame(Protocol):
-    """A key, a marker or anything else at a frame."""
+    """A key, a marker or any other item at a frame."""
 
     @property
     def frame(self) -> int:
-        """The frame that it is at."""
+        pass
 
 
 Mark = TypeVar("Mark", bound=HasFrame)
@@ -36,23 +36,22 @@ Mark = TypeVar("Mark", bound=HasFrame)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LayerRow:
-    """Where a layer's keys are: between two heights, in pixels of the window."""
+    """A layer's row of keys: between two heights, in pixels of the window."""
 
     layer: Layer
     top: float
     bottom: float
     is_active: bool
-    depth: int = 0  # in how many groups and choices it is listed
+    depth: int = 0  # number of groups and switches around it
 
     @property
     def middle(self) -> float:
-        """Half-way between them."""
         return (self.top + self.bottom) / 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrackLane:
-    """Where the keys of a layer's track are: between two heights, in pixels of the window."""
+    """The row of a layer's track: between two heights, in pixels of the window."""
 
     layer: Layer
     track: Track
@@ -62,13 +61,12 @@ class TrackLane:
 
     @property
     def middle(self) -> float:
-        """Half-way between them."""
         return (self.top + self.bottom) / 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class GroupRow:
-    """Where the row of a group or a choice is: between two heights, in pixels of the window."""
+    """The row of a group or a switch: between two heights, in pixels of the window."""
 
     row: TreeRow
     top: float
@@ -76,12 +74,11 @@ class GroupRow:
 
     @property
     def middle(self) -> float:
-        """Half-way between them."""
         return (self.top + self.bottom) / 2
 
 
 class TimelineLayout:
-    """The bands of the timeline, and the way between frames and pixels."""
+    """The bands of the timeline, and the mapping between frames and pixels."""
 
     def __init__(self, session: Session, look: Look, project: Project) -> None:
         self.session = session
@@ -118,10 +115,10 @@ class TimelineLayout:
         self.time_view = timing.gesture_time_range or timing.time_range or fitting
 
     def _lay_rows(self, tree: Sequence[TreeRow]) -> float:
-        """Lay a row for each group, choice and layer, and below a layer's those of its tracks.
+        """Lay a row for each group, switch and layer, and for each track below its layer.
 
-        Which of them is active changes nothing: no row moves under the pointer that chooses it.
-        Returns for how much there is no room.
+        The active row has no influence, so no row moves under the pointer that selects it.
+        Returns the height in pixels that does not fit.
         """
         em, room = self.look.em, self.track_bottom - self.track_top
         thin, shown = THIN * em, [self._shown_tracks(row.layer) for row in tree if row.layer]
@@ -158,12 +155,11 @@ class TimelineLayout:
         return overflow
 
     def _shown_tracks(self, layer: Layer) -> tuple[Track, ...]:
-        """Return the tracks of a layer that have rows."""
         return layer.tracks if layer.id in self.project.timeline.expanded_layers else ()
 
     @property
     def pointed_row(self) -> LayerRow | TrackLane:
-        """The row under the pointer, or the nearest one that is seen."""
+        """The row under the pointer, or the nearest visible row."""
         y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
         both: list[LayerRow | TrackLane] = [*self.rows, *self.track_rows]
         rows = sorted(both, key=lambda row: row.bottom)
@@ -171,23 +167,22 @@ class TimelineLayout:
 
     @property
     def pointed_keys(self) -> KeyRow:
-        """What tells the row under the pointer."""
         row = self.pointed_row
         return row_of(row.layer, row.track if isinstance(row, TrackLane) else None)
 
     def push_track_clip(self) -> None:
-        """Let nothing be drawn and pointed at beyond the track, until the clip is popped."""
+        """Clip drawing and hit tests to the tracks, until the clip is popped."""
         low, high = ImVec2(self.left, self.track_top), ImVec2(self.right, self.track_bottom)
         imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
 
     @property
     def bounds(self) -> tuple[ImVec2, ImVec2]:
-        """The corners of all of it but the names."""
+        """The corners of the timeline without the names."""
         return ImVec2(self.left, self.top), ImVec2(self.right, self.bottom)
 
     @property
     def width(self) -> float:
-        """Its width in em."""
+        """The width in em."""
         return self.size.x / self.look.em
 
     @property
@@ -196,28 +191,27 @@ class TimelineLayout:
         return self.width > 4 and self.bar_bottom - self.bar_top > 0.5 * self.look.em
 
     def x(self, frame: float) -> float:
-        """Return where a frame is, in pixels of the window."""
+        """Return the x of a frame, in pixels of the window."""
         return self.left + self.time_view.place(frame) * self.look.em
 
     def frame(self, x: float) -> float:
-        """Return the frame at a place of the window."""
+        """Return the frame at an x of the window."""
         return self.time_view.frame((x - self.left) / self.look.em)
 
     def x_of(self, track: Track | None, frame: int) -> float:
-        """Return where a key is drawn: a track's is later by its delay."""
+        """Return the x of a key. A track's keys are shifted by its delay."""
         return self.x(display_frame(self.project.document, track, frame))
 
     @property
     def pointed(self) -> float:
-        """The frame under the pointer."""
         return self.frame(imgui.get_mouse_pos().x)
 
     def shows(self, low: float, high: float) -> bool:
-        """Tell whether a stretch of pixels is on the screen."""
+        """Return whether a range of x overlaps the visible part."""
         return high > self.left and low < self.right
 
     def shows_row(self, row: LayerRow | TrackLane | GroupRow) -> bool:
-        """Tell whether a row is on the screen, and not scrolled away."""
+        """Return whether any of a row is visible."""
         return row.bottom > self.track_top and row.top < self.track_bottom
 
     def in_view(
@@ -228,17 +222,17 @@ class TimelineLayout:
         late: int = 0,
         closest: float = LEAST_MARK_GAP,
     ) -> Iterator[int]:
-        """Yield the indices of marks, in the order of their frames, that are on the screen.
+        """Yield the indices of the visible marks, in order of frames.
 
-        Of those that are closer to each other than `closest`, the first one stands for all. It
-        takes no longer for many marks than for few.
+        The first mark stands for others closer than `closest`. The cost depends on the yielded
+        marks, not on all marks.
 
         Parameters
         ----------
         room : float
-            By how many em a mark reaches beyond its place.
+            Half the width of a mark, in em.
         late : int
-            Frames by which they are drawn later.
+            Delay of the marks in frames.
         closest : float
             In em.
         """
@@ -251,9 +245,9 @@ class TimelineLayout:
             index = bisect_left(marks, apart, index + 1, end, key=_frame)
 
     def button(self, name: str, low: ImVec2, high: ImVec2, *, right: bool = False) -> bool:
-        """Lay an invisible button over a box; return whether it was clicked.
+        """Lay an invisible button over a box. Return whether it was clicked.
 
-        With `right`, the right button of the mouse counts as well.
+        With `right`, the right mouse button counts as well.
         """
         imgui.set_cursor_screen_pos(low)
         imgui.set_next_item_allow_overlap()
@@ -270,28 +264,27 @@ def _frame(mark: HasFrame) -> int:
 
 @memoized_on
 def find_least_gap(layer: Layer, handle: int | None) -> int:
-    """Return how many frames there are between the two closest keys of poses, or of a track."""
+    """Return the smallest distance of a layer's pose keys or of a track's keys, in frames."""
     track = None if handle is None else layer.track_of(handle)
     row: Sequence[HasFrame] = layer.keys if track is None else track.keys
     return min((later.frame - key.frame for key, later in pairwise(row)), default=LAST_FRAME)
 
 
 def draw_time_tag(bands: TimelineLayout, x: float, text: str) -> None:
-    """Write something short below the ruler, over what is dragged."""
+    """Write a short text below the ruler, above a dragged item."""
     width = tag_size(bands.look, text).x
     left = min(max(x - width / 2, bands.left), bands.right - width)
     draw_tag(bands.look, ImVec2(left, bands.track_top + 0.15 * bands.look.em), text)
 
 
 def was_dragged() -> bool:
-    """Tell whether the pointer was dragged since the press, even if it has come back."""
+    """Return whether the pointer was dragged since the press, even if it has returned."""
     io, left = imgui.get_io(), imgui.MouseButton_.left
-    # What Dear ImGui keeps of the way lacks the last part of it, before the button was let go.
+    # Dear ImGui's drag distance lacks the last move before the button was released.
     last = imgui.get_mouse_drag_delta(left, 0.0)
     farthest = max(io.mouse_drag_max_distance_sqr[int(left)], last.x**2 + last.y**2)
     return bool(farthest >= io.mouse_drag_threshold**2)
 
 
 def format_seconds(frame: float, fps: float) -> str:
-    """Return the time of a frame in words."""
     return f"{frame / fps:.2f}".rstrip("0").rstrip(".") + " s"

@@ -1,4 +1,4 @@
-"""What can be done with keys, in menus."""
+"""Menus of keys, tracks and the timeline."""
 
 from imgui_bundle import imgui
 
@@ -17,12 +17,12 @@ TANGENT_MODES = {
     TangentMode.STOP: ("Stop", "The motion slows down to rest, and starts again"),
     TangentMode.HOLD: ("Hold", "The pose stays until the next key"),
 }
-NAME = 9.0  # em: width of a layer's name at most
+NAME = 9.0  # em: largest width of a layer's name
 FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
 
 
 def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) -> list[Action]:
-    """Draw the menu of a key of a row, if it is open."""
+    """Draw the menu of a row's key, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of key {key.frame}"):
         return actions
@@ -60,7 +60,7 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
 
 
 def _paste_items(session: Session, frame: int) -> list[Action]:
-    """Draw what pastes at a frame, where the playhead goes then."""
+    """Draw the paste entries for a frame. A paste moves the playhead there."""
     pasted = [
         action
         for name in ("paste", "paste swapped", "paste flipped")
@@ -70,7 +70,7 @@ def _paste_items(session: Session, frame: int) -> list[Action]:
 
 
 def draw_track_menu(bands: TimelineLayout) -> list[Action]:
-    """Draw the menu of a place between the keys, if it is open."""
+    """Draw the menu of the empty area between keys, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup("menu of track"):
         return actions
@@ -104,7 +104,6 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
 
 
 def draw_time_menu(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the menu of the whole timeline, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup("menu of time"):
         actions += _time_items(session, look, project)
@@ -113,7 +112,6 @@ def draw_time_menu(session: Session, look: Look, project: Project) -> list[Actio
 
 
 def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw what can be done with what repeats at a frame."""
     actions: list[Action] = []
     cycle = cycles.cycle_at_playhead(bands.session, bands.project, frame)
     if cycle is None or isinstance(bands.project.row, TrackRow):
@@ -134,7 +132,7 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions += draw_action_item(session, "repeat")
     count, chosen = len(frames_in(project.document, project.row)), project.selected_key_count
     several = f"{chosen} keys" if chosen > 1 else "all keys"
-    # The time of a scene is scaled as a whole, but not reversed.
+    # Scaling changes the whole scene, reversing only the active layer.
     is_scene = chosen < 2 and len(project.document.layers) > 1
     whose = (
         f"{several} of {shorten_text(project.layer.name, NAME * look.em)}" if is_scene else several

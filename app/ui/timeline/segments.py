@@ -1,6 +1,6 @@
-"""The way from key to key: a bar with its easing curve, and where such ways repeat, hatched.
+"""Segment bars with easing curves, and hatched repeats of cycles.
 
-A click on a bar opens the easing's editor; the end of repeats can be dragged.
+A click on a bar opens its easing. The end of repeats can be dragged.
 """
 
 from bisect import bisect_left, bisect_right
@@ -39,15 +39,15 @@ from app.ui.timeline.layout import LEAST_MARK_GAP, ROUNDING, LayerRow, TimelineL
 LEAST = 0.6  # em: narrower bars are not drawn
 INSET = 0.35  # em: between the curve and the bar's edge
 HATCH = 0.55  # em: between the lines over repeats
-GRIP = 0.35  # em: on both sides of their end
-REPEATED_KEY = 0.26  # em: of a repeated key
-SEAM = 0.2  # em between two seams at least
+GRIP = 0.35  # em: half the hit width of the end of repeats
+REPEATED_KEY = 0.26  # em: radius of a repeated key
+SEAM = 0.2  # em: smallest distance of two seams
 NAMES = {"linear": "linear", "in": "ease in", "out": "ease out", "in-out": "ease in-out"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _SegmentBar:
-    """A stretch of an interval; that of a loop's last one begins and ends elsewhere."""
+    """A segment's bar. The last segment of a loop has two bars, before and after the loop's end."""
 
     name: str
     key: Keyframe
@@ -59,7 +59,7 @@ class _SegmentBar:
 
     @property
     def easing_text(self) -> str:
-        """How time runs in it, in words: by its easing, or by how its keys are passed."""
+        """The easing of the segment in words, or "smooth"."""
         easing = self.key.easing
         if easing == LINEAR and not self.segment.is_linear:
             return "smooth"
@@ -67,7 +67,7 @@ class _SegmentBar:
 
 
 def draw_pose_segments(bands: TimelineLayout) -> list[Action]:
-    """Draw all bars; a click on one opens its easing."""
+    """Draw the visible bars of pose segments. A click on a bar opens its easing."""
     actions: list[Action] = []
     bands.push_track_clip()
     _draw_still(bands)
@@ -86,7 +86,7 @@ def _bars(bands: TimelineLayout) -> list[_SegmentBar]:
         if span.first == span.last:
             continue
         key, end = clip.keys[span.first], span.start + span.frames
-        # What goes on from a cycle begins elsewhere than at its key.
+        # A segment that continues a cycle does not begin at its key's frame.
         name = f"interval {key.frame}" + " on" * (span.start != key.frame)
         parts = [(name, 0, span.start, min(end, clip.frames.last))]
         if span == loop_segment(clip):
@@ -107,16 +107,16 @@ def _bars(bands: TimelineLayout) -> list[_SegmentBar]:
 
 
 def _in_view(bands: TimelineLayout, laid: Sequence[Segment]) -> Iterator[int]:
-    """Yield the numbers of spans in view, but for those that are too narrow to be drawn."""
+    """Yield the indices of segments in view, without those too narrow to be drawn."""
     number = max(bisect_right(laid, bands.frame(bands.left), key=_start) - 1, 0)
     end = bisect_left(laid, bands.frame(bands.right), key=_start)
     while number < end:
         yield number
-        # The last one that begins within a narrow one may be wide.
+        # The last segment that begins within a narrow one may be wide.
         narrow = laid[number].start + LEAST / bands.time_view.scale
         number = max(number + 1, bisect_right(laid, narrow, number, end, key=_start) - 1)
     if laid and end < len(laid):
-        # A loop's last one goes on in front of its first key.
+        # The last segment of a loop continues before the first key.
         yield len(laid) - 1
 
 
@@ -125,7 +125,7 @@ def _start(span: Segment) -> int:
 
 
 def _draw_still(bands: TimelineLayout) -> None:
-    """Draw a line where a pose stands still: before the first key and after the last one."""
+    """Draw a line where the pose is constant: before the first key and after the last key."""
     clip = bands.project.clip
     ends = [(clip.frames.first, clip.frames.last)]
     if loop_segment(clip) is None:
@@ -193,7 +193,7 @@ def _draw_bar(
 
 
 def _label(bands: TimelineLayout, name: str, turns: int, low: ImVec2, high: ImVec2) -> None:
-    """Name the easing in the upper left corner, where its curve is not yet."""
+    """Write the easing's name in the upper left corner, away from the curve."""
     em = bands.look.em
     text = f"{name}, {turns:+d} turns" if abs(turns) > 1 else f"{name}, {turns:+d} turn"
     text = text if turns else name
@@ -205,7 +205,7 @@ def _label(bands: TimelineLayout, name: str, turns: int, low: ImVec2, high: ImVe
 
 
 def draw_cycle_bars(bands: TimelineLayout) -> list[Action]:
-    """Draw the repeats of all layers, and take what the pointer does to their ends."""
+    """Draw the repeats of all layers, and handle the pointer on their ends."""
     actions: list[Action] = []
     bands.push_track_clip()
     for row in filter(bands.shows_row, bands.rows):
@@ -219,7 +219,7 @@ def draw_cycle_bars(bands: TimelineLayout) -> list[Action]:
 
 
 def _hatch(bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int) -> None:
-    """Draw where a stretch repeats, with its seams and where its keys are again."""
+    """Hatch the repeats of a cycle, with seams and repeated keys."""
     draw_list, em, accent = imgui.get_window_draw_list(), bands.look.em, bands.look.palette.accent
     left, right = max(bands.x(cycle.last), bands.left), min(bands.x(end), bands.right)
     if right <= left:
@@ -228,13 +228,13 @@ def _hatch(bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int) -> None
     low, high = ImVec2(left, row.middle - half), ImVec2(right, row.middle + half)
     draw_list.add_rect_filled(low, high, colour_u32(accent, 0.07))
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    # The lines stay where they are in time while the timeline is scrolled.
+    # The lines move with time when the timeline is scrolled.
     first, gap = bands.x(0), HATCH * em
     x = first + ((left - first) // gap) * gap
     while x < right + 2 * half:
         draw_list.add_line(ImVec2(x, low.y), ImVec2(x - 2 * half, high.y), colour_u32(accent, 0.28))
         x += gap
-    # Of seams closer than a line is wide, one stands for all.
+    # One seam stands for several that are closer than SEAM.
     step = cycle.period * max(round(SEAM / (cycle.period * bands.time_view.scale)), 1)
     before = max(int(bands.frame(bands.left) - cycle.last) // step, 0) * step
     until = min(end, int(bands.frame(bands.right)) + 1)
@@ -251,7 +251,7 @@ def _hatch(bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int) -> None
 
 
 def _closest_keys(layer: Layer, cycle: Cycle, apart: float) -> list[int]:
-    """Return the frames of a cycle's keys, of which several that are closer are told once."""
+    """Return the frames of a cycle's keys, without keys closer than `apart` to the one before."""
     frames, at = list[int](), bisect_left(layer.keys, cycle.first, key=_frame)
     while at < len(layer.keys) and layer.keys[at].frame < cycle.last:
         frames.append(layer.keys[at].frame)
@@ -264,7 +264,7 @@ def _frame(key: Keyframe) -> int:
 
 
 def _ends_of_cycle(bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int) -> list[Action]:
-    """Draw the ends of a stretch and of its repeats, and take what the pointer does to them."""
+    """Draw the ends of a cycle and of its repeats, and handle the pointer on them."""
     repeats = "to the end of the scene" if cycle.until is None else f"until frame {end}"
     told = f"{cycle.description.capitalize()} repeat {repeats}"
     actions: list[Action] = []

@@ -1,4 +1,4 @@
-"""Keys in time: the transport above, the ruler, and the track with keys and easing."""
+"""The timeline's panel: transport, ruler, and rows with keys and easing."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -38,15 +38,14 @@ from app.ui.timeline.ruler import (
 from app.ui.timeline.segments import draw_cycle_bars, draw_pose_segments
 from app.ui.timeline.tracks import draw_track_keys
 
-ZOOM_STEP = 1.2  # a notch of the wheel
+ZOOM_STEP = 1.2  # per notch of the wheel
 SCROLL_STEP = 4.0  # em
-# Parts of the way beyond the edge by which the view follows the pointer in each frame.
+# Share of the distance beyond the edge by which the view scrolls in each frame.
 PULL = 0.12
 FLAGS = imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
 
 
 def draw_timeline_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the timeline of the open project."""
     actions = draw_transport_bar(session, look, project)
     imgui.begin_child("track", imgui.get_content_region_avail(), 0, FLAGS)
     bands = TimelineLayout(session, look, project)
@@ -82,7 +81,7 @@ def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _navigate(bands: TimelineLayout) -> list[Action]:
-    """Scroll by the wheel or the middle button; zoom at the pointer with Ctrl."""
+    """Scroll with the wheel or the middle button. Zoom at the pointer with Ctrl and the wheel."""
     io = imgui.get_io()
     if not imgui.is_window_hovered(imgui.HoveredFlags_.allow_when_blocked_by_active_item):
         return []
@@ -105,14 +104,14 @@ def _navigate(bands: TimelineLayout) -> list[Action]:
 
 
 def _go_on(bands: TimelineLayout) -> list[Action]:
-    """Follow the pointer in what it began; end it where the button is let go."""
+    """Continue the active gesture at the pointer. End it when the button is released."""
     timeline = bands.project.timeline
     gesture = timeline.gesture
     if gesture is None:
         return []
     if imgui.is_key_pressed(imgui.Key.escape):
         return [do(timeline_drag.cancel_timeline_drag)]
-    # A press that does not go on is a click; only the playhead is there at once.
+    # A press without a drag is a click. Only the playhead moves at once.
     goes_on = isinstance(gesture, ScrubDrag) or was_dragged()
     keys = bands.pointed_keys
     moves = [do(timeline_drag.move_timeline_drag, bands.pointed, keys)] if goes_on else []
@@ -124,12 +123,12 @@ def _go_on(bands: TimelineLayout) -> list[Action]:
 
 
 def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
-    """Return what a press on something does that is let go where it was."""
+    """Return the actions of a click, which is a press released without a drag."""
     match gesture:
         case ScrubDrag():
             return [do(editing.deselect_keys)]
         case KeyDrag(row=row, pressed=frame, copies=False):
-            # The key alone, and what it shows.
+            # Select only this key, and show its frame.
             track = bands.project.track_in(row)
             seen = bands.project.document.frames.clamp(display_frame(gesture.before, track, frame))
             chosen = {row: frozenset({frame})}
@@ -143,7 +142,7 @@ def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
 
 
 def _scroll_beyond_edges(bands: TimelineLayout) -> list[Action]:
-    """Scroll where the pointer goes beyond the edges."""
+    """Scroll while a drag goes beyond the edges."""
     x = imgui.get_mouse_pos().x
     beyond = min(x - bands.left, 0.0) + max(x - bands.right, 0.0)
     if not beyond:
@@ -160,7 +159,7 @@ def _scroll_beyond_edges(bands: TimelineLayout) -> list[Action]:
 
 
 def _follow(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Keep the playhead on the screen where it moves by itself."""
+    """Keep the playhead visible when it moves without a drag."""
     timeline = bands.project.timeline
     if frame == timeline.last_shown_frame:
         return []
@@ -178,7 +177,7 @@ def _follow(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _follow_active(bands: TimelineLayout) -> list[Action]:
-    """Scroll the rows to one that has come to be chosen, or to the tracks that have come to it."""
+    """Scroll to a newly selected row, or to tracks that were added to it."""
     timing, row, em = bands.project.timeline, bands.row, bands.look.em
     if timing.last_shown_rows == (bands.project.row, timing.expanded_layers):
         return []

@@ -1,4 +1,4 @@
-"""Where tracks want what the limits do not allow."""
+"""Target errors of tracks, where the limits prevent their targets."""
 
 from collections.abc import Mapping
 
@@ -7,7 +7,7 @@ from app.editor import Project
 
 
 def find_residuals(project: Project, layer: Layer, track: Track) -> Mapping[int, float]:
-    """Return by how many pixels a track is missed, by the frames in which it is out of reach."""
+    """Return the largest target error of the track's handles in pixels, by frame."""
     corrected = project.layer_runtimes[layer.id].corrected
     if corrected is None or not track.enabled:
         return {}
@@ -19,7 +19,7 @@ def find_residuals(project: Project, layer: Layer, track: Track) -> Mapping[int,
 
 
 def describe_residual(project: Project, layer: Layer, track: Track, frame: int) -> str:
-    """Return in words that a track is out of reach at a frame; empty where it is not."""
+    """Describe the target error of a track at a frame; empty if there is none."""
     miss = find_residuals(project, layer, track).get(frame)
     if miss is None:
         return ""

@@ -1,4 +1,4 @@
-"""Rows of tracks: their names, when they act, their keys, and where they are out of reach."""
+"""Rows of tracks: names, active ranges, keys, and target errors."""
 
 from collections.abc import Collection
 from itertools import pairwise
@@ -38,21 +38,20 @@ from app.ui.timeline.layout import (
 from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
 from app.ui.timeline.track_residuals import find_residuals
 
-RADIUS, GRIP = 0.4, 0.55  # em: half a key's diagonal, and of the box that takes it
+RADIUS, GRIP = 0.4, 0.55  # em: half a key's diagonal, and half its hit box
 SEGMENT_HEIGHT, DELAY_HEIGHT = (
     0.22,
     0.1,
-)  # em: heights of the line where a track acts, and of that of its delay
-EXPANDER_WIDTH = 1.1  # em: width of the triangle that folds tracks away
+)  # em: heights of the line of a track's active range, and of its delay
+EXPANDER_WIDTH = 1.1  # em: width of the triangle that collapses tracks
 
 
 def format_track_name(layer: Layer, track: Track) -> str:
-    """Return what a track is called: by its handles."""
     return ", ".join(layer.handle(identity).name for identity in track.handles)
 
 
 def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Action]:
-    """Draw the triangle by which the tracks of a layer are folded away, if it has any."""
+    """Draw the triangle that collapses a layer's tracks, if the layer has any."""
     layer, em = row.layer, bands.look.em
     if not layer.tracks:
         return []
@@ -74,7 +73,7 @@ def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Act
 
 
 def draw_track_names(bands: TimelineLayout) -> list[Action]:
-    """Draw the names of tracks beside their rows, and what switches them on and off."""
+    """Draw the names of tracks beside their rows, with their on/off buttons."""
     actions: list[Action] = []
     for lane in filter(bands.shows_row, bands.track_rows):
         imgui.push_id(f"track {lane.layer.id} {lane.track.handles[0]}")
@@ -119,7 +118,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
 
 
 def draw_track_segments(bands: TimelineLayout) -> None:
-    """Draw the grounds of tracks' rows, when each one acts, and where it is out of reach."""
+    """Draw the backgrounds of tracks' rows, active ranges, and target errors."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     for lane in filter(bands.shows_row, bands.track_rows):
         low, high = ImVec2(bands.left, lane.top), ImVec2(bands.right, lane.bottom)
@@ -146,7 +145,7 @@ def draw_track_segments(bands: TimelineLayout) -> None:
 
 
 def _stretches(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
-    """Return from where to where a track acts, in parts where a loop ends between them."""
+    """Return a track's active ranges. The end of a loop splits the range in two."""
     document = bands.project.document
     first, last = track.keys[0].frame + track.delay, track.keys[-1].frame + track.delay
     frames = document.frames
@@ -159,7 +158,7 @@ def _stretches(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
 
 
 def _draw_delay(bands: TimelineLayout, lane: TrackLane) -> None:
-    """Draw by how much a track is late, from where its first key would be without that."""
+    """Draw the delay of a track as a line from its undelayed first key."""
     if not lane.track.delay:
         return
     em, first = bands.look.em, lane.track.keys[0].frame
@@ -173,7 +172,7 @@ def _draw_delay(bands: TimelineLayout, lane: TrackLane) -> None:
 
 
 def _runs(frames: Collection[int]) -> list[tuple[int, int]]:
-    """Return the first and last of frames that follow each other."""
+    """Return the first and last frame of each run of consecutive frames."""
     ordered = sorted(frames)
     cuts = [index for index, (one, other) in enumerate(pairwise(ordered), 1) if other - one > 1]
     parts = pairwise([0, *cuts, len(ordered)]) if ordered else ()
@@ -181,7 +180,6 @@ def _runs(frames: Collection[int]) -> list[tuple[int, int]]:
 
 
 def draw_track_keys(bands: TimelineLayout) -> list[Action]:
-    """Draw the keys of tracks, and take what the pointer does to them."""
     actions: list[Action] = []
     bands.push_track_clip()
     for lane in filter(bands.shows_row, bands.track_rows):
@@ -194,7 +192,7 @@ def draw_track_keys(bands: TimelineLayout) -> list[Action]:
 
 
 def _in_view(bands: TimelineLayout, track: Track) -> list[int]:
-    """Return the indices of a track's keys on the screen; in a loop late ones come round."""
+    """Return the indices of a track's visible keys. In a loop, late keys wrap around."""
     document = bands.project.document
     round_ = document.frames.last - document.frames.first
     shifts = {track.delay, track.delay - round_ * document.loop}
@@ -235,7 +233,6 @@ def _draw_key(
 
 
 def _draw_track_key_tooltip(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> None:
-    """Explain a key in a tooltip."""
     if not begin_tooltip():
         return
     document, track = bands.project.document, lane.track

@@ -1,6 +1,6 @@
-"""The drawing, and everything that the pointer does to it.
+"""The viewport: the drawing, its overlays, and the pointer's gestures on it.
 
-In: what is shown, and the pointer.
+In: the shown frame, and the pointer.
 Out: a picture of the drawing, and gestures.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.render`.
 """

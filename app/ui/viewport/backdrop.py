@@ -1,6 +1,6 @@
-"""What lies around the drawing: what is behind it, and what the camera leaves out.
+"""The surroundings of the drawing: the backdrop behind it, and the area outside the camera's frame.
 
-Behind it is a colour that was chosen, or squares on which it stands out.
+The backdrop is a chosen colour, or a checker with enough contrast to the drawing.
 """
 
 import numpy as np
@@ -17,17 +17,17 @@ from engine.arrays import Bytes, Floats
 
 SQUARE = 12.0  # pixels at a scale of 1
 LEVELS = 256
-# Of brightness, 0 to 1: what is nearer to the backdrop is hard to see; of the drawing's area, the
-# share of that from which on another backdrop is taken.
+# NEAR: difference of brightness, 0 to 1, below which the drawing is hard to see on the backdrop.
+# MUCH: share of such area above which the other theme's checker is taken.
 NEAR, MUCH = 0.2, 0.6
-LUMA = np.array([0.2126, 0.7152, 0.0722])  # of red, green and blue, as Rec. 709 weighs them
-STEP = 4  # pixels: every so manieth is looked at
-DIM = 0.45  # of the desk's colour, over what the camera leaves out
-FAR = 1e3  # times the camera's frame: beyond the viewport
+LUMA = np.array([0.2126, 0.7152, 0.0722])  # weights of red, green and blue, as in Rec. 709
+STEP = 4  # sampling distance in pixels
+DIM = 0.45  # opacity of the desk's colour outside the camera's frame
+FAR = 1e3  # size of the dimmed area, in camera frames: larger than the viewport
 
 
 def measure_brightness(picture: Bytes) -> Floats:
-    """Return which share of a picture's (h, w, 4) opaque area has which brightness.
+    """Return the brightness histogram of a picture's (h, w, 4) opaque area, shares of 1.
 
     Returns
     -------
@@ -41,18 +41,16 @@ def measure_brightness(picture: Bytes) -> Floats:
 
 
 def make_backdrop(backdrop: str, palette: Palette, brightness: Floats, scale: float) -> Backdrop:
-    """Return the backdrop; the squares of the other theme, where the drawing is lost on its own's.
+    """Return the backdrop. If the theme's checker hides the drawing, take the other theme's.
 
     Parameters
     ----------
     backdrop : str
         "checker" or "#rrggbb".
-    palette : Palette
-        Of the theme.
     brightness : (256,) float64
         Of the drawing.
     scale : float
-        Pixels of the screen that a pixel of the design takes.
+        Pixels of the screen per pixel of the design.
     """
     if backdrop != CHECKER:
         return Backdrop(colour=to_rgba(rgb(backdrop)))
@@ -73,13 +71,10 @@ def _lost(brightness: Floats, paper: ImVec4) -> float:
 def draw_camera_frame(
     look: Look, project: Project, screen: ScreenMapping, room: tuple[ImVec2, ImVec2]
 ) -> None:
-    """Draw the camera's frame at the frame that is shown, if there is a camera.
+    """Draw the camera's frame at the shown frame, if there is a camera.
 
     Parameters
     ----------
-    look : Look
-    project : Project
-    screen : ScreenMapping
     room : tuple of ImVec2
         The upper left corner of the viewport, and its size.
     """
@@ -91,8 +86,8 @@ def draw_camera_frame(
     draw_list.push_clip_rect(corner, corner + size, intersect_with_current_clip_rect=True)
     corners = shot.frame_corners(project.document.canvas)
     inner, outer = (screen.points(shot.centre + by * (corners - shot.centre)) for by in (1.0, FAR))
-    # The frame is convex: its outside is four trapezoids, one beyond each edge. Where they meet,
-    # smooth edges would be seen: these are sharp.
+    # The frame is convex, so its outside is four trapezoids, one beyond each edge. Anti-aliased
+    # edges would be visible at the seams; these are sharp.
     dim, white = colour_u32(look.palette.desk, DIM), imgui.get_font_tex_uv_white_pixel()
     for here, there in zip(range(4), np.roll(range(4), -1).tolist(), strict=True):
         draw_list.prim_reserve(6, 4)

@@ -1,4 +1,4 @@
-"""What the viewport shows: the drawing, its ghosts, and all that marks it."""
+"""The viewport's picture: the drawing, its ghosts, and all overlays of the renderer."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -29,13 +29,13 @@ from engine.arrays import Floats
 
 GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
 GHOST_OPACITY = 0.38
-# A mesh is posed several times for one picture. These copies are numbered: 0 is the drawing itself,
-# ghosts count from 1, the picture of another method and those of the library have their own.
+# One picture poses a mesh several times. The copies are numbered: 0 is the drawing, ghosts count
+# from 1, the compared method and the library's thumbnails have their own numbers.
 COMPARISON, SMALL_PICTURE = -2, -1
 
 
 class Canvas:
-    """Owner of everything that the viewport's picture is drawn from."""
+    """Owner of all GPU objects of the viewport's picture."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
@@ -47,23 +47,23 @@ class Canvas:
 
     @property
     def texture(self) -> int | None:
-        """OpenGL's name of the picture; None before the first one."""
+        """OpenGL's name of the picture; None before the first picture."""
         return self._targets[0].texture.glo if self._targets else None
 
     @property
     def comparison_texture(self) -> int | None:
-        """The same of the picture by another method; None where the viewport is not split."""
+        """OpenGL's name of the compared method's picture; None if the viewport is not split."""
         return self._targets[1].texture.glo if len(self._targets) > 1 else None
 
     def release_others(self, project: Project | None) -> bool:
-        """Let go of any other project than this; return whether there was one."""
+        """Release every other project. Return whether there was one."""
         if self.resources is None or self.resources.project is project:
             return False
         self._forget_drawing()
         return True
 
     def draw(self, session: Session, *, paints: bool = True) -> None:
-        """Draw the project of a session as it is shown now; without `paints`, the next time."""
+        """Draw the session's project as it is shown now; without `paints`, at a later call."""
         project = session.project
         if project is None or project.layer_runtime.shown is None:
             self.pose_pictures.release()
@@ -87,7 +87,6 @@ class Canvas:
             self._drawn = inputs
 
     def release(self) -> None:
-        """Let everything go."""
         self.pose_pictures.release()
         self._forget_drawing()
         for target in (*self._targets, *self._retired):
@@ -97,7 +96,7 @@ class Canvas:
     def _fit_targets(self, size: tuple[int, int], count: int) -> None:
         if len(self._targets) == count and self._targets[0].size == size:
             return
-        # ImGui may still show the last ones in this frame.
+        # ImGui may still show the last textures in this frame.
         for target in self._retired:
             target.release()
         self._retired = self._targets
@@ -113,7 +112,7 @@ class Canvas:
 
 
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
-    """Return all that the picture depends on: while it stays the same, so does the picture."""
+    """Return all inputs of the picture. While they are equal, the picture is unchanged."""
     return (
         *(puppet.shown for puppet in project.layer_runtimes.values()),
         *(puppet.cut.value for puppet in project.layer_runtimes.values()),
@@ -156,7 +155,7 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
 
 
 def heat_limits(project: Project, heat_map: HeatMap) -> tuple[float, float]:
-    """Return the values at the two ends of the colours: from none to all that the bounds allow."""
+    """Return the values at the two ends of the heat map: no distortion, and the limit."""
     bounds = project.layer.bounds
     match heat_map:
         case "sigma_a":
@@ -211,7 +210,7 @@ def _scene(
 def _comparison_scene(
     session: Session, project: Project, scene: Scene, drawing: GpuResources
 ) -> Scene:
-    """Return the same scene by the method that is compared, without the poses around."""
+    """Return the scene by the compared method, without ghosts."""
     shows = {
         layer: puppet.comparison.shown
         for layer, puppet in project.layer_runtimes.items()
@@ -219,7 +218,7 @@ def _comparison_scene(
     }
     meshes = _posed(session, project, shows, drawing, number=COMPARISON)
     twin = replace(scene, meshes=meshes, ghosts=())
-    # Handles are where the drawing's own method has them: beside it they would mark nothing.
+    # Handles are at the positions of the drawing's own method. Beside it they would be wrong.
     is_beside = session.compare_view is not None and session.compare_view.is_side_by_side
     return replace(twin, lines=(), discs=()) if is_beside else twin
 
@@ -232,7 +231,7 @@ def _posed(
     *,
     number: int = 0,
 ) -> tuple[Painted, ...]:
-    """Return what is seen of the layers, in the order of the document: the last is in front."""
+    """Return the visible layers in the document's order: the last is in front."""
     heat_map = session.overlays.heat_map
     poses = {}
     document = project.document
@@ -258,7 +257,7 @@ def _posed(
 def _tinted(
     session: Session, project: Project, drawing: GpuResources, layer: Layer, shown: DisplayedFrame
 ) -> Floats:
-    """Return by what the vertices of a layer are coloured, (v,), −1 to 1."""
+    """Return the colour values of a layer's vertices, (v,), −1 to 1."""
     if layer.id != project.active:
         return np.zeros(len(shown.positions))
     if session.tint == "stiffness":
@@ -267,7 +266,7 @@ def _tinted(
 
 
 def _meshes(puppet: LayerRuntime) -> set[DeformMesh]:
-    """Return the meshes on which a layer is shown, or may be soon."""
+    """Return the meshes of a layer that are shown now or may be shown soon."""
     meshes = {store.mesh for store in (puppet.store, puppet.fine) if store is not None}
     twin = puppet.comparison
     shows = (puppet.shown, None if twin is None else twin.shown)
@@ -275,7 +274,7 @@ def _meshes(puppet: LayerRuntime) -> set[DeformMesh]:
 
 
 def _ghosts(session: Session, project: Project, drawing: GpuResources) -> tuple[Ghost, ...]:
-    """Return the poses before and after, of all layers that are seen then and look otherwise."""
+    """Return the onion skins of all layers that are visible then and look different."""
     if project.playhead.since is not None or project.layer_runtime.shown is None:
         return ()
     choice, now = session.preferences, project.layer_runtime.shown.frame
@@ -300,12 +299,12 @@ def _ghosts(session: Session, project: Project, drawing: GpuResources) -> tuple[
 def _ghost(
     project: Project, drawing: GpuResources, layer: Layer, now: int, at: int, number: int
 ) -> PosedMesh | None:
-    """Return a layer as it is at another frame; None where it looks no otherwise, or is not seen.
+    """Return a layer at another frame; None if it looks the same or is not visible there.
 
-    Where it hangs on what has moved just now, it is left out until it is known where it is.
+    If a parent layer has just moved, the ghost is omitted until its place is computed.
     """
     document, puppet = project.document, project.layer_runtimes[layer.id]
-    # While the hand moves, in-betweens come a moment later: until then the last ones stay.
+    # During a drag, in-betweens arrive later. Until then the last ones stay.
     known = puppet.store.whole
     if known is None or (at not in known.frames and not known.loop):
         return None
@@ -331,7 +330,7 @@ def _ghost(
 
 
 def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
-    """Return how many of the meshes are behind the ghosts: all, or those of a background."""
+    """Return how many meshes lie behind the ghosts: all, or only a background's."""
     if session.preferences.ghosts_in_front:
         return meshes
     document, shows = project.document, project.layer_runtimes

@@ -1,7 +1,7 @@
-"""The picture at rest while it is cut out: what is removed lies under a veil.
+"""The picture at rest while it is cut out. A veil covers the removed parts.
 
-What stays although it looks like the background lies under a veil of another colour: on paper of
-that colour nobody would see it.
+A veil of another colour covers kept parts that look like the background. On paper of the same
+colour they would be invisible.
 """
 
 import math
@@ -45,17 +45,12 @@ class _Sheet:
 
 
 class CutView:
-    """Owner of what is drawn of a layer while it is cut out.
-
-    Parameters
-    ----------
-    layer : int
-        Its id.
+    """Owner of the GPU objects of a layer while it is cut out.
 
     Attributes
     ----------
-    puppet : Puppet
-        The layer as the window had it then.
+    runtime : LayerRuntime
+        The layer's runtime when the view was made.
     """
 
     def __init__(self, renderer: Renderer, project: Project, layer: int) -> None:
@@ -67,7 +62,7 @@ class CutView:
         self._veil = _Sheet(renderer, _veil(self._cut), corners)
 
     def meshes(self) -> tuple[PosedMesh, ...]:
-        """Return the picture, and the veil over what is removed of it now."""
+        """Return the picture, and the veil over its removed parts."""
         cut = self.runtime.cut.value
         if cut is not self._cut:
             self._cut = cut
@@ -75,13 +70,12 @@ class CutView:
         return (self._sheet.pose, self._veil.pose)
 
     def release(self) -> None:
-        """Let everything go."""
         self._sheet.release()
         self._veil.release()
 
 
 def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, ...]:
-    """Return a mark for each hole: a ring in one that stays open, a disc in one that is filled."""
+    """Return a mark for each hole: a ring if it stays open, a disc if it is filled."""
     layer, holes = project.layer, project.layer_runtime.cut.value.holes
     if holes is None:
         return ()
@@ -103,7 +97,7 @@ def mark_holes(project: Project, palette: Palette, scale: float) -> tuple[Disc, 
 
 
 def draw_brush_ring(session: Session, look: Look, at: ImVec2, scale: float) -> None:
-    """Draw the ring of the brush around a place; a pixel of the picture takes `scale` pixels."""
+    """Draw the ring of the brush. A pixel of the picture takes `scale` pixels of the screen."""
     keeps: bool | None
     if session.project is None:
         return
@@ -127,7 +121,7 @@ def draw_brush_ring(session: Session, look: Look, at: ImVec2, scale: float) -> N
 
 
 def find_stroke_colour(look: Look, *, keeps: bool | None) -> ImVec4:
-    """Return the colour of a brush that keeps, or stiffens; that does the opposite; or neither."""
+    """Return the stroke colour; `keeps` is True also to stiffen, and None for neither."""
     if keeps is None:
         return look.palette.accent
     return look.palette.good if keeps else look.palette.danger

@@ -1,4 +1,4 @@
-"""What a project needs on the graphics card: the pictures and meshes of its layers."""
+"""The pictures and meshes of a project's layers on the graphics card."""
 
 from collections.abc import Callable, Collection
 
@@ -19,7 +19,7 @@ from engine.maps import distortion
 
 
 def measure_distortion(shown: DisplayedFrame, heat_map: HeatMap) -> Floats:
-    """Return one of the distortions at the vertices of what is shown, (v,)."""
+    """Return a distortion measure at the vertices of the shown frame, (v,)."""
     fz, fzbar = shown.derivatives
     match heat_map:
         case "sigma_a":
@@ -36,8 +36,8 @@ class GpuResources:
     def __init__(self, renderer: Renderer, project: Project) -> None:
         self.project = project
         self._renderer = renderer
-        # By layers' ids and their pictures: a layer's may be replaced, or a new one get the id of
-        # one that is gone. Layers of which nothing is cut share them, by None.
+        # By layer id and picture: a layer's picture may be replaced, and ids are reused after a
+        # layer is deleted. Layers without a cut-out share a picture under the id None.
         self._pictures: dict[tuple[int | None, Picture], GpuPicture] = {}
         self._meshes: dict[DeformMesh, GpuMesh] = {}
         self._drawn_meshes: dict[tuple[DeformMesh, int], DrawnMesh] = {}
@@ -49,7 +49,7 @@ class GpuResources:
 
     @property
     def brightness(self) -> Floats:
-        """That of the picture behind all others, as it is cut out: the backdrop must differ."""
+        """Brightness of the backmost picture as it is cut out. The backdrop must differ from it."""
         (first, *_) = self.project.document.layers
         texture = self.project.layer_runtimes[first.id].cut.value.texture
         if self._measured is None or self._measured[0] is not texture:
@@ -57,9 +57,9 @@ class GpuResources:
         return self._measured[1]
 
     def drawn_mesh(self, layer: int, mesh: DeformMesh, number: int = 0) -> DrawnMesh:
-        """Return the copy of a layer's mesh with this number, which is posed by itself."""
+        """Return the copy of a layer's mesh with this number. Each copy has its own pose."""
         if mesh in self._meshes and self._meshes[mesh].picture is not self.picture(layer):
-            # What is cut out of the picture is its own now, or is not any more.
+            # The cut-out status of the picture may have changed.
             self.release_but(self._meshes.keys() - {mesh})
         if (mesh, number) not in self._drawn_meshes:
             by_shader = shader_is_faster(self._renderer.programs.context)
@@ -70,9 +70,9 @@ class GpuResources:
     def ghost(
         self, layer: int, number: int, of: object, find: Callable[[], Vertices | None]
     ) -> Vertices | None:
-        """Return where a layer's vertices are in a copy that shows another frame, if known.
+        """Return a layer's vertices in a copy that shows another frame, if known.
 
-        They are found anew only where they are of something else: the picture changes every frame.
+        They are computed again only if `of` has changed, because the picture changes every frame.
         """
         known = self._ghosts.get((layer, number))
         if known is None or known[0] != of:
@@ -83,31 +83,32 @@ class GpuResources:
         return known[1]
 
     def heat(self, pose: PosedMesh, shown: DisplayedFrame, heat_map: HeatMap) -> None:
-        """Colour a pose by a distortion of what is shown; uploaded only if it is another."""
+        """Colour a pose by the distortion of the shown frame. Uploads only if it has changed."""
         wanted = (shown.vertices, heat_map)
         if self._heated.get(pose) != wanted:
             pose.write_heat(measure_distortion(shown, heat_map).astype(np.float32))
             self._heated[pose] = wanted
 
     def refresh(self) -> None:
-        """Bring the pictures up to what is cut out of them now."""
+        """Update the pictures to their present cut-outs."""
         used = {self._key(layer): layer for layer in self.project.layer_runtimes}
         for key in list(self._pictures):
             if key in used:
                 self._pictures[key].write(self.project.layer_runtimes[used[key]].cut.value.texture)
             else:
-                # Undo brings it back; it has no mesh any more.
+                # Undo may bring it back, but its mesh is gone.
                 self._pictures.pop(key).release()
 
     def tint(self, pose: PosedMesh, values: Floats) -> None:
-        """Colour a pose by values of its vertices, (v,), that are no distortion."""
+        """Colour a pose by values of its vertices, (v,), other than a distortion."""
         pose.write_heat(values.astype(np.float32))
         self._heated.pop(pose, None)
 
     def stiffness(self, layer: Layer, mesh: DeformMesh) -> Floats:
-        """Return by what the vertices of a layer's mesh are coloured, (v,), where it is stiff.
+        """Return the stiffness colours of a layer's vertices, (v,).
 
-        It is worked out anew only where that has changed: the picture changes in every frame.
+        They are computed again only if the stiffness has changed, because the picture changes every
+        frame.
         """
         known = self._stiff
         if (
@@ -120,7 +121,6 @@ class GpuResources:
         return known[2]
 
     def release_but(self, meshes: Collection[DeformMesh]) -> None:
-        """Let the buffers of other meshes go."""
         for mesh, number in [key for key in self._drawn_meshes if key[0] not in meshes]:
             self._drawn_meshes.pop((mesh, number)).release()
             self._heated.clear()
@@ -129,7 +129,7 @@ class GpuResources:
             self._meshes.pop(mesh).release()
 
     def cut_view(self) -> CutView:
-        """Return what is drawn of the active layer while it is cut out."""
+        """Return the view of the active layer while it is cut out."""
         if self._cut_view is None or self._cut_view.runtime is not self.project.layer_runtime:
             self._forget_cut_view()
             self._cut_view = CutView(self._renderer, self.project, self.project.active)
@@ -141,7 +141,6 @@ class GpuResources:
             self._cut_view = None
 
     def release(self) -> None:
-        """Let everything go."""
         self._forget_cut_view()
         self.release_but(())
         for picture in self._pictures.values():
@@ -161,11 +160,10 @@ class GpuResources:
 
     @property
     def picture_count(self) -> int:
-        """How many pictures of layers are on the graphics card."""
         return len(self._pictures)
 
     def picture(self, layer: int) -> GpuPicture:
-        """Return a layer's picture on the graphics card; uncut layers of one file share it."""
+        """Return a layer's picture on the graphics card. Uncut layers of one file share it."""
         key = self._key(layer)
         if key not in self._pictures:
             texture = self.project.layer_runtimes[layer].cut.value.texture

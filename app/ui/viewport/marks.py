@@ -1,4 +1,4 @@
-"""What marks the drawing in the viewport: handles, anchor, outline, cage and export frame."""
+"""The renderer's marks on the drawing: handles, anchor, outline, cage and export frame."""
 
 from functools import lru_cache
 
@@ -15,26 +15,26 @@ from engine.arrays import Booleans, Complexes
 from engine.domain import MeshedDomain
 from engine.geometry import deepest_point
 
-FAINT = 3.0  # pixels: the radius of a handle of another layer
-STILL = 0.5  # pixels of the picture: a path that leads no farther is none
-GROUND, GROUND_BELOW = 17.0, 11.0  # pixels: length of the mark of a handle that stays, its depth
+FAINT = 3.0  # pixels: radius of a handle of another layer
+STILL = 0.5  # pixels of the picture: a shorter path is not drawn
+GROUND, GROUND_BELOW = 17.0, 11.0  # pixels: length and distance of an auto-pin's mark
 DOT, KEY_DOT = 2.4, 4.4  # pixels: radius of a frame on a path, and of a key
 
 
 def pixel_scale(session: Session) -> float:
-    """Return how many pixels of the picture a pixel of the design takes."""
+    """Return how many pixels of the picture one pixel of the design takes."""
     return interface_scale(session.preferences.scale) * pixel_density()
 
 
 def to_rgba(colour: ImVec4, alpha: float = 1.0) -> Colour:
-    """Return a colour of the theme as the renderer takes it."""
+    """Return a colour of the theme as the renderer needs it."""
     return colour.x, colour.y, colour.z, alpha * colour.w
 
 
 def mark_all(
     session: Session, project: Project, shown: DisplayedFrame, palette: Palette
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
-    """Return all lines and discs that mark what is shown, in the order in which they are drawn."""
+    """Return the lines and discs that mark the shown frame, in drawing order."""
     scale = pixel_scale(session)
     lines: list[Line] = []
     if session.overlays.outline:
@@ -78,9 +78,9 @@ def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[
 
 
 def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, complex]:
-    """Return where handles that have not arrived are wanted, by their ids.
+    """Return the pose's targets of handles that have not arrived, by handle id.
 
-    Those that go their own ways, by tracks or springs, are not where the pose wants them for that.
+    Handles with tracks or springs leave their pose's target, and are omitted.
     """
     layer, targets = shown.clip.layer, shown.pose.targets if shown.pose else {}
     own = {handle for track in _acting(shown) for handle in track.handles} | layer.sprung_handles
@@ -98,7 +98,7 @@ def find_off_target(project: Project, shown: DisplayedFrame) -> dict[int, comple
 
 
 def _find_off_track(shown: DisplayedFrame) -> dict[int, complex]:
-    """Return where handles are wanted by their tracks, by their ids, that cannot go there."""
+    """Return the track's targets that handles cannot reach, by handle id."""
     layer, found = shown.clip.layer, shown.correction
     if found is None or shown.placeholder is not None:
         return {}
@@ -108,19 +108,19 @@ def _find_off_track(shown: DisplayedFrame) -> dict[int, complex]:
 
 
 def _acting(shown: DisplayedFrame) -> list[Track]:
-    """Return the tracks that want something in the frame that is shown."""
+    """Return the tracks that have a target in the shown frame."""
     clip = shown.clip
     return [track for track in clip.layer.tracks if track_at(track, clip, shown.frame) is not None]
 
 
 def find_anchor(project: Project, shown: DisplayedFrame) -> complex | None:
-    """Return where the anchor is in what is shown; None where a handle marks it, or none is yet."""
+    """Return the anchor's place in the shown frame; None if a handle marks it or none exists."""
     layer, sampler = shown.clip.layer, project.layer_runtime.store.sampler
     rest = layer.anchor
     if rest is None and sampler is not None and sampler.anchor is None:
         rest = sampler.sites.anchor
     if rest is None and len(project.document.layers) > 1:
-        # Before anything moves, it is there to hang the layer by.
+        # Before any motion, the anchor is visible so that the layer can be attached there.
         rest = _deepest_point(layer.domain)
     if rest is None or any(handle.position == rest for handle in layer.handles):
         return None
@@ -128,7 +128,7 @@ def find_anchor(project: Project, shown: DisplayedFrame) -> complex | None:
 
 
 def clear_mark_caches() -> None:
-    """Forget what was found out about a project that was closed."""
+    """Clear the caches after a project was closed."""
     _deepest_point.cache_clear()
     _located.cache_clear()
     _still.cache_clear()
@@ -150,9 +150,9 @@ def _still(clip: Clip) -> Booleans:
 
 
 def find_auto_pinned(shown: DisplayedFrame) -> frozenset[int]:
-    """Return the ids of the handles that stay between the two keys around what is shown.
+    """Return the ids of auto-pinned handles between the two keys around the shown frame.
 
-    Those that their own tracks move there are none.
+    Handles that their own tracks move there are omitted.
     """
     clip, still = shown.clip, _still(shown.clip)
     interval = segment_time_at(clip, shown.frame).segment
@@ -164,7 +164,7 @@ def find_auto_pinned(shown: DisplayedFrame) -> frozenset[int]:
 
 
 def _grounds(session: Session, project: Project, shown: DisplayedFrame, scale: float) -> list[Line]:
-    """Return a short line below each handle that stays, as if it stood on the ground there."""
+    """Return a short line below each auto-pinned handle, like a ground under its foot."""
     per_pixel = scale / project.view(session.screen).scale
     stays, lines = find_auto_pinned(shown), list[Line]()
     for handle, place in zip(
@@ -182,7 +182,7 @@ def _grounds(session: Session, project: Project, shown: DisplayedFrame, scale: f
 
 
 def _others(project: Project, scale: float) -> tuple[Disc, ...]:
-    """Return faint marks of the handles of the layers that are not posed."""
+    """Return faint marks of the other layers' handles."""
     return tuple(
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
         for layer, puppet in project.layer_runtimes.items()
@@ -192,19 +192,19 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
 
 
 def _on(shown: DisplayedFrame, place: complex) -> complex:
-    """Return where a place of the layer by itself is in the scene."""
+    """Return a place of the layer in scene coordinates."""
     return complex(shown.placement.apply(np.array([place]))[0])
 
 
 def transform_loops(shown: DisplayedFrame) -> list[Complexes]:
-    """Return the outline, and those of holes, moved with the shape."""
+    """Return the deformed outline and holes, in the layer's coordinates."""
     # The vertices of a mesh begin with those of the loops.
     ends = np.cumsum([len(loop) for loop in shown.mesh.domain.loops])
     return np.split(shown.positions[: ends[-1]], ends[:-1])
 
 
 def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> Booleans:
-    """Tell of which frames paths are drawn: of those that play, or of some around the playhead."""
+    """Return which frames paths cover: the played ones, or some around the playhead."""
     played, reach = project.document.played_frames, session.preferences.path_reach
     frames = (paths.frames >= played.first) & (paths.frames <= played.last)
     return frames & (abs(paths.frames - project.playhead.frame) <= reach) if reach else frames
@@ -213,9 +213,9 @@ def _frames_of_paths(session: Session, project: Project, paths: MotionPaths) -> 
 def _paths(
     session: Session, project: Project, palette: Palette, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
-    """Return the paths of the selected handles: a dot for each frame, and a larger one for keys.
+    """Return the paths of the selected handles: a dot for each frame, a larger dot for a key.
 
-    Of what hangs on something that has moved just now there are none until they are known.
+    If a parent layer has just moved, there are no paths until they are computed.
     """
     paths = project.paths.value
     if paths is None or len(paths.frames) < 2 or paths.clip.layer.id != project.active:
@@ -229,7 +229,7 @@ def _paths(
     keys = np.isin(paths.frames[frames], [key.frame for key in project.layer.keys])
     lines, discs = [], []
     for handle, path in zip(paths.clip.layer.handles, places.T, strict=True):
-        # What does not move would only be a blot on its handle.
+        # A path that does not move would only be a blot on its handle.
         if handle.id not in project.selected_handles or np.abs(path - path[0]).max() <= STILL:
             continue
         lines.append(Line(points=path, colour=to_rgba(palette.accent, 0.55), width=1.2 * scale))
@@ -259,7 +259,7 @@ def _outlines(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Lin
 
 
 def _cages(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
-    """Return the cages, which stay around the shape at rest and in its holes, where it hangs."""
+    """Return the cages around the shape at rest and in its holes, moved with the layer."""
     return [
         Line(
             points=shown.placement.apply(cage),
@@ -273,7 +273,6 @@ def _cages(shown: DisplayedFrame, palette: Palette, scale: float) -> list[Line]:
 
 
 def _frame(box: BoundingBox, palette: Palette, scale: float) -> Line:
-    """Return the edge of what an export shows."""
     low, high = box
     corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
     return Line(

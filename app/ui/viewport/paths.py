@@ -1,4 +1,4 @@
-"""The path of the track whose row is chosen, with its keys, and the trail of a recorded drag."""
+"""The path of the selected track with its keys, and the trail of a recorded drag."""
 
 import numpy as np
 
@@ -8,14 +8,14 @@ from app.editor.actions import tracking
 from app.render import Colour, Disc, Line
 from engine.arrays import Complexes
 
-MOST = 500  # frames of which the path is drawn; of longer animations every second, third …
+MOST = 500  # drawn frames of a path at most; a longer animation shows every second, third …
 DOT, KEY_DOT = 1.8, 4.4  # pixels: radius of a frame on a path, and of a key
 
 
 def find_path_keys(project: Project) -> list[tuple[int, Complexes]]:
-    """Return at which frames the keys of the chosen track are seen, and where in the scene, (1,).
+    """Return frame and scene place, (1,), of the selected track's keys.
 
-    Those whose places are not known yet are left out.
+    Keys whose place is not computed yet are omitted.
     """
     track = _chosen(project)
     if track is None:
@@ -28,7 +28,7 @@ def find_path_keys(project: Project) -> list[tuple[int, Complexes]]:
 def mark_path(
     project: Project, accent: Colour, key: Colour, rim: Colour, scale: float
 ) -> tuple[list[Line], tuple[Disc, ...]]:
-    """Return the path of the chosen track, and the trail of a drag that is recorded."""
+    """Return the path of the selected track, and the trail of a recorded drag."""
     lines, discs, track, take = list[Line](), list[Disc](), _chosen(project), project.recording
     if take is not None and len(take.samples) > 1:
         trail = np.array([sample.place for sample in take.samples])
@@ -61,14 +61,14 @@ def _chosen(project: Project) -> Track | None:
 
 
 def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int, Complexes]]:
-    """Return where in the scene a track wants its first handle, as far as that is known."""
+    """Return the scene places of a track's first handle, by frame, as far as they are computed."""
     shown = project.layer_runtime.shown
     if shown is None:
         return []
     if not track.is_scene_space and project.placed_at(project.active, frames) is None:
         return []
     wished = [tracking.track_target(project, track, frame) for frame in frames]
-    # Where a planted one is in the scene, it is wherever its layer is.
+    # A scene-space track is independent of its layer's placement.
     placements = project.placements(frames, shown.placement)
     return [
         (frame, placement.apply(np.array([place])))

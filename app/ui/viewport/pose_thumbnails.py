@@ -1,4 +1,4 @@
-"""Small pictures of the poses in layers' libraries."""
+"""Thumbnails of the poses in layers' libraries."""
 
 from collections.abc import Callable
 
@@ -10,22 +10,22 @@ from app.render.gpu import RenderTarget
 from app.ui.style import PALETTES
 from app.ui.viewport.marks import to_rgba
 
-MARGIN = 0.06  # of the side, left free around the shape
+MARGIN = 0.06  # share of the side, left free around the shape
 
 
 class PosePictures:
-    """Owner of one small texture for each pose of a layer, by its id, that was asked for."""
+    """Owner of a small texture for each requested pose, by layer and pose id."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._renderer = renderer
         self._targets: dict[tuple[int, Pose], RenderTarget] = {}
         self._wanted: set[tuple[int, Pose]] = set()
-        # Of all that is drawn: the layers' meshes, how large, and in which theme.
+        # Inputs of all thumbnails: the layers' meshes, the size, and the theme.
         self._kind: tuple[object, ...] = ()
         self._side = 1
 
     def get(self, layer: int, pose: Pose, side: int) -> int | None:
-        """Return the texture of a pose, so many pixels wide and high; None before it is drawn."""
+        """Return the texture of a pose, `side` pixels wide and high; None before it is drawn."""
         self._wanted.add((layer, pose))
         self._side = side
         target = self._targets.get((layer, pose))
@@ -34,9 +34,9 @@ class PosePictures:
     def draw(
         self, session: Session, project: Project, posable: Callable[[int, DeformMesh], DrawnMesh]
     ) -> None:
-        """Draw what was asked for in this frame, and let all else go.
+        """Draw the poses requested in this frame, and release the others.
 
-        From `posable` comes a layer's mesh on the graphics card that can be posed.
+        `posable` returns a layer's mesh on the graphics card that can be posed.
         """
         meshes = {
             layer: project.layer_runtimes[layer].store.mesh
@@ -65,7 +65,7 @@ class PosePictures:
         self._wanted.clear()
 
     def release(self) -> None:
-        """Let the textures go; poses that are asked for again are drawn again."""
+        """Release the textures. Requested poses are drawn again."""
         for target in self._targets.values():
             target.release()
         self._targets.clear()

@@ -1,4 +1,4 @@
-"""Where places of the drawing are on the screen, and what of it is under the pointer."""
+"""The mapping between the drawing and the screen, and hit tests under the pointer."""
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui
@@ -15,9 +15,9 @@ GRIP = 0.75  # em: radius within which a handle is grabbed
 
 
 class ScreenMapping:
-    """The viewport's picture of the layer that is posed, on the screen from a corner on.
+    """The active layer's picture in the viewport, from a corner of the screen.
 
-    Places are those of the layer by itself, unless they are said to be of the scene.
+    Places are in the layer's own coordinates, except where scene coordinates are mentioned.
     """
 
     def __init__(
@@ -31,41 +31,40 @@ class ScreenMapping:
 
     @property
     def scale(self) -> float:
-        """How many pixels of the screen a pixel of the picture takes."""
+        """Pixels of the screen per pixel of the picture."""
         return self.view.scale / self.density
 
     @property
     def pointer(self) -> complex:
-        """The place under the pointer."""
+        """The pointer in the layer's coordinates."""
         return self.shown.placement.apply_inverse(self._in_scene)
 
     @property
     def pixel(self) -> complex:
         """The pixel of the view under the pointer."""
         pixel = (complex(*imgui.get_mouse_pos()) - self._corner) * self.density
-        # Of a picture beside it, the same pixel.
+        # In a picture beside it, the corresponding pixel.
         return complex(pixel.real % self.view.size[0], pixel.imag)
 
     @property
     def _in_scene(self) -> complex:
-        """The place of the scene under the pointer."""
         pixel = (complex(*imgui.get_mouse_pos()) - self._corner) * self.density
         return self.view.to_plane(pixel)
 
     def point(self, place: complex) -> ImVec2:
-        """Return the point of the screen at a place."""
+        """Return the point of the screen at a place of the layer."""
         (point,) = self.points(self.shown.placement.apply(np.array([place])))
         return point
 
     def points(self, in_scene: Complexes) -> list[ImVec2]:
-        """Return the points of the screen at places of the scene."""
+        """Return the points of the screen at places in scene coordinates."""
         pixels = self.view.to_pixels(in_scene) / self.density + self._corner
         return [ImVec2(pixel.real, pixel.imag) for pixel in pixels.tolist()]
 
     def hit_test(
         self, look: Look, handle: int | None, *, on_ring: bool, on_axis: bool
     ) -> PointerHit:
-        """Return where the pointer is, and what is under it, as far as that is not given."""
+        """Return the pointer's place and what is under it. The given items take precedence."""
         io, place = imgui.get_io(), self.pointer
         outline, *holes = transform_loops(self.shown)
         return PointerHit(
@@ -82,14 +81,14 @@ class ScreenMapping:
         )
 
     def _layer(self, *, through: bool) -> int | None:
-        """Return the layer under the pointer, or `through` the one that is posed, the next one."""
+        """Return the layer under the pointer, or, `through` the active layer, the one behind."""
         if len(self.project.document.layers) == 1:
             return None
         below = self.project.active if through else None
         return layering.layer_at(self.project, self._in_scene, below=below)
 
     def _is_anchor(self, handle: int | None, place: complex, reach: float) -> bool:
-        """Tell whether the anchor is at a place, or a handle there is it, in a scene of several."""
+        """Return whether the pointer is on the anchor. A single layer has no anchor to drag."""
         project, shown = self.project, self.shown
         if len(project.document.layers) == 1 or project.playhead.since is not None:
             return False

@@ -1,4 +1,4 @@
-"""Two methods in one viewport: under a divider over one place, or side by side."""
+"""Two methods in one viewport: on both sides of a divider, or side by side."""
 
 from typing import NamedTuple
 
@@ -18,21 +18,21 @@ from app.ui.style import (
     outline_strokes,
 )
 
-GRIP, LINE = 0.55, 0.12  # em: half the width that takes the pointer, and the line's
-KNOB = 0.85  # em: radius of what is seen of the grip
+GRIP, LINE = 0.55, 0.12  # em: half the width of the divider's hit area, and half the line's width
+KNOB = 0.85  # em: radius of the visible grip
 
 
 class SplitTextures(NamedTuple):
-    """OpenGL's names of the picture, and of the one by another method where there is one."""
+    """OpenGL's names of the picture, and of the compared method's picture or None."""
 
     own: int | None = None
     comparison: int | None = None
 
 
 class SplitLayout(NamedTuple):
-    """Where the two pictures are on the screen: corner, and width and height of each.
+    """The two pictures on the screen: corner and size of each.
 
-    `room` is what the drawing's own picture takes, with handles and all else.
+    `room` is the space of the drawing's own picture, with handles and overlays.
     """
 
     corner: ImVec2
@@ -41,7 +41,6 @@ class SplitLayout(NamedTuple):
 
 
 def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayout:
-    """Return how a viewport is divided."""
     split = session.compare_view
     if split is None or session.cutting is not None:
         return SplitLayout(corner, room, corner.x + room.x)
@@ -52,7 +51,7 @@ def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayo
 
 
 def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
-    """Show the drawing, and right of the divider what the other method makes of it."""
+    """Show the drawing, and right of the divider the compared method's picture."""
     draw_list = imgui.get_window_draw_list()
     corner, room = parts.corner, parts.room
     bottom = corner.y + room.y
@@ -78,9 +77,9 @@ def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
 
 
 def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) -> list[Action]:
-    """Draw the divider with the methods' names beside it; dragged, it moves.
+    """Draw the divider with the methods' names. Dragging moves it.
 
-    Before the canvas: what comes first gets the pointer.
+    Call it before the canvas: the first item under the pointer takes the press.
     """
     split, project = session.compare_view, session.project
     if split is None or project is None or session.cutting is not None:
@@ -112,7 +111,7 @@ def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) 
 
 
 def _names(look: Look, project: Project, method: Variant | Baseline, x: float, top: float) -> None:
-    """Write which method is left and which is right of the divider."""
+    """Write the names of the methods left and right of the divider."""
     pad = 0.5 * look.em
     own = METHODS[project.layer.variant].name
     other = METHODS[method].name

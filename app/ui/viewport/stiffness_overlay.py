@@ -1,4 +1,4 @@
-"""What of a layer is stiff or soft, over its picture: colours, bones, and the brush."""
+"""Stiff and soft parts of a layer over its picture: colours, bones, and the brush."""
 
 from math import log
 
@@ -13,14 +13,14 @@ from app.ui.style import Look, colour_u32, outline_strokes
 from app.ui.viewport.screen import ScreenMapping
 from engine.arrays import Floats
 
-EXTENT = log(stiffness_editing.STRONGEST)  # what is so stiff has the last of the colours
-WIDEST, AT = 0.09, 0.2  # of a bone's length: how wide it is, and where
-AROUND, TINY = 128, 1e-6  # points of the outline that colour a place inside
-MOST = 0.7  # em: how wide a bone is at most, to either side
+EXTENT = log(stiffness_editing.STRONGEST)  # stiffness at the end of the colour scale
+WIDEST, AT = 0.09, 0.2  # of a bone's length: half its width, and where it is widest
+AROUND, TINY = 128, 1e-6  # nearest outline points of a vertex; least distance
+MOST = 0.7  # em: half a bone's width at most
 
 
 def measure_vertex_stiffness(layer: Layer, mesh: DeformMesh) -> Floats:
-    """Return how stiff the vertices of a mesh are, (v,): −1 to 1, as the outline around them."""
+    """Return the stiffness of a mesh's vertices, (v,), −1 to 1, from the outline near each."""
     along, stiffness = stiff_outline(layer)
     values, vertices = np.log(stiffness) / EXTENT, mesh.domain.mesh.vertices
     tree = cKDTree(np.column_stack([along.real, along.imag]))
@@ -33,7 +33,7 @@ def measure_vertex_stiffness(layer: Layer, mesh: DeformMesh) -> Floats:
 
 
 def draw_bones(look: Look, screen: ScreenMapping) -> None:
-    """Draw the bones that are shown, as thin diamonds from handle to handle."""
+    """Draw the visible bones as thin diamonds from handle to handle."""
     shown = screen.shown
     handles = [handle.id for handle in shown.clip.layer.handles]
     places = dict(zip(handles, shown.handle_positions.tolist(), strict=True))
@@ -44,7 +44,6 @@ def draw_bones(look: Look, screen: ScreenMapping) -> None:
 
 
 def draw_bone(look: Look, start: ImVec2, end: ImVec2, colour: ImVec4) -> None:
-    """Draw a bone between two points of the screen."""
     way = complex(end.x - start.x, end.y - start.y)
     if not way:
         return

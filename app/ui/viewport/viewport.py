@@ -1,4 +1,4 @@
-"""The drawing, and everything that the pointer does to it."""
+"""The viewport's panel: the drawing, and everything that the pointer does to it."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -40,11 +40,11 @@ from app.ui.viewport.split_view import (
 )
 from app.ui.viewport.stiffness_overlay import draw_bones
 
-ZOOM_STEP = 1.15  # a notch of the wheel
+ZOOM_STEP = 1.15  # per notch of the wheel
 SMALLEST_ZOOM, LARGEST_ZOOM = 0.02, 64.0
 LEFT_OR_RIGHT = imgui.ButtonFlags_.mouse_button_left | imgui.ButtonFlags_.mouse_button_right
 ANY_BUTTON = LEFT_OR_RIGHT | imgui.ButtonFlags_.mouse_button_middle
-# By their names in the table of shortcuts; a line parts two groups.
+# Names in the table of actions. A separator splits two groups.
 CANVAS = (
     ("insert key", "copy", "paste", "paste flipped"),
     ("suggest handles", "select all", "move"),
@@ -57,9 +57,9 @@ DEPTHS = {"In front": 1.0, "In its usual order": 0.0, "Behind": -1.0}
 def draw_viewport_pictures(
     session: Session, project: Project, pictures: SplitTextures
 ) -> list[Action]:
-    """Show the pictures that were drawn of the project.
+    """Show the project's pictures.
 
-    Where the viewport is divided into two, `pictures` has the other method's picture, too.
+    In a split viewport, `pictures` also has the compared method's picture.
     """
     parts = divide_viewport(session, imgui.get_window_pos(), imgui.get_window_size())
     if (
@@ -74,7 +74,7 @@ def draw_viewport_pictures(
 def draw_viewport_panel(
     session: Session, look: Look, project: Project, pictures: SplitTextures
 ) -> list[Action]:
-    """Show what lies over the pictures, and take what the pointer does there."""
+    """Draw the overlays over the pictures, and handle the pointer."""
     corner, whole = imgui.get_window_pos(), imgui.get_window_size()
     parts, actions = divide_viewport(session, corner, whole), list[Action]()
     if project.layer_runtime.shown is None or pictures.own is None or min(parts.room) < 1:
@@ -82,8 +82,8 @@ def draw_viewport_panel(
     screen = ScreenMapping(session, project, project.layer_runtime.shown, corner)
     if session.cutting is None:
         draw_camera_frame(look, project, screen, (corner, parts.room))
-    # Before the canvas: what comes first gets the pointer. Were they laid over it, a press in the
-    # frame in which the pointer arrives would be the canvas's, or nobody's.
+    # Before the canvas: the first item under the pointer takes the press. If the buttons came
+    # later, the canvas or no item would take a press in the frame in which the pointer arrives.
     with imgui_ctx.push_clip_rect(corner, corner + parts.room, True):  # noqa: FBT003 - within its own
         actions += draw_recording_bar(look, project, corner)
         handles = _add_handle_buttons(session, look, screen)
@@ -128,7 +128,7 @@ def draw_viewport_panel(
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:
-    """Let the picture have as many pixels as it has room for."""
+    """Resize the picture to the pixels of its room."""
     width, height = (max(1, round(side * pixel_density())) for side in room)
     return (
         [] if (width, height) == session.screen else [do(viewing.set_viewport_size, width, height)]
@@ -138,19 +138,19 @@ def _fit(session: Session, room: ImVec2) -> list[Action]:
 def _update_hint(
     session: Session, screen: ScreenMapping, spot: PointerHit, *, is_over: bool
 ) -> list[Action]:
-    """Say what can be done where the pointer is; none of the rows of layers is below it then."""
+    """Set the hint for the place under the pointer. No row of layers is under it."""
     actions = [do(layering.reset_tree_rows)] if is_over and screen.project.lingering else []
     hint = find_hint(session, screen, spot) if is_over else ""
     return actions if hint == session.hint else [*actions, do(tool_pointer.show_hint, hint)]
 
 
 def _is_canvas_pressed() -> bool:
-    """Tell whether the canvas, the last item, was pressed, and not to move the view."""
+    """Return whether the canvas, the last item, was pressed, and not to move the view."""
     return is_pressed() and not imgui.is_key_down(imgui.Key.space)
 
 
 def _navigate(screen: ScreenMapping) -> list[Action]:
-    """Pan by the middle button or Space and the left one; zoom by the wheel at the pointer."""
+    """Pan with the middle button, or Space and the left button. Zoom with the wheel."""
     io, view = imgui.get_io(), screen.view
     if not (imgui.is_window_hovered() or imgui.is_item_active()):
         return []
@@ -166,25 +166,25 @@ def _navigate(screen: ScreenMapping) -> list[Action]:
 
 
 class _Handles(NamedTuple):
-    """The handle under the pointer, whether it was pressed, and what menus of handles ask for."""
+    """The handle under the pointer, whether it was pressed, and the actions of handle menus."""
 
     hovered: int | None
-    at_target: bool  # whether the pointer is where that is wanted, and not where it is
+    at_target: bool  # whether the pointer is on the handle's target and not on the handle
     is_pressed: bool
     actions: list[Action]
 
 
 def _shows_handles(session: Session, project: Project) -> bool:
-    """Tell whether handles and bones are seen: not while it plays, nor over the picture at rest.
+    """Return whether handles and bones are visible: not during playback, nor in the rest picture.
 
-    While a motion is drafted its joints are in their place.
+    While a motion preset is set up, its joints replace the handles.
     """
     is_away = project.playhead.since is not None or project.motion_setup is not None
     return session.overlays.handles and session.cutting is None and not is_away
 
 
 def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> _Handles:
-    """Lay a button over each handle, and over where it is wanted if it has not arrived there."""
+    """Lay a button over each handle, and over its target if the handle has not arrived there."""
     hovered, at_target, pressed, actions = None, False, False, list[Action]()
     if not _shows_handles(session, screen.project):
         return _Handles(hovered, at_target, pressed, actions)
@@ -195,7 +195,7 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
     grips += [("handle", identity) for identity in identities]
     places = np.array([*targets.values(), *shown.handle_positions], np.complex128)
     points = screen.points(shown.placement.apply(places))
-    # The one that is drawn last lies on top.
+    # The mark that is drawn last lies on top.
     for (what, identity), point in reversed(list(zip(grips, points, strict=True))):
         imgui.set_cursor_screen_pos(point - radius)
         imgui.invisible_button(f"{what} {identity}", radius * 2, LEFT_OR_RIGHT)
@@ -206,14 +206,14 @@ def _add_handle_buttons(session: Session, look: Look, screen: ScreenMapping) -> 
             imgui.open_popup(f"menu of handle {identity}")
             if identity not in screen.project.selected_handles:
                 actions.append(do(editing.select_handles, frozenset({identity})))
-    # What is shown may still be of a layer from before the last edit.
+    # The shown frame may predate the last edit of the layer.
     for handle in screen.project.layer.handles:
         actions += _handle_menu(session, screen, handle)
     return _Handles(hovered, at_target, pressed, actions)
 
 
 def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
-    """Draw the menu of the canvas, if it is open; a right click opens it where it is pointed."""
+    """Draw the canvas menu if it is open. A right click on the canvas opens it."""
     is_free = is_pointed and session.active_tool is None and session.cutting is None
     if is_free and imgui.is_mouse_clicked(imgui.MouseButton_.right):
         imgui.open_popup("menu of the canvas")
@@ -230,14 +230,14 @@ def _canvas_menu(session: Session, *, is_pointed: bool) -> list[Action]:
 
 
 def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> list[Action]:
-    """Draw the menu of a handle, if it is open: what it does is done with all that are selected."""
+    """Draw a handle's menu if it is open. Its actions apply to all selected handles."""
     actions: list[Action] = []
     layer, identity = screen.project.layer, handle.id
     if not imgui.begin_popup(f"menu of handle {identity}"):
         return actions
     chosen = screen.project.selected_handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
-    item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
+    item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
     if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, "click")):
         actions.append(do(posing.remove_handles, chosen))
     actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
@@ -255,7 +255,6 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
 
 
 def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
-    """Draw how firmly it holds."""
     if not imgui.begin_menu("Hold"):
         return []
     weigh = handle_commands.set_handle_weight
@@ -269,7 +268,7 @@ def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
 
 
 def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Action]:
-    """Draw whether it is painted in front where the drawing lies over itself."""
+    """Draw the handle's depth: in front or behind where the drawing overlaps itself."""
     if not imgui.begin_menu("Depth"):
         return []
     front = editing.depth_at_playhead(session, screen.project, handle)

@@ -1,4 +1,4 @@
-"""The window itself: its loop, its frame, and the panels put together.
+"""The window: its loop, its frame, and all panels.
 
 In: the system's events.
 Out: a running window.

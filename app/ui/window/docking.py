@@ -1,4 +1,4 @@
-"""What is docked around the viewport: how large it is, and how its tabs are written."""
+"""The docks around the viewport: their sizes, and the labels of their tabs."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -8,32 +8,32 @@ from imgui_bundle import ImVec2, hello_imgui, imgui
 from app.ui.panel import Panel, is_in_front
 from app.ui.style import FONT_SIZE
 
-SIDE, BOTTOM = 30.2, 12.2  # em: what tabs and timeline take at first
-BARS = (2.7, 4.4)  # em: what the bars around them take of the window
-MOST = (0.52, 0.45)  # parts of the window's width and height that they may take
+SIDE, BOTTOM = 30.2, 12.2  # em: initial size of the tabs at the side, and of the timeline
+BARS = (2.7, 4.4)  # em: width and height of the bars around the docks
+MOST = (0.52, 0.45)  # largest share of the window's width and height for tabs and timeline
 
 
 class _SizeRequest(NamedTuple):
-    """A size in pixels at a scale of 1, and the part of the window that it may take at most."""
+    """A size in pixels at scale 1, and the largest share of the window."""
 
     size: float
     most: float
 
 
 class Docking:
-    """Keeps what is docked as large in em as the person made it, and tabs as wordy as fits."""
+    """Keeps the docks' sizes in em as the person set them, and tab labels as long as fits."""
 
     def __init__(self, panels: Sequence[Panel]) -> None:
         self._panels = panels
         self._names = [panel.label for panel in panels]
         self._tabs: tuple[object, ...] = ()
-        # By node: the size in pixels that it was given, and what it is to have.
+        # By node: its present size in pixels, and its requested size.
         self._given: dict[int, float] = {}
         self._requests: dict[int, _SizeRequest] = {}
         self._scale = 1.0
 
     def begin_frame(self, scale: float) -> None:
-        """Fit sizes and tabs to the window and the interface's scale."""
+        """Fit sizes to the window and the interface scale."""
         layout = hello_imgui.get_runner_params().docking_params
         room = imgui.get_io().display_size
         layout.docking_splits = _splits(room, scale * FONT_SIZE)
@@ -45,7 +45,7 @@ class Docking:
         self._scale = scale
 
     def draw_tabs(self) -> None:
-        """Choose what tabs say in the next frame; name the pointed one where it is but an icon."""
+        """Choose the labels of the next frame. A tab with only an icon has its title as tooltip."""
         shown = hello_imgui.get_runner_params().docking_params.dockable_windows
         windows = self._windows()
         nodes = [None if window is None else window.dock_node for window in windows]
@@ -71,7 +71,7 @@ class Docking:
     def _fit(self, node: imgui.internal.DockNode, axis: int, room: float, scale: float) -> None:
         size = node.size_ref[axis]
         if abs(size - self._given.get(node.id_, -1.0)) > 1.0:
-            # A person moved its edge, as far as they like, or it is new.
+            # The node is new, or a person moved its edge. A person may exceed the largest share.
             before = self._scale if node.id_ in self._given else scale
             self._requests[node.id_] = _SizeRequest(size / before, max(MOST[axis], size / room))
         wish = self._requests[node.id_]
@@ -88,9 +88,9 @@ class Docking:
         node: imgui.internal.DockNode,
         nodes: Sequence[imgui.internal.DockNode | None],
     ) -> str:
-        """Return the fullest of the panel's labels with which all tabs beside it fit.
+        """Return the longest label of the panel with which all tabs in its node fit.
 
-        Where not all titles do, the tab in front has its own, and others as far as there is room.
+        If not all titles fit, the front tab has its title, and others while there is room.
         """
         together = [
             other
@@ -110,7 +110,7 @@ class Docking:
             for other in together
         }
         left = room - sum(icon + around for _, icon in widths.values())
-        # The one in front first, then the others in their order.
+        # The front tab first, then the others in order.
         for other in sorted(together, key=lambda each: is_in_front(each.title), reverse=True):
             title, icon = widths[other]
             left -= title - icon
@@ -120,7 +120,6 @@ class Docking:
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:
-    """Return how a new layout is divided."""
     side = min(SIDE * em, MOST[0] * room.x) / max(room.x - BARS[0] * em, 1.0)
     bottom = min(BOTTOM * em, MOST[1] * room.y) / max(room.y - BARS[1] * em, 1.0)
     return [
@@ -132,7 +131,7 @@ def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:
 def _sides(
     windows: Sequence[imgui.internal.Window | None],
 ) -> Iterator[tuple[imgui.internal.DockNode, int]]:
-    """Return what was split off the centre, outermost, and the axis (0 or 1) of its size."""
+    """Yield the nodes around the centre, outermost first, and the axis (0 or 1) of their size."""
     seen: set[int] = set()
     for window in windows:
         node = None if window is None else window.dock_node
@@ -149,7 +148,6 @@ def _sides(
 
 
 def _upwards(node: imgui.internal.DockNode | None) -> Iterator[imgui.internal.DockNode]:
-    """Return a node and what it is a part of."""
     while node is not None:
         yield node
         node = node.parent_node

@@ -10,12 +10,12 @@ from glfw.library import glfw  # isort: skip
 
 
 def accept_files(window: object, take: Callable[[list[Path]], None]) -> object:
-    """Hand over the files that are dropped on a window, as long as what is returned is kept."""
+    """Call `take` with the files dropped on a window. Keep the returned object alive meanwhile."""
 
     def dropped(_: object, count: int, names: Sequence[bytes]) -> None:
         take([Path(os.fsdecode(names[i])) for i in range(count)])
 
-    # By glfw.set_drop_callback, a name that is not UTF-8 would end the program.
+    # glfw.set_drop_callback would end the program at a name that is not UTF-8.
     listen = glfw.glfwSetDropCallback  # type: ignore[union-attr]  # it is there by now
     callback = listen.argtypes[1](dropped)
     listen(window, callback)

@@ -8,11 +8,11 @@ from app.export import FrameRenderer, MeshExport
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer
 
-BUDGET = 0.02  # seconds of each frame of the window
+BUDGET = 0.02  # seconds per frame of the window
 
 
 class Exporter:
-    """Owner of what an export that is under way draws with, by the window's renderer."""
+    """Owner of the renderer and the generator of the running export."""
 
     def __init__(self, renderer: Renderer) -> None:
         self._context = renderer.programs.context
@@ -21,7 +21,7 @@ class Exporter:
         self._steps: Generator[int] | None = None
 
     def step(self, session: Session) -> None:
-        """Draw some frames of the session's export; end one that was cancelled."""
+        """Draw some frames of the session's export. Release the export if it was cancelled."""
         run = session.export
         if run is None or run.plan is not self._plan:
             self.release()
@@ -34,7 +34,7 @@ class Exporter:
             exporting.report_failed_export(session, error)
 
     def release(self) -> None:
-        """End the export that is under way; whole frames stay, and what is prepared is left."""
+        """End the running export. Complete frames stay."""
         if self._steps is not None:
             self._steps.close()
         if isinstance(self._maker, FrameRenderer):
@@ -52,7 +52,7 @@ class Exporter:
         drawn = run.done
         for done in self._steps:
             exporting.update_export_progress(session, run, done)
-            # Nothing new: the other threads are at work.
+            # No new frame is ready: the other threads are still at work.
             if done == drawn or session.clock() - begun >= BUDGET:
                 return
             drawn = done

@@ -1,4 +1,4 @@
-"""The frame guard: a part of the window that raises is replaced by a notice; the others go on."""
+"""The frame guard: a notice replaces a part of the window that raises; the others go on."""
 
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
@@ -9,10 +9,10 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx,
 from app.editor import Action, Session, do, error_reports
 from app.ui.style import Look, draw_tooltip, small_text
 
-OWN_CLIPS = 2  # clip rectangles of a window itself
-PAUSE = 1.0  # seconds after which a step that failed is tried again
-WIDTH = 24.0  # em: of a notice that is in no panel
-MOST_SHOWN = 1500  # characters of a traceback; all of it can be copied
+OWN_CLIPS = 2  # clip rectangles that belong to a window itself
+PAUSE = 1.0  # seconds before a failed step is tried again
+WIDTH = 24.0  # em: width of a notice outside panels
+MOST_SHOWN = 1500  # characters of a traceback on the screen; the button copies all of it
 FRAME = imgui.ChildFlags_.auto_resize_y | imgui.ChildFlags_.borders
 ALONE = (
     imgui.WindowFlags_.always_auto_resize
@@ -23,7 +23,7 @@ TRY_AGAIN, COPY, REPORT, CLOSE, DETAILS = "Try again", "Copy", "Report…", "Clo
 
 
 def allow_recovery() -> None:
-    """Let Dear ImGui close what a broken panel left open, instead of asserting in every frame."""
+    """Let Dear ImGui close the open scopes of a broken panel. By default it would assert."""
     io = imgui.get_io()
     io.config_error_recovery = True
     io.config_error_recovery_enable_assert = False
@@ -32,13 +32,13 @@ def allow_recovery() -> None:
 
 
 def format_failure(name: str) -> str:
-    """Say that a part of the window failed."""
+    """The title of the notice about a failed part."""
     return f"{name} cannot be shown; the rest works, and your work can be saved."
 
 
 @dataclass(frozen=True, slots=True)
 class _Failure:
-    """What failed: the state that it failed in, the clock's seconds then, and the traceback."""
+    """A failure: the state that caused it, its time in clock seconds, and the traceback."""
 
     state: tuple[object, ...]
     at: float
@@ -47,23 +47,23 @@ class _Failure:
 
 @dataclass(slots=True, eq=False)
 class WindowPart:
-    """A part of the window's frame, which draws a notice in its place while it fails.
+    """A part of the window's frame. A notice replaces it after a failure.
 
-    A part that failed is drawn again once the document, the selection or the session has changed
-    and neither a button of the mouse is down nor the animation plays, or where the person asks.
+    A failed part is drawn again when the person asks, or once the document, the selection or the
+    session has changed. While a mouse button is down or the animation plays, the part waits.
     """
 
-    name: str  # as a sentence begins with it
+    name: str  # as the subject of a sentence
     draw: Callable[[Session, Look], list[Action]]
     _: KW_ONLY
-    # Where its notice is: in a "panel", in a "menu", behind a button in a "bar", or in a "window"
-    # of its own.
+    # Place of the notice: in a "panel", in a "menu", behind a button in a "bar", or in its own
+    # "window".
     place: Literal["panel", "menu", "bar", "window"] = "panel"
-    dismissal: Action | None = None  # what closes the part, where it can be closed
+    dismissal: Action | None = None  # closes the part; None if it cannot be closed
     failure: _Failure | None = None
 
     def draw_guarded(self, session: Session, look: Look) -> list[Action]:
-        """Draw the part, or else its notice; return what the person asked for."""
+        """Draw the part, or its notice after a failure. Return the person's actions."""
         failure = self.failure
         if failure is not None and (_is_moving(session) or failure.state == _state(session)):
             return self._show_notice(failure, look)
@@ -80,7 +80,7 @@ class WindowPart:
         return actions
 
     def try_again(self) -> None:
-        """Draw the part in the next frame, though nothing has changed."""
+        """Draw the part in the next frame, even if nothing has changed."""
         self.failure = None
 
     def _fail(self, session: Session, error: Exception) -> None:
@@ -118,7 +118,7 @@ class WindowPart:
         return actions
 
     def _notice(self, failure: _Failure, look: Look, width: float) -> list[Action]:
-        """Write what failed; lines end at the window's edge, or are so wide."""
+        """Draw the notice. Lines wrap at `width` pixels, or at the window's edge."""
         actions: list[Action] = []
         imgui.push_id(self.name)
         imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width if width else 0.0)
@@ -145,10 +145,10 @@ class WindowPart:
 
 @dataclass(slots=True, eq=False)
 class FrameStep:
-    """Something that each frame does unasked; where it fails, it rests for a while.
+    """A step of every frame that no person asks for. After a failure it pauses.
 
-    It is done again once the document, the selection or the session has changed, at most `PAUSE`
-    seconds later.
+    It runs again once the document, the selection or the session has changed, and after `PAUSE`
+    seconds at the latest.
     """
 
     run: Callable[[], None]
@@ -156,7 +156,7 @@ class FrameStep:
     failure: _Failure | None = None
 
     def run_guarded(self, session: Session) -> None:
-        """Do it, unless it failed just now; tell of a failure."""
+        """Run the step, unless it failed recently. Report a failure."""
         failure = self.failure
         if failure is not None:
             rests = session.clock() - failure.at < PAUSE
@@ -172,31 +172,31 @@ class FrameStep:
 
 
 def _restore(stacks: imgui.internal.ErrorRecoveryState, around: imgui.internal.Window) -> None:
-    """Close all that a part has left open in the window around it, or in windows of its own."""
+    """Close all ImGui scopes that a part left open, in its own windows and in the window around."""
     plots = implot.get_current_context()
     if plots is not None and plots.current_plot is not None:
         implot.internal.reset_ctx_for_next_plot(plots)
-    # Recovery would end the menu bar that a part is in, too.
+    # Recovery would also end the menu bar around the part.
     in_bar, around.dc.menu_bar_appending = around.dc.menu_bar_appending, False
-    # A menu that was open before may lack the clip rectangle that ending it takes off.
+    # A menu that was open before may lack the clip rectangle that its end pops.
     clips = imgui.get_window_draw_list()
-    if clips._clip_rect_stack.size() < OWN_CLIPS:  # noqa: SLF001 - nothing else tells of it
+    if clips._clip_rect_stack.size() < OWN_CLIPS:  # noqa: SLF001 - there is no public way
         clips.push_clip_rect_full_screen()
     imgui.internal.error_recovery_try_to_recover_state(stacks)
     around.dc.menu_bar_appending = in_bar
     if imgui.get_current_context().open_popup_stack.size():
-        # A popup that nobody draws any more would keep the pointer from everything else.
+        # A popup that is no longer drawn would block the pointer everywhere else.
         imgui.internal.close_popup_to_level(0, restore_focus_to_window_under_popup=True)
 
 
 def _is_moving(session: Session) -> bool:
-    """Tell whether what is shown changes with every frame: in a drag, and while it plays."""
+    """Return whether the shown frame changes all the time: during a drag and during playback."""
     project = session.project
     return imgui.is_any_mouse_down() or (project is not None and project.playhead.since is not None)
 
 
 def _state(session: Session) -> tuple[object, ...]:
-    """Return all that parts of the window show, but for what the clock alone changes."""
+    """Return all state that parts of the window show, except the clock."""
     project = session.project
     own = (
         *(

@@ -1,8 +1,8 @@
-"""Input in the order in which it came: what one picture may know of it, and what the next one.
+"""Input in its order: some events belong to this frame, the rest to the next frame.
 
-Dear ImGui lets a picture know of a move and of the press after it at once. But tabs, and whatever
-lies over something else, take a press only where a picture before it has shown the pointer on them:
-a tap of a pen, which comes in the same moment as its place, would be nobody's.
+Dear ImGui applies a move and the following press in one frame. But tabs and overlapping items
+take a press only if an earlier frame had the pointer over them. A tap of a pen moves and presses
+at the same moment, so it would hit nothing.
 """
 
 from imgui_bundle import hello_imgui, imgui
@@ -11,12 +11,12 @@ Event = imgui.internal.InputEventType
 
 
 class InputQueue:
-    """Holds back what is for the next picture, while Dear ImGui takes what is for this one.
+    """Holds back the events of the next frame while Dear ImGui takes those of this frame.
 
     Attributes
     ----------
-    are_left : bool
-        Whether there is input that this picture does not know of.
+    has_pending : bool
+        Whether some input has not reached Dear ImGui yet.
     """
 
     def __init__(self) -> None:
@@ -25,14 +25,14 @@ class InputQueue:
         self.has_pending = False
 
     def hold_events(self) -> None:
-        """Take from the events that wait those that are not for this picture."""
+        """Remove the events of the next frame from the queue."""
         queue = imgui.get_current_context().input_events_queue
         self._all, self._due = imgui.ImVector_InputEvent(queue), _due(queue)
         while queue.size() > self._due:
             queue.pop_back()
 
     def release_events(self) -> None:
-        """Let them wait behind what Dear ImGui has left; the next picture comes at once."""
+        """Put the held events behind those that Dear ImGui left. Request the next frame at once."""
         queue = imgui.get_current_context().input_events_queue
         for number in range(self._due, self._all.size()):
             queue.push_back(self._all[number])
@@ -43,10 +43,10 @@ class InputQueue:
 
 
 def _due(events: imgui.ImVector_InputEvent) -> int:
-    """Return how many of some events are for one picture.
+    """Return how many events belong to one frame.
 
-    A press waits until the pointer has been seen at its place. While Ctrl, Shift or Alt is held,
-    keys come one by one: let go in the same moment, it would be missing from the chord before.
+    A press waits for the frame after the pointer arrived. While Ctrl, Shift or Alt is held, each
+    key has its own frame. Otherwise a modifier released at the same moment would be lost.
     """
     io = imgui.get_io()
     is_down, has_moved, has_key = any(io.mouse_down), False, False

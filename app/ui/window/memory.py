@@ -1,7 +1,7 @@
-"""Memory that is free, given back to the system.
+"""Returns free memory to the system.
 
-The GNU C library keeps what threads have freed, each thread's apart and in pieces: without this,
-each large drawing that is opened after another, and each export, takes more memory.
+The GNU C library keeps freed memory of each thread, in pieces. Without this module, each large
+drawing that is opened and each export would take more memory.
 """
 
 import ctypes
@@ -10,23 +10,23 @@ import sys
 from app.editor import Session
 
 REST = 1.0  # seconds
-WORK = 4.0  # seconds from one time to the next, while workers go on unwatched
-ARENA_MAX = -8  # the C library's number for it
+WORK = 4.0  # seconds from one time to the next, while workers run and the person does nothing
+ARENA_MAX = -8  # number of the option in the C library
 
 
 class FreeMemory:
-    """What a closed project and finished work have left free, given back to the system."""
+    """Returns memory to the system after a project was closed or work has finished."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._due: float | None = None  # none before there is work
+        self._due: float | None = None  # None before the first work
         self._given = 0.0
 
     def update(self, *, has_closed: bool) -> None:
-        """Give it back when a project `has_closed` or nothing went on for a while; once a frame.
+        """Return memory when a project `has_closed` or after a pause; once a frame.
 
-        It takes some 10 ms after an export or a drag, which nobody sees in a picture that rests;
-        now and then, too, while much is prepared.
+        The call takes some 10 ms after an export or a drag, invisible while the picture rests.
+        During long preparation it also runs from time to time.
         """
         session, project, now = self._session, self._session.project, self._session.clock()
         is_playing = project is not None and project.playhead.since is not None
@@ -49,21 +49,20 @@ class FreeMemory:
 
 
 def limit_arenas() -> None:
-    """Let all threads take memory from one heap; call it before there are others.
+    """Make all threads share one heap. Call this before other threads start.
 
-    Of a thread's own heap, the C library gives back only what is free between two pieces in use,
-    and not what is above them, which may be 64 MB for each.
+    Of a thread's own heap, the C library returns only free memory between two used pieces. The
+    memory above them stays, up to 64 MB a thread.
     """
     _call("mallopt", ARENA_MAX, 1)
 
 
 def trim_heap() -> None:
-    """Give all memory that is free back to the system."""
     _call("malloc_trim", 0)
 
 
 def _call(name: str, *arguments: int) -> None:
-    """Call a function of the C library, where it has one of this name."""
+    """Call a function of the C library, if it exists."""
     if sys.platform == "linux":
         function = getattr(ctypes.CDLL(None), name, None)
         if function is not None:

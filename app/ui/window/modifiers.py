@@ -1,7 +1,7 @@
-"""Modifiers whose release the window was not told of, as where a window manager took Alt+F4.
+"""Modifiers whose release the window did not receive, as when a window manager took Alt+F4.
 
-While another program has grabbed the keyboard, X11 tells nobody else of keys, and GLFW takes the
-end of a grab for no change of focus: a key that was let go meanwhile stays pressed for it.
+While another program grabs the keyboard, X11 sends its keys to no other window, and GLFW sees no
+change of focus when the grab ends. GLFW then still treats a released key as pressed.
 """
 
 import ctypes
@@ -15,7 +15,7 @@ import glfw  # isort: skip
 
 
 class _Modifier(NamedTuple):
-    """A key of GLFW, its symbol in X11, and its bit in the state of the pointer."""
+    """A key of GLFW, its X11 symbol, and its bit in the state of the pointer."""
 
     key: int
     symbol: int
@@ -37,7 +37,7 @@ KEY_RELEASE, KEY_RELEASE_MASK = 3, 1 << 1
 
 
 class _KeyEvent(ctypes.Structure):
-    """X11's XKeyEvent, with the room of the union of all events."""
+    """X11's XKeyEvent, padded to the size of the union of all events."""
 
     _fields_ = (
         ("type", ctypes.c_int),
@@ -74,7 +74,7 @@ def _x11() -> Any:
 
 
 def _held(library: Any, display: int, window: int) -> int:
-    """Return the bits of all modifiers that are held, as the server has them."""
+    """Return the bits of all held modifiers, from the X server."""
     root, child, state = ctypes.c_ulong(), ctypes.c_ulong(), ctypes.c_uint()
     places = [ctypes.c_int() for _ in range(4)]
     answers = (root, child, *places, state)
@@ -83,9 +83,9 @@ def _held(library: Any, display: int, window: int) -> int:
 
 
 def release_stuck_modifiers() -> None:
-    """Let GLFW know of modifiers that it takes to be held though they are not; once a frame.
+    """Release the modifiers that GLFW wrongly treats as held; once a frame.
 
-    Other systems tell each window what is held when it gets the keyboard back.
+    On other systems, each window receives the held modifiers when it gets the keyboard back.
     """
     if glfw.get_platform() != glfw.PLATFORM_X11:
         return

@@ -1,4 +1,4 @@
-"""What the window is called."""
+"""The window's title."""
 
 from app.editor import Session
 from app.errors import display_name
@@ -7,7 +7,7 @@ NAME = "Lissom"
 
 
 def window_title(session: Session) -> str:
-    """Return the name of what is open, marked by a star while it has changes that are not saved."""
+    """Return the name of the open project, with a star if it has unsaved changes."""
     project = session.project
     if project is None:
         return NAME

@@ -1,4 +1,4 @@
-"""The window: the session, what is drawn with OpenGL, and the loop around them."""
+"""The window: the session, its OpenGL objects, and the main loop."""
 
 import io
 import os
@@ -41,32 +41,32 @@ from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 
 SIZE = (1280, 800)
-APPLICATION = "lissom"  # the name of its desktop entry
-PAUSE = 0.1  # seconds between frames that only tell how long something takes
+APPLICATION = "lissom"  # the name of the program's desktop entry
+PAUSE = 0.1  # seconds between frames that only update the time of a job
 ICON_SIDES = (16, 32, 64)  # pixels
-# Where the display of X11 or Wayland is named.
+# Environment variables that name the display of X11 or Wayland.
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 
 
 def has_display() -> bool:
-    """Tell whether there is a screen for the window, as far as the environment says."""
+    """Return whether the environment names a screen for the window."""
     return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
 
 
 def _show_icon() -> None:
-    """Give the window its icon, on the systems whose windows bring one."""
+    """Set the window's icon, on systems where a program provides it."""
     if glfw.get_platform() not in {glfw.PLATFORM_X11, glfw.PLATFORM_WIN32}:
         return
     with Image.open(io.BytesIO(app_icon())) as icon:
         pictures = [np.asarray(icon.resize((side, side))) for side in ICON_SIDES]
-    # As lists, which glfw takes apart much faster than arrays.
+    # As lists, because glfw reads them much faster than arrays.
     images = [(*picture.shape[:2], picture.tolist()) for picture in pictures]
     window = glfw_utils.glfw_window_hello_imgui()
     glfw.set_window_icon(window, len(images), images)  # type: ignore[arg-type]  # tuples of theirs
 
 
 def _name_application() -> None:
-    """Tell the desktop whose window it will be, so that it finds its entry in the menu."""
+    """Set the window's application name, so that the desktop finds its menu entry."""
     glfw.init()
     glfw.window_hint_string(glfw.WAYLAND_APP_ID, APPLICATION)
     glfw.window_hint_string(glfw.X11_INSTANCE_NAME, APPLICATION)
@@ -79,7 +79,7 @@ class Window:
     Parameters
     ----------
     connect : callable
-        Returns a renderer for the window's OpenGL context, once ImGui has made it.
+        Called once ImGui has made the OpenGL context.
     """
 
     def __init__(self, session: Session, connect: Callable[[], Renderer]) -> None:
@@ -91,7 +91,7 @@ class Window:
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
         self.shell = WindowFrame(session, self._panels(), self._thumbnail, self._moments)
-        # Whether the viewport's picture is drawn; a test that takes no picture does without.
+        # Whether the viewport is painted. Tests without a picture set it to False.
         self.paints = True
         self._memory = FreeMemory(session)
         self._draw_step = FrameStep(self._paint, self._report_drawing_error)
@@ -101,7 +101,6 @@ class Window:
         self._dropped: object = None
 
     def runner_params(self) -> hello_imgui.RunnerParams:
-        """Return the parameters to run the window with."""
         params = self.shell.runner_params()
         calls = params.callbacks
         calls.enqueue_post_init(self._start)
@@ -128,15 +127,15 @@ class Window:
         Parameters
         ----------
         is_over : callable
-            Tells, once a frame, whether the window is to close without a question.
+            Asked once a frame. If true, the window closes without a question.
         farewell : callable
-            Called before anything is taken down, which may hang or crash; also where an exception
-            ends the window, and nothing is taken down any more.
+            Called before all objects are released, because the release may hang or crash. Also
+            called if an exception ends the window; then nothing is released.
 
         Raises
         ------
         LissomError
-            If there is no screen that it can be opened on.
+            If there is no screen.
         """
         params = self.runner_params()
         params.app_window_params.window_title = self._title
@@ -150,7 +149,7 @@ class Window:
         params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
         ini = str(self.session.folder / "window.ini")
         params.ini_filename = display_name(ini)
-        params.ini_disable = params.ini_filename != ini  # a name that ImGui cannot write to
+        params.ini_disable = params.ini_filename != ini  # ImGui writes only UTF-8 names
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
         _name_application()
@@ -176,7 +175,7 @@ class Window:
         hello_imgui.manual_render.tear_down()
 
     def wake(self) -> None:
-        """Let a window that waits for events go through a frame; any thread may ask for it."""
+        """Wake the window from waiting for events, for one frame. Any thread may call this."""
         if self._is_open:
             glfw.post_empty_event()
 
@@ -186,17 +185,17 @@ class Window:
         return self.shell.awaits_worker and not self._input_queue.has_pending
 
     def queue_action(self, action: Action) -> None:
-        """Do something in the next frame, as if a panel had asked for it."""
+        """Apply an action in the next frame, as if a panel had returned it."""
         self.shell.queue_action(action)
 
     def draw_canvas(self) -> None:
-        """Draw the viewport's picture, and go on with an export; once a frame."""
+        """Draw the viewport's picture, and continue an export; once a frame."""
         if self.canvas is None or self._renderer is None:
             return
         self._draw_step.run_guarded(self.session)
         if self._exporter is not None:
             self._exporter.step(self.session)
-        # ImGui draws to whatever is bound, and that is to be the screen.
+        # ImGui draws to the bound framebuffer, which must be the screen.
         screen = self._renderer.programs.context.screen
         if screen is not None:
             screen.use()
@@ -207,7 +206,7 @@ class Window:
             self.canvas.draw(self.session, paints=self.paints)
 
     def _report_drawing_error(self, error: Exception) -> None:
-        """Tell that OpenGL fails, as when its driver was reset, and keep the work at once."""
+        """Report that OpenGL fails, as after a driver reset, and save a recovery copy at once."""
         session = self.session
         project = session.project
         kept = ""
@@ -278,16 +277,14 @@ class Window:
         self._layer_pictures = LayerPictures(renderer.programs.context)
 
     def _accept_files(self) -> None:
-        """Open what is dropped on the window."""
         window = glfw_utils.glfw_window_hello_imgui()
         self._dropped = accept_files(window, self.take_dropped)
 
     def take_dropped(self, paths: list[Path]) -> None:
-        """Open what was dropped on the window, or add it to what is open."""
+        """Open the dropped files, or add them to the open project."""
         self.queue_action(do(layering.drop_files, paths))
 
     def _rename(self) -> None:
-        """Name the window after what is open."""
         title = window_title(self.session)
         if title != self._title:
             self._title = title
@@ -310,8 +307,8 @@ class Window:
             hello_imgui.request_refresh()
         self.thumbnails.begin_frame()
         if self.session.project is not None and not isinstance(self.session.dialog, FileDialog):
-            # Only the welcome view and the file browser show them, and until the next time files
-            # may have been saved anew; samples are not.
+            # Only the welcome view and the file browser show thumbnails. Files may have been saved
+            # again before the next time; samples do not change.
             self.thumbnails.release(but=sample_images())
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:

@@ -1,4 +1,4 @@
-"""The window's frame: layout, bars, dialogs, and the one place where actions are applied."""
+"""The window's frame: layout, bars, dialogs, and the one place that applies actions."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -40,14 +40,14 @@ from app.ui.window.docking import Docking
 from app.ui.window.guard import FrameStep, WindowPart, allow_recovery
 from app.ui.window.tutorial import Callout
 
-# Saved layouts of another number are forgotten: they name other panels.
+# A saved layout with another number is ignored, because its panels have other names.
 LAYOUT = 1
-# Input wakes the window at once, and so does all that goes on by itself.
+# Input and running jobs wake the window at once.
 IDLE_FPS = 0.2
-AWAKE = 0.5  # seconds for which it goes on after that, for what it leads to
-REPEATS = 2  # frames after which the next ones would show nothing new
+AWAKE = 0.5  # seconds of full frame rate after that, for its consequences
+REPEATS = 2  # frames after which further frames would show nothing new
 LEFT = imgui.MouseButton_.left
-# What comes of itself, frame by frame, and tells nothing of what the person did.
+# Actions that follow automatically in each frame, and not from the person.
 UNLOGGED = {
     dismiss_toast,
     editing.note_widget_in_use,
@@ -61,7 +61,7 @@ UNLOGGED = {
 
 
 class WindowFrame:
-    """Draws the window's contents from a session, once a frame, and applies what was asked for."""
+    """Draws the window's contents from a session, once a frame, and applies the actions."""
 
     def __init__(
         self,
@@ -77,7 +77,7 @@ class WindowFrame:
         self._themed: tuple[str, float] | None = None
         self._dialogs = Dialogs()
         self.callout = Callout()
-        # Where things are drawn in this frame, and were in the one before.
+        # Rectangles of items in this frame, and in the frame before.
         self._places: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._actions: list[Action] = []
@@ -134,7 +134,7 @@ class WindowFrame:
         ]
 
     def runner_params(self) -> hello_imgui.RunnerParams:
-        """Return what Hello ImGui needs to know; platform and renderer are left to the caller."""
+        """Return Hello ImGui's parameters. The caller sets platform and renderer."""
         params = hello_imgui.RunnerParams()
         window = params.imgui_window_params
         window.default_imgui_window_type = (
@@ -163,20 +163,20 @@ class WindowFrame:
         return params
 
     def queue_action(self, action: Action) -> None:
-        """Do something at the end of the next frame."""
+        """Apply an action at the end of the next frame."""
         self._asked.append(action)
 
     @property
     def awaits_worker(self) -> bool:
-        """Whether frames would only repeat what is shown, and take time from the worker."""
+        """Whether further frames would repeat the shown one and slow down the worker."""
         return self._idle_frames >= REPEATS
 
     def release(self) -> None:
-        """Close what is open beside the window."""
+        """Close the system's dialog."""
         self._dialogs.close()
 
     def run_guarded(self, change: Callable[[], None]) -> None:
-        """Do something; where that fails, tell it, and the window lives on."""
+        """Call a function. Report its failure, and keep the window alive."""
         try:
             change()
         except Exception as error:  # noqa: BLE001 - part of the frame guard
@@ -195,7 +195,6 @@ class WindowFrame:
 
     @property
     def look(self) -> Look:
-        """What panels draw with at present."""
         if self._bold is None:
             raise RuntimeError("the window has no fonts before its first frame")
         preferences = self.session.preferences
@@ -230,7 +229,7 @@ class WindowFrame:
         self._ask(f"The panel {panel.title}")
 
     def _ask(self, name: str) -> None:
-        """Draw a part, and collect what the person asked for."""
+        """Draw a part, and collect its actions."""
         self._actions += self.parts[name].draw_guarded(self.session, self.look)
 
     def _draw_menus(self, *_: object) -> list[Action]:
@@ -257,7 +256,7 @@ class WindowFrame:
         io = imgui.get_io()
         io.config_flags |= imgui.ConfigFlags_.docking_enable
         io.config_windows_move_from_title_bar_only = True
-        # One click on a number edits it: what is typed next is meant for it, and not for shortcuts.
+        # One click on a number edits it. Then typed keys are input and not shortcuts.
         io.config_drag_click_to_input_text = True
         allow_recovery()
         implot.create_context()
@@ -271,7 +270,7 @@ class WindowFrame:
 
     @property
     def _theme(self) -> tuple[str, float]:
-        """What the style depends on: the theme, and how large everything is on this screen."""
+        """The inputs of the style: the theme, and the interface scale on this screen."""
         preferences = self.session.preferences
         return preferences.theme, interface_scale(preferences.scale)
 
@@ -281,10 +280,10 @@ class WindowFrame:
         if self._themed != self._theme:
             self._apply_theme()
         self._docking.begin_frame(interface_scale(session.preferences.scale))
-        # The tabs that show them ask for them in every frame.
+        # The tabs that show these set them again in every frame.
         session.export_frame = session.pointed_layer = None
         playback.stop_playback_at_end(session)
-        # Panels are to see the frame that it is by now.
+        # Before the panels, which read the playhead's frame.
         self._follow.run_guarded(session)
         if _is_busy(session):
             self._awake_until = session.clock() + AWAKE
@@ -295,12 +294,12 @@ class WindowFrame:
         self.run_guarded(self._collect_key_actions)
         for name in self._over:
             self._ask(name)
-        # Where the pointer is down on no widget, that counts as one.
+        # A pressed pointer without a widget counts as a widget.
         widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
         self._actions.append(do(editing.note_widget_in_use, widget))
 
     def _apply_actions(self) -> None:
-        # What panels saw of the pointer comes first: what was dropped there depends on it.
+        # Panels' actions first: a drop depends on the pointer they saw.
         actions, self._actions, self._asked = self._actions + self._asked, [], []
         for action in actions:
             if action.verb not in UNLOGGED:
@@ -309,8 +308,8 @@ class WindowFrame:
         if self.session.panel_to_focus:
             bring_to_front(self.session.panel_to_focus)
             self.session.panel_to_focus = ""
-        # After the actions, so that a pull goes on with the newest wish; before the picture is
-        # drawn, so that it shows at once how far the solver has come.
+        # After the actions, so that a drag continues with the newest target. Before the picture is
+        # drawn, so that the picture has the solver's newest result.
         self.run_guarded(self.session.jobs.deliver)
         for step in self._update_steps:
             step.run_guarded(self.session)
@@ -319,7 +318,7 @@ class WindowFrame:
             hello_imgui.get_runner_params().app_shall_exit = True
 
     def _may_exit(self) -> bool:
-        # The window's own close button; the answer comes as an action.
+        # The close button of the window. The answer follows as an action.
         self._actions.append(do(saving.request_quit))
         return False
 
@@ -327,7 +326,7 @@ class WindowFrame:
 def _with_project(
     draw: Callable[[Session, Look, Project], list[Action]],
 ) -> Callable[[Session, Look], list[Action]]:
-    """Return what draws a part that there is only with a project."""
+    """Return a draw function that does nothing without a project."""
 
     def drawn(session: Session, look: Look) -> list[Action]:
         return draw(session, look, session.project) if session.project else []
@@ -340,10 +339,10 @@ def _welcome(session: Session, look: Look, previews: welcome.Previews) -> list[A
 
 
 def _is_busy(session: Session) -> bool:
-    """Tell whether something changes without the person doing anything."""
+    """Return whether something changes without input."""
     project = session.project
     is_moving = project is not None and project.playhead.since is not None
-    # The system's own dialog has its own input, and is asked for its answer.
+    # The system's dialog has its own input. Its answer is polled.
     asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export is not None
     is_working |= project is not None and bool(project.stale or project.afterwards)
@@ -351,7 +350,7 @@ def _is_busy(session: Session) -> bool:
 
 
 def _awaits_in_between(session: Session) -> bool:
-    """Tell whether something stands in for an in-between, and nothing else goes on."""
+    """Return whether a placeholder stands for an in-between, and nothing else is active."""
     project = session.project
     if project is None or project.playhead.since is not None or session.active_tool is not None:
         return False

@@ -1,7 +1,7 @@
-"""How a handle keeps its own time: whether it stays between keys, its track, what it follows.
+"""The motion of a single handle: auto-pin, track, spring.
 
-In: the handle that is selected.
-Out: actions on its track, its spring, and its stillness.
+In: the selected handle.
+Out: actions on its track, its spring, and its auto-pin.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """
 

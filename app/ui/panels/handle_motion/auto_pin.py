@@ -1,4 +1,4 @@
-"""Whether a handle stays between keys that have it at one place."""
+"""Auto-pin: a handle with equal targets in two keys stays there between them."""
 
 from imgui_bundle import imgui
 
@@ -9,7 +9,7 @@ from app.ui.style import FILL, Look, draw_tooltip, heading, small_text, text_but
 
 
 def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw whether a handle moves freely between keys, and what makes that void."""
+    """Draw whether a handle is free between keys. Offer auto-pin if the layer does not use it."""
     layer, actions = project.layer, list[Action]()
     heading(look, "Between keys")
     changed, free = imgui.checkbox("Free between keys", handle.is_unpinned)

@@ -1,4 +1,4 @@
-"""What a handle follows by: a spring that swings about its place in the motion."""
+"""The spring of a handle, which swings about the handle's place in the motion."""
 
 from dataclasses import replace
 from typing import Any
@@ -31,7 +31,7 @@ STRETCHES = Scale(left=0.0, right=1.0)
 LEAST_FREQUENCY = 0.01  # Hz
 NEAREST = "Nearest handle"
 NO_ROOT = "It swings freely: add a handle where it hangs on, and it keeps its length."
-# Each number of a spring: its field, its label, what it spans, how it is written, what it means.
+# The numbers of a spring: field, label, range, format, explanation.
 NUMBERS = (
     ("frequency", "Frequency", FREQUENCIES, "%.2f", "How often it swings in a second, in Hz"),
     ("damping", "Damping", DAMPINGS, "%.2f", "How soon it comes to rest: 0 never, 1 at once"),
@@ -42,7 +42,6 @@ NUMBERS = (
 
 
 def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw how a handle follows, if it does, and what it swings like."""
     spring, actions = project.layer.spring_of(handle.id), list[Action]()
     heading(look, "Follows", framed=True)
     if spring is not None:
@@ -90,7 +89,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
 
 
 def _allowed(field: str, value: float) -> float:
-    """Return a value that a spring can have."""
+    """Round a number and clamp it to the field's range."""
     least = LEAST_FREQUENCY if field == "frequency" else 0.0
     most = {
         "frequency": 1000.0,
@@ -103,7 +102,7 @@ def _allowed(field: str, value: float) -> float:
 
 
 def _root(look: Look, layer: Layer, spring: Spring) -> list[Action]:
-    """Draw about which handle it swings, and what chooses another one."""
+    """Draw the root handle of the spring, and the menu that chooses another."""
     actions: list[Action] = []
     nearest = spring_root(layer, replace(spring, root=None))
     nearest_name = NEAREST if nearest is None else f"{NEAREST}: {layer.handle(nearest).name}"
@@ -127,6 +126,6 @@ def _set(spring: Spring) -> Action:
 
 
 def _preset(spring: Spring) -> str:
-    """Return the name of the preset that a spring is, if any."""
+    """Return the name of the spring's preset, or ""."""
     own = spring.frequency, spring.damping
     return next((name for name, numbers in SPRING_PRESETS.items() if numbers == own), "")

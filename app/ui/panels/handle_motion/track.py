@@ -1,4 +1,4 @@
-"""The track of a handle: keys of its own, beside those of whole poses."""
+"""The track of a handle: its own keys, in addition to pose keys."""
 
 import math
 from dataclasses import replace
@@ -25,12 +25,11 @@ from app.ui.style import (
 )
 
 REACHES = Scale(left=0.0, right=1.0)
-LONGEST = 48  # frames: the delay at the end of the slider, where nothing comes round
+LONGEST = 48  # frames: the longest delay on the slider if the animation does not loop
 KINDS = (("pose", "With the pose"), ("picture", "Planted"))
 
 
 def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
-    """Draw the track of a handle, if it has one."""
     track = project.layer.track_of(handle.id)
     if track is None:
         return []
@@ -50,14 +49,13 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
 
 
 def _together(look: Look, project: Project, track: Track) -> None:
-    """Tell which handles a track moves, if they are several."""
     if len(track.handles) > 1:
         names = ", ".join(project.layer.handle(identity).name for identity in track.handles)
         small_text(look, f"It moves {names} together.")
 
 
 def _here(session: Session, look: Look, project: Project, track: Track) -> list[Action]:
-    """Draw what the track wants in the present frame; what is entered there becomes a key."""
+    """Draw the track's value at the present frame. An entered value becomes a key."""
     actions: list[Action] = []
     frame = playback.current_frame(session, project)
     at = track_at(replace(track, enabled=True), project.clip, frame)
@@ -96,7 +94,7 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
 
 
 def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
-    """Draw whether a track acts, what its keys are places in, and whether they turn the shape."""
+    """Draw whether a track is on, the space of its keys, and whether they rotate the shape."""
     actions: list[Action] = []
     label(look, "Keys are")
     kind = option_buttons(look, "kind", KINDS, "picture" if track.is_scene_space else "pose")
@@ -141,7 +139,7 @@ def _numbers(look: Look, project: Project, handle: Handle, track: Track) -> list
 
 
 def _copies(project: Project, handle: Handle) -> list[Action]:
-    """Draw what gives another handle the same track."""
+    """Draw the menu that copies the track to another handle, and the button that mirrors it."""
     actions: list[Action] = []
     widths, layer = split_line(2), project.layer
     imgui.set_next_item_width(next(widths))
@@ -169,7 +167,7 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
 
 
 def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle) -> None:
-    """Tell by how much the handle misses its track in the present frame, where it does."""
+    """Report the target error of the handle's track at the present frame, if any."""
     frame, corrected = playback.current_frame(session, project), project.layer_runtime.corrected
     miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
     if misses_target(project.layer, miss):

@@ -1,6 +1,6 @@
-"""What a layer is made of: its cut-out, its mesh, its material.
+"""The setup of a layer: cut-out, mesh, material.
 
-In: the layer that is posed.
+In: the active layer.
 Out: actions on these.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """

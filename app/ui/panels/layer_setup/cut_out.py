@@ -1,4 +1,4 @@
-"""Cutting the subject out of its picture: by colour, by brush, knife and mask; and its holes."""
+"""The cut-out of the subject: by colour, brush, knife and mask; and its holes."""
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
@@ -42,7 +42,6 @@ HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
 
 
 def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw what tells the subject from the rest of the picture."""
     cut_out = project.layer.cut_out
     heading(look, "Background")
     actions = _background(session, look, project, cut_out)
@@ -162,7 +161,7 @@ def _holes(session: Session, look: Look, project: Project) -> list[Action]:
 def _tool(
     session: Session, look: Look, tool: CutTool, text: str, hint: str, *, width: float = 0.0
 ) -> list[Action]:
-    """Draw the button of a tool; the one in hand is highlighted, and given back by its button."""
+    """Draw a tool's button. The active tool is highlighted, and its button ends it."""
     palette = look.palette
     is_chosen = session.cutting == tool
     imgui.push_style_color(imgui.Col_.button, palette.accent if is_chosen else palette.raised)

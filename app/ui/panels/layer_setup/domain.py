@@ -1,4 +1,4 @@
-"""The outline, the cage and the mesh: how they are made, and a look at them."""
+"""The outline, the cage and the mesh: settings and display."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -33,7 +33,6 @@ SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
 
 
 def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw what the domain is like, and the settings to build another one."""
     heading(look, "Show")
     actions = _toggles(session.overlays)
     heading(look, "Facts")

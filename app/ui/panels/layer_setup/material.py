@@ -1,4 +1,4 @@
-"""Where the drawing is stiff and where it is soft: a brush, bones, and keys posed again by it."""
+"""Stiff and soft parts of the drawing: brush, bones, and an update of existing keys."""
 
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
@@ -39,7 +39,7 @@ TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
 
 
 def draw_material_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the brush, the bones, and what brings their effect into keys that are there."""
+    """Draw the brush, the bones, and the button that applies both to existing keys."""
     layer = project.layer
     heading(look, "Brush", framed=True)
     align_right(1.15 * imgui.get_frame_height())
@@ -126,7 +126,7 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
 
 
 def _describe_limits(layer: Layer, amount: float) -> str:
-    """Return in words what new poses keep to where a layer is so stiff all around."""
+    """Describe the limits of new poses in a part of this stiffness."""
     if amount <= 1:
         return "It gives way first, within the limits of the layer."
     limits = layer.bounds.scaled_by(np.array([amount]))

@@ -1,4 +1,4 @@
-"""The tab of layers: their tree, and the settings of the one that is posed.
+"""The tab of layers: their tree, and the settings of the active layer.
 
 In: a session.
 Out: actions.

@@ -1,4 +1,4 @@
-"""What of a layer has keys of its own: how opaque it is, where it is as a whole, and its order."""
+"""A layer's opacity, transform and draw order channels."""
 
 import math
 
@@ -31,7 +31,6 @@ HOW = {"right": "goes right", "up": "goes up", "turn": "turns, counter-clockwise
 
 
 def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw how opaque a layer is at a frame, and what keys it there."""
     actions, opacity = [], opacity_at(document, layer, frame)
     label(look, "Opacity")
     hint = "How much of what lies behind is covered"
@@ -55,7 +54,7 @@ def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: in
 def draw_transform_channel(
     document: Document, look: Look, layer: Layer, frame: int
 ) -> list[Action]:
-    """Draw by how much a whole layer is moved and turned at a frame, which keys it there."""
+    """Draw a layer's transform at a frame. A change makes a key there."""
     if layer.has_parent and not layer.transform_keys:
         return []
     actions: list[Action] = []
@@ -95,7 +94,7 @@ def draw_transform_channel(
 
 
 def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw beside which layer a layer is painted from the present frame on."""
+    """Draw the neighbour of a layer in the draw order from the present frame on."""
     others = [each for each in reversed(document.layers) if each is not layer]
     if not others:
         return []

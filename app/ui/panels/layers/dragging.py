@@ -1,4 +1,4 @@
-"""Rows of the tree of layers that are dragged: between others, or onto one."""
+"""Drag and drop of rows in the tree of layers: between other rows, or onto a row."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -6,18 +6,18 @@ from app.document import TreeRow
 from app.editor import Action, Project, do, layering
 from app.ui.style import Look, colour_u32
 
-MOVED = "layer"  # what is dragged from row to row
-ONTO = 0.25  # of a row's height: from where on, at its edges, a drop is beside it
-PULL = 0.25  # em by which the list scrolls in each frame while a row is dragged at its edge
+MOVED = "layer"  # type of the drag-and-drop payload
+ONTO = 0.25  # share of a row's height at each edge in which a drop is beside the row
+PULL = 0.25  # em of scrolling per frame while a row is dragged at the list's edge
 
 
 def drag_layer_row(
     look: Look, project: Project, row: TreeRow, low: ImVec2, high: ImVec2
 ) -> list[Action]:
-    """Let a row, the last item, be dragged between two others, or onto one.
+    """Let the last item, a row, be dragged between two other rows or onto a row.
 
-    Onto a layer it hangs on it, in a group or a choice it is one of them. The row of a group or a
-    choice is dragged with all layers in it, which are chosen then.
+    A drop onto a layer attaches; a drop onto a group or a switch adds a member. The row of a group
+    or a switch selects all its layers and drags them.
     """
     actions: list[Action] = []
     if imgui.begin_drag_drop_source():
@@ -52,12 +52,12 @@ def drag_layer_row(
 
 
 def _dragged(project: Project, identity: int) -> tuple[int, ...]:
-    """Return the layers that are dragged by the row of one: all chosen ones if it is among them."""
+    """Return the dragged layers: all selected layers if the row's is among them."""
     return project.selected_layers if identity in project.selected_layers else (identity,)
 
 
 def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
-    """Return what a drop of layers onto a row does; None where it can do nothing."""
+    """Return the action of a drop onto a row; None if the drop has no effect."""
     dragged = _dragged(project, identity)
     if set(row.layers) <= set(dragged):
         return None
@@ -65,12 +65,12 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
         return do(layering.add_layers_to_group, row.group.name, *dragged)
     if row.switch_group is not None:
         return do(layering.add_to_switch, row.switch_group.name, *dragged)
-    # Where that would be a circle, it says so, and nothing moves.
+    # The action refuses a circle, and reports it.
     return do(layering.attach_layers, row.layers[0], *dragged)
 
 
 def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
-    """Tell whether layers would hang on a row that hangs on one of them."""
+    """Return whether a drop would attach layers to their own descendant."""
     return row.layer is not None and any(
         layering.is_same_or_descendant(project, row.layer.id, each)
         for each in _dragged(project, identity)
@@ -78,7 +78,7 @@ def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
 
 
 def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:
-    """Return what a drop of layers above or below another one does."""
+    """Return the action of a drop above or below another layer."""
     moved = _dragged(project, dragged)
     return (
         [] if identity in moved else [do(layering.move_layers_beside, identity, is_above, *moved)]
@@ -86,7 +86,7 @@ def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) ->
 
 
 def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:
-    """Show where what is dragged comes: a frame around a row, or a line beside it."""
+    """Mark the place of a drop: a frame around a row, or a line beside it."""
     draw_list, colour = imgui.get_window_draw_list(), colour_u32(look.palette.accent)
     thick = 0.14 * look.em
     if is_onto:
@@ -97,7 +97,7 @@ def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: boo
 
 
 def scroll_while_dragged(look: Look, height: float) -> None:
-    """Scroll the list where a row, so many em high, is dragged to its upper or lower edge."""
+    """Scroll the list while a row, `height` em high, is dragged to its upper or lower edge."""
     payload = imgui.get_drag_drop_payload_py_id()
     if payload is None or payload.type != MOVED:
         return

@@ -10,11 +10,11 @@ from app.ui.shortcuts import BINDINGS
 from app.ui.style import draw_tooltip
 
 SOLO = icons.ICON_FA_BINOCULARS
-item = imgui.internal.menu_item_ex  # as menu_item_simple, with icons in a column
+item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
 
 
 def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]:
-    """Draw the menu of a row, the last item; return also whether a name is asked for."""
+    """Draw the menu of the last item, a row. Return also whether rename was chosen."""
     if not imgui.begin_popup_context_item(f"menu of layer {row.key}"):
         return [], False
     asks = item("Rename…", icons.ICON_FA_PEN, BINDINGS["rename layer"].shown_keys)
@@ -29,7 +29,7 @@ def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]
 
 
 def explain_unswitchable_groups(groups: Sequence[str]) -> str:
-    """Return why groups in a group take no turns, and what to do instead."""
+    """Explain why groups in a group cannot be switched, and name the remedy."""
     named = ", ".join(groups)
     return (
         f"Only single layers take turns, and {named} {'has' if len(groups) == 1 else 'have'} "

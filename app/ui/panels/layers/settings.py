@@ -1,4 +1,4 @@
-"""The settings of the layer that is posed: how it is painted, when it is seen, what carries it."""
+"""The settings of the active layer: blending, visibility, and parent."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -36,7 +36,6 @@ NOTHING = "nothing"
 
 
 def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw the settings of a layer at a frame."""
     actions = []
     identity = layer.id
     label(look, "Name")
@@ -81,7 +80,6 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
 
 
 def _group(look: Look, group: Group) -> list[Action]:
-    """Draw the settings of a group that the chosen layer is in."""
     actions = []
     imgui.push_id(group.name)
     name = group.name.rpartition("/")[2]
@@ -99,7 +97,7 @@ def _group(look: Look, group: Group) -> list[Action]:
 
 
 def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw what shows or hides a layer from the present frame on."""
+    """Draw the buttons that show or hide a layer from the present frame on."""
     choice = document.switch_group_of(layer.id)
     if choice is not None:
         return _draw_switch_keys(document, look, choice, layer, frame)
@@ -130,7 +128,7 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
 def _draw_switch_keys(
     document: Document, look: Look, choice: SwitchGroup, layer: Layer, frame: int
 ) -> list[Action]:
-    """Draw which layer of a choice is seen from the present frame on."""
+    """Draw which layer of a switch is visible from the present frame on."""
     actions = []
     label(look, shorten_text(choice.name, (LABEL_WIDTH - 0.5) * look.em))
     seen = with_repeats(document, choice).layer_at(frame)
@@ -148,7 +146,7 @@ def _draw_switch_keys(
 
 
 def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw what a layer hangs on at the present frame, and from which frames on."""
+    """Draw a layer's parent at the present frame, and its attachments over time."""
     document = project.document
 
     def can_carry(other: Layer) -> bool:
@@ -180,7 +178,7 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
 
 
 def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
-    """Draw what lets a layer hang on something else from the present frame on."""
+    """Draw the menu that changes a layer's parent from the present frame on."""
     actions: list[Action] = []
     document, joint = project.document, layer.attachment_key_at(frame)
     now = None if joint is None else joint.parent

@@ -1,4 +1,4 @@
-"""The layers of the scene: which there are, what is in front, what hangs on what."""
+"""The layers of the scene: their draw order, and their parents."""
 
 from imgui_bundle import imgui
 
@@ -17,7 +17,7 @@ _FOLD = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_av
 def draw_layers_panel(
     session: Session, look: Look, project: Project, pictures: SmallPictures
 ) -> list[Action]:
-    """Draw the list of layers with their small pictures, and the settings of the chosen one."""
+    """Draw the list of layers with thumbnails, and the settings of the active layer."""
     actions = _summary(look, project) + _offers(look, project)
     actions += draw_layer_tree(session, look, project, pictures)
     if len(project.document.layers) == 1:
@@ -37,7 +37,7 @@ def draw_layers_panel(
 
 
 def _summary(look: Look, project: Project) -> list[Action]:
-    """Draw what opening the drawing told: what is lost first, and small matters folded."""
+    """Draw the import log: losses first, minor notices folded."""
     summary = project.document.import_log
     if not summary:
         return []
@@ -58,7 +58,7 @@ def _summary(look: Look, project: Project) -> list[Action]:
 
 
 def _offers(look: Look, project: Project) -> list[Action]:
-    """Draw the offers to let layers of a group take turns, where it is named like mouths."""
+    """Draw the offers to make a switch of a group whose name suggests one, like mouths."""
     actions: list[Action] = []
     for path, layers in suggest_switch_groups(project.document):
         if path in project.dismissed_suggestions:

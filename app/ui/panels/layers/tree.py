@@ -1,4 +1,4 @@
-"""The tree of layers, the one in front on top: chosen, named, hidden, locked, dragged about."""
+"""The tree of layers, front layer on top, with buttons, names and drag and drop."""
 
 from collections.abc import Callable, Sequence
 
@@ -25,13 +25,13 @@ from app.ui.style import (
 )
 from engine.arrays import Bytes
 
-ROW, WIDE, GAP = 2.1, 2.5, 0.35  # em: height of a row, width of its picture, room around that
-INDENT, FOLD = 0.9, 1.2  # em: by which rows in others lie to the right, and of the triangle
-DEEPEST_INDENT = 6  # rows that are deeper are not shifted any more
-FEWEST, OTHERS = 6.5, 20.0  # rows at least, and em that are left to the settings below
-RING = 0.4  # em: radius of the circle of a layer that waits for its turn
-HIDDEN = 0.35  # opacity of the pictures of layers that are not seen now
-PAPER = imgui.IM_COL32(128, 130, 136, 255)  # on which both dark and light drawings are seen
+ROW, WIDE, GAP = 2.1, 2.5, 0.35  # em: height of a row, width of its thumbnail, space
+INDENT, FOLD = 0.9, 1.2  # em: indent for each level, width of the triangle
+DEEPEST_INDENT = 6  # deeper rows have the same indent
+FEWEST, OTHERS = 6.5, 20.0  # smallest list in rows; em left for the settings below
+RING = 0.4  # em: radius of the circle of a switch's hidden layer
+HIDDEN = 0.35  # opacity of thumbnails of layers that are hidden now
+PAPER = imgui.IM_COL32(128, 130, 136, 255)  # visible behind both dark and light drawings
 SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper
 SmallPictures = Callable[[int, Bytes], Thumbnail | None]
 
@@ -39,7 +39,7 @@ SmallPictures = Callable[[int, Bytes], Thumbnail | None]
 def draw_layer_tree(
     session: Session, look: Look, project: Project, pictures: SmallPictures
 ) -> list[Action]:
-    """Draw the buttons for whole layers, and a row for each group, choice and layer."""
+    """Draw the buttons for whole layers, and a row for each group, switch and layer."""
     actions = _bar(look, project)
     rows = project.tree
     pitch = ROW * look.em + imgui.get_style().item_spacing.y
@@ -49,13 +49,13 @@ def draw_layer_tree(
     clipper = imgui.ListClipper()
     clipper.begin(len(rows), pitch)
     for number, row in enumerate(rows):
-        # The list is scrolled to the one that is posed, and to that whose name is asked for.
+        # Scroll to the active layer, and to a layer that is being renamed.
         if row.layer and row.layer.id in {project.active, session.named_layer}:
             clipper.include_item_by_index(number)
     while clipper.step():
         for row in rows[clipper.display_start : clipper.display_end]:
             actions += _row(session, look, project, row, pictures)
-    # An item: placing the cursor alone gives the list no height.
+    # An item, because a cursor position alone gives the list no height.
     imgui.dummy(ImVec2(0, 0))
     scroll_while_dragged(look, ROW)
     imgui.end_child()
@@ -65,7 +65,6 @@ def draw_layer_tree(
 
 
 def _bar(look: Look, project: Project) -> list[Action]:
-    """Draw the buttons for whole layers."""
     actions: list[Action] = []
     active, layers, chosen = project.active, project.document.layers, project.selected_layers
     index, last = layers.index(project.layer), len(layers) - 1
@@ -120,7 +119,7 @@ def _row(
     actions: list[Action] = []
     em, layer = look.em, row.layer
     corner, height = imgui.get_cursor_screen_pos(), ROW * em
-    # Below all that follows, which takes the pointer first.
+    # Below all later items, which take the pointer first.
     flags = imgui.SelectableFlags_.allow_overlap | imgui.SelectableFlags_.allow_double_click
     is_chosen = set(project.selected_layers).issuperset(row.layers)
     if imgui.selectable(f"###row {row.key}", is_chosen, flags, ImVec2(0, height))[0]:
@@ -162,7 +161,7 @@ def _row(
             )
     start = left + (WIDE + GAP) * em
     if layer is None:
-        # What is seen of a choice, and how many are in a group.
+        # The visible layer of a switch, or the number of layers in a group.
         told = shown.name if row.switch_group is not None else f"{len(row.layers)}"
     _text(look, project, row, told, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
@@ -170,7 +169,7 @@ def _row(
 
 
 def _chosen(row: TreeRow) -> Action:
-    """Return what a click on a row chooses: with Ctrl beside others, with Shift all up to there."""
+    """Return the action of a click on a row: Ctrl toggles, Shift selects a range."""
     io = imgui.get_io()
     if io.key_ctrl:
         return do(layering.toggle_layers_selected, *row.layers)
@@ -182,14 +181,14 @@ def _chosen(row: TreeRow) -> Action:
 
 
 def _shown(document: Document, row: TreeRow, frame: int) -> Layer:
-    """Return the layer whose picture a row has: of a choice, the one that is seen."""
+    """Return the layer of a row's thumbnail: of a switch, its visible layer."""
     if row.switch_group is None:
         return document.layer(row.layers[0])
     return document.layer(with_repeats(document, row.switch_group).layer_at(frame))
 
 
 def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
-    """Tell whether anything in a row is seen now."""
+    """Return whether any layer of a row is visible now."""
     document = project.document
     return any(
         is_visible(document, document.layer(each), frame)
@@ -201,7 +200,7 @@ def _is_seen(project: Project, row: TreeRow, frame: int) -> bool:
 def _naming(
     session: Session, look: Look, project: Project, row: TreeRow, low: ImVec2, *, asks: bool
 ) -> list[Action]:
-    """Draw the field for another name of a row, where it is asked for."""
+    """Draw the rename field of a row, if requested."""
     actions: list[Action] = []
     document, layer = project.document, row.layer
     if asks or (layer is not None and session.named_layer == layer.id):
@@ -228,7 +227,7 @@ def _naming(
 
 
 def _tell(document: Document, row: TreeRow) -> None:
-    """Explain a row, the last item, in a tooltip; its name may be longer than there is room for."""
+    """Show the tooltip of the last item, a row, with its full name."""
     if imgui.get_drag_drop_payload_py_id() is not None or not begin_tooltip():
         return
     imgui.text_unformatted(row.name)
@@ -254,7 +253,6 @@ def _tell(document: Document, row: TreeRow) -> None:
 
 
 def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
-    """Draw the triangle that opens and closes a row."""
     em = look.em
     low = ImVec2(left.x, left.y - ROW / 2 * em)
     imgui.set_cursor_screen_pos(low)
@@ -267,7 +265,7 @@ def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
 
 
 def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Action]:
-    """Draw the eye and the lock of a row; where layers take turns, a circle for the eye."""
+    """Draw the eye and the lock of a row. Layers of a switch have a circle instead of the eye."""
     actions = []
     document = project.document
     layers = [document.layer(each) for each in row.layers]
@@ -304,7 +302,7 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
 
 
 def _ring(look: Look) -> None:
-    """Draw an empty circle on the last item; the icon of a circle is a full one."""
+    """Draw an empty circle on the last item, because the icon font has only a full one."""
     middle = (imgui.get_item_rect_min() + imgui.get_item_rect_max()) / 2
     radius, thick = RING * look.em, 0.1 * look.em
     imgui.get_window_draw_list().add_circle(
@@ -313,7 +311,7 @@ def _ring(look: Look) -> None:
 
 
 def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:
-    """Return what a switch of a row is for: all chosen layers, if the row's are among them."""
+    """Return the layers that a row's button changes: the row's, or all selected ones."""
     chosen = project.selected_layers
     return chosen if set(row.layers).issubset(chosen) and len(chosen) > 1 else row.layers
 
@@ -327,7 +325,7 @@ def _picture(
     *,
     is_seen: bool,
 ) -> None:
-    """Draw the small picture of a layer right of a point, or a sign where there is none yet."""
+    """Draw a layer's thumbnail right of a point, or an icon before the thumbnail is ready."""
     em = look.em
     pad = 0.12 * em
     half = ROW / 2 * em - pad
@@ -347,7 +345,6 @@ def _picture(
 
 
 def _signs(project: Project, row: TreeRow) -> list[str]:
-    """Return what stands behind the name of a row."""
     if row.layer is None:
         opacity = 1.0 if row.group is None else row.group.opacity
         return [f"{100 * opacity:.0f}%"] if opacity < 1 else []
@@ -369,7 +366,7 @@ def _text(
     *,
     is_seen: bool,
 ) -> None:
-    """Write a row's name, what is told behind it, and up to a point what it is besides."""
+    """Write a row's name, the detail behind it, and its signs left of `end`."""
     palette, em = look.palette, look.em
     draw_list, middle = imgui.get_window_draw_list(), end.y
     right = end.x - GAP * em

@@ -1,6 +1,6 @@
-"""Ready motions: what kind of body it is, where its joints are, and what it is to do.
+"""The tab of motion presets: the kind of body, its joints, and the motion.
 
-In: the layer that is posed, and the motion that is drafted for it.
+In: the active layer, and its motion setup.
 Out: actions on these.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
 """

@@ -1,4 +1,4 @@
-"""Small diagrams of bodies: which joints a kind has, and which of them are there."""
+"""Small diagrams of bodies, with the joints of each kind."""
 
 import math
 from collections.abc import Collection, Mapping
@@ -12,9 +12,9 @@ from app.ui.style import Look, colour_u32, draw_knob, draw_tooltip, is_pressed
 from app.ui.viewport import joint_colour
 from engine.geometry.motions import BodyKind
 
-DOT, LIMB, THIN = 0.34, 0.14, 0.09  # em: of the large diagram; of its lines and those of buttons
+DOT, LIMB, THIN = 0.34, 0.14, 0.09  # em: dot and line of the large diagram, line of the buttons
 MARGIN = 0.6  # em
-# Where joints are: from the middle to the right, and up, in heights of the body.
+# Positions of joints: from the middle to the right, and up, in body heights.
 _FRONT = {
     "hips": (0.0, 0.48),
     "chest": (0.0, 0.68),
@@ -74,7 +74,7 @@ PLACES: Mapping[str, Mapping[str, tuple[float, float]]] = {
     "biped-side": _SIDE,
     "four-legs": _FOUR,
 }
-# Joints that a diagram shows though they are not there, beside the usual ones.
+# Missing joints that the diagram shows in addition to the usual ones.
 OFFERED = ("neck", "tail")
 GHOST = (
     (-0.26, 0.06), (-0.26, 0.66), (-0.2, 0.82), (-0.08, 0.92), (0.08, 0.92), (0.2, 0.82),
@@ -99,7 +99,7 @@ def draw_body_diagram(look: Look, kind: BodyKind, low: ImVec2, size: ImVec2, col
 
 
 def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Action]:
-    """Draw the joints of a draft: filled if they are there; a click adds one, or leaves it out."""
+    """Draw the joints of a setup: filled if present. A click adds or removes a joint."""
     kind, actions = draft.body_kind, list[Action]()
     low = imgui.get_cursor_screen_pos()
     names = [*kind.usual, *OFFERED, *draft.joints]
@@ -139,7 +139,7 @@ def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Act
 
 
 def _places(kind: BodyKind, names: Collection[str]) -> dict[str, tuple[float, float]]:
-    """Return where a diagram has the joints of a kind, in its order."""
+    """Return the diagram's positions of a kind's joints, in order."""
     known = PLACES.get(kind.name)
     if known is not None:
         return {name: known[name] for name in kind.parents if name in names}
@@ -152,7 +152,6 @@ def _places(kind: BodyKind, names: Collection[str]) -> dict[str, tuple[float, fl
 
 
 def _in_box(low: ImVec2, size: ImVec2, place: tuple[float, float]) -> ImVec2:
-    """Return the point of a box at a place of a diagram."""
     x, y = place
     scale = min(size.y, size.x / 1.4)
     return ImVec2(low.x + size.x / 2 + scale * x, low.y + size.y / 2 - scale * (y - 0.5))

@@ -1,4 +1,4 @@
-"""The tab of ready motions: those that the layer was given, and one that is drafted for it."""
+"""The tab of motion presets: the layer's applied motions, and the motion setup."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -32,12 +32,12 @@ ENERGIES = Scale(left=0.0, right=2.0)
 SHARES = Scale(left=0.0, right=0.99)
 REPEATS = Scale(left=1.0, right=20.0)
 KIND_HEIGHT, DIAGRAM_HEIGHT = 3.2, 9.5  # em
-IN_A_ROW = 5  # motions at most
+IN_A_ROW = 5  # largest number of motions
 LOOKS = {None: "As it seems", -1: "Left", 1: "Right"}
 
 
 def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw the motion that is drafted, or how far it is; else those that the layer was given."""
+    """Draw the motion setup or its progress; otherwise the layer's applied motions."""
     errand, draft = project.motion_job, project.motion_setup
     if errand is not None:
         heading(look, f"Giving it “{errand.setup.preset.label}”")
@@ -48,7 +48,7 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
         )
     if draft is None:
         return _draw_applied_motions(session, look, project)
-    # What ends it is seen however far the rest is scrolled.
+    # The end buttons stay visible while the rest scrolls.
     lines = (
         1
         + bool(preset_setup.apply_motion_disabled_reason(project))
@@ -63,7 +63,7 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
 
 
 def _draw_applied_motions(session: Session, look: Look, project: Project) -> list[Action]:
-    """Draw what the layer was given, and the button that gives it another motion."""
+    """Draw the layer's applied motions, and the button that sets up another one."""
     actions: list[Action] = []
     binding, layer = BINDINGS["give motion"], project.layer
     heading(look, f"Motions of {layer.name}" if layer.motions else "Ready motions")
@@ -84,7 +84,6 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
 
 
 def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
-    """Draw a motion that was given, with what can be done with it."""
     actions: list[Action] = []
     name = MOTIONS[given.motion].label if given.motion in MOTIONS else given.motion
     imgui.text_unformatted(f"{name}, frames {given.first} – {given.last}")
@@ -122,7 +121,6 @@ def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _joints(look: Look, draft: MotionSetup) -> list[Action]:
-    """Draw which joints are there."""
     heading(look, "Joints")
     if not draft.body_kind.parents:
         small_text(look, "It moves as a whole: there is nothing to be dragged.")
@@ -150,7 +148,6 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
-    """Draw the motions that fit the kind."""
     heading(look, "What it does")
     actions: list[Action] = []
     fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.templates]
@@ -166,7 +163,6 @@ def _motions(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
-    """Draw how it is to be done."""
     heading(look, "How")
     actions: list[Action] = []
     now = draft.parameters
@@ -200,7 +196,6 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _switches(look: Look, draft: MotionSetup) -> list[Action]:
-    """Draw what is on or off."""
     actions: list[Action] = []
     now = draft.parameters
     changed, mirrored = imgui.checkbox("Mirrored", now.mirrored)
@@ -223,7 +218,7 @@ def _switches(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
-    """Draw what is replaced, and the buttons that give it or do not."""
+    """Draw which motions are replaced, and the buttons that apply or cancel."""
     actions: list[Action] = []
     imgui.separator()
     if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(project):
@@ -244,7 +239,6 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
 
 
 def _where(project: Project, draft: MotionSetup) -> str:
-    """Return in words where in time it will be."""
     period = draft.preset.frames(draft.parameters, project.document.fps) * draft.rounds
     if draft.applied_motion is not None:
         return (

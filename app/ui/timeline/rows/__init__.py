@@ -1,4 +1,4 @@
-"""The rows of the timeline: of groups, choices and layers, their names and what is seen when.
+"""The rows of the timeline: groups, switches and layers, their names and their visibility.
 
 In: the bands of the timeline.
 Out: actions.

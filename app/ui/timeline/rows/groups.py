@@ -1,4 +1,4 @@
-"""The rows of groups and choices: keys of all that is in one, and what of the other is seen."""
+"""The rows of groups, with the keys of their layers, and of switches, with their visible layer."""
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
@@ -16,14 +16,14 @@ from app.ui.style import (
 )
 from app.ui.timeline.layout import GroupRow, TimelineLayout, draw_time_tag
 
-INDENT = 0.7  # em by which rows in others lie to the right
-FOLD = 1.1  # em: width of the triangle that opens and closes a row
-EDGE = 0.35  # em: half the width of what takes hold of where a turn begins
-DOT, GRIP = 0.25, 0.5  # em: half a group's key, and of the box that takes it
+INDENT = 0.7  # em of indent for each level
+FOLD = 1.1  # em: width of the triangle that expands a row
+EDGE = 0.35  # em: half the hit width of a switch key
+DOT, GRIP = 0.25, 0.5  # em: half the size of a group's key, and half its hit box
 
 
 def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw the names of groups and choices, and the triangles that open and close them."""
+    """Draw the names of groups and switches, and the triangles that expand them."""
     actions: list[Action] = []
     document, palette, em = bands.project.document, bands.look.palette, bands.look.em
     draw_list = imgui.get_window_draw_list()
@@ -61,7 +61,7 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def draw_group_rows(bands: TimelineLayout) -> list[Action]:
-    """Draw the keys of groups and the turns of choices, and take clicks and drags on them."""
+    """Draw the keys of groups and switches, and handle clicks and drags on them."""
     actions: list[Action] = []
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     for lane in bands.group_rows:
@@ -78,7 +78,7 @@ def draw_group_rows(bands: TimelineLayout) -> list[Action]:
 
 
 def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
-    """Draw where layers of a group have keys; a click chooses all that are at a frame."""
+    """Draw the keys of a group's layers. A click selects all keys at a frame."""
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
     layers = [document.layer(identity) for identity in lane.row.layers]
@@ -108,7 +108,7 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
 
 
 def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup) -> list[Action]:
-    """Draw from where to where each layer of a choice is seen."""
+    """Draw the ranges in which each layer of a switch is visible."""
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
@@ -138,14 +138,14 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup
             imgui.end_tooltip()
         actions += _menu(bands, choice, start)
     for start in starts[1:]:
-        # Those of a repeat go with its stretch.
+        # Repeated switch keys move with their cycle.
         if own.count_keys_until(start) > own.count_keys_until(start - 1):
             actions += _edge(bands, lane, choice, start)
     return actions
 
 
 def _starts(bands: TimelineLayout, choice: SwitchGroup) -> list[int]:
-    """Return where the turns begin that are in view, the one that reaches into the view first."""
+    """Return the frames of switch keys in view, and of the last key before the view."""
     first = bands.project.document.frames.first
     seen = list(bands.in_view(choice.keys))
     before = seen[0] if seen else choice.count_keys_until(bands.frame(bands.left))
@@ -154,7 +154,7 @@ def _starts(bands: TimelineLayout, choice: SwitchGroup) -> list[int]:
 
 
 def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action]:
-    """Draw the menu of a turn: which layer is seen in it, if any change there."""
+    """Draw the menu of a switch key: its layer, and whether the key can be deleted."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of turn {start}"):
         return actions
@@ -179,7 +179,6 @@ def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action
 
 
 def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int) -> list[Action]:
-    """Draw where a turn begins, and let it be dragged."""
     em, x = bands.look.em, bands.x(start)
     if not bands.shows(x - EDGE * em, x + EDGE * em):
         return []

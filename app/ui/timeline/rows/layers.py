@@ -1,4 +1,4 @@
-"""The rows of a scene's layers: their names, and when each one is shown or hidden."""
+"""The rows of a scene's layers: names, and visibility keys."""
 
 from bisect import bisect_left
 from collections.abc import Sequence
@@ -35,16 +35,16 @@ from app.ui.timeline.tracks import (
     draw_track_segments,
 )
 
-HATCH = 0.55  # em between the lines over a time in which a layer is hidden
-EYE = 0.62  # em: half the width of the mark where a layer is shown or hidden
-CHANGE = 0.24  # em: half of the mark where a layer is moved, fades or is ordered as a whole
-BESIDE = 0.35  # em that it makes way for a key at the same frame
-DEEPEST_INDENT = 5  # rows that are deeper are not shifted any more
-LEAST_PARENT_ROOM = 1.8  # em: with less room behind a name its carrier is told by the tooltip alone
+HATCH = 0.55  # em between the lines over a hidden range
+EYE = 0.62  # em: half the width of a visibility key
+CHANGE = 0.24  # em: half the size of a transform, opacity or order key
+BESIDE = 0.35  # em: offset beside a pose key at the same frame
+DEEPEST_INDENT = 5  # deeper rows have the same indent
+LEAST_PARENT_ROOM = 1.8  # em: with less room after the name, only the tooltip names the parent
 
 
 def draw_layer_rows(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw what lies behind the keys of all layers; take clicks on names and on eyes."""
+    """Draw the backgrounds of all layers' rows. Handle clicks on names and visibility keys."""
     actions: list[Action] = []
     if bands.has_names:
         actions += _draw_names(bands, frame)
@@ -67,7 +67,7 @@ def draw_layer_rows(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _draw_ground(bands: TimelineLayout, row: LayerRow) -> None:
-    """Part a row from the next one; that of the active layer is brighter."""
+    """Separate a row from the next. The active layer's row is brighter."""
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
     low, high = ImVec2(bands.left, row.top), ImVec2(bands.right, row.bottom)
     if row.is_active:
@@ -119,7 +119,7 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _draw_scrolled(bands: TimelineLayout) -> None:
-    """Draw beside the names which of the rows are seen, if not all are."""
+    """Draw a scroll bar beside the names, if not all rows are visible."""
     if not bands.overflow:
         return
     height = bands.track_bottom - bands.track_top
@@ -136,13 +136,13 @@ def _draw_scrolled(bands: TimelineLayout) -> None:
 
 
 def _hidden(bands: TimelineLayout, layer: Layer) -> list[tuple[int | None, int | None]]:
-    """Return the stretches in view in which a layer is hidden; None is where they do not end."""
+    """Return the ranges in view in which a layer is hidden; None is an open end."""
     switches = visibility_keys(bands.project.document, layer)
     if not switches:
         return []
     stretches: list[tuple[int | None, int | None]] = []
     shown = list(bands.in_view(switches, closest=HATCH))
-    # What began before the view reaches into it.
+    # A range that began before the view reaches into it.
     before = [shown[0] - 1] if shown and shown[0] else []
     if not shown:
         first = bands.frame(bands.left)
@@ -153,7 +153,7 @@ def _hidden(bands: TimelineLayout, layer: Layer) -> list[tuple[int | None, int |
             end = None if is_last else switches[index + 1].frame
             stretches.append((switches[index].frame, end))
     if not switches[0].visible:
-        # A layer begins as its first switch says.
+        # Before its first key, a layer has that key's visibility.
         stretches.append((None, switches[0].frame))
     return stretches
 
@@ -169,7 +169,7 @@ def _hatch(bands: TimelineLayout, row: LayerRow, begin: int | None, end: int | N
     height, gap = high.y - low.y, HATCH * bands.look.em
     draw_list.add_rect_filled(low, high, colour_u32(palette.desk, 0.7))
     imgui.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    # The lines stay where they are in time while the timeline is scrolled.
+    # The lines move with time when the timeline is scrolled.
     first = bands.x(0)
     x = first + ((left - height - first) // gap) * gap
     while x < right:
@@ -181,7 +181,6 @@ def _hatch(bands: TimelineLayout, row: LayerRow, begin: int | None, end: int | N
 
 
 def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
-    """Draw where a layer is keyed as a whole: its movement, its opacity and its order."""
     actions: list[Action] = []
     layer, em, palette = row.layer, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
@@ -214,14 +213,14 @@ def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
 def _draw_visibility_key(
     bands: TimelineLayout, row: LayerRow, switch: VisibilityKey
 ) -> list[Action]:
-    """Draw an eye where a layer comes to be seen, or a struck one where it is hidden."""
+    """Draw a visibility key: an eye, or a struck eye if the layer becomes hidden."""
     frame, half = switch.frame, EYE * bands.look.em
     x = bands.x(frame)
     left = _left_of_eye(bands, row, frame)
     drag = bands.project.timeline.gesture
     if not isinstance(drag, SwitchDrag) or (drag.layer, drag.at) != (row.layer.id, frame):
         drag = None
-    # By where it was before it was dragged, so that its button stays the same one.
+    # By its frame before the drag, so that its button keeps its id.
     origin = frame if drag is None else drag.switch
     box = left - ImVec2(0, half), left + ImVec2(2 * half, half)
     bands.button(f"switch {origin}", *box, right=True)
@@ -232,7 +231,7 @@ def _draw_visibility_key(
 
 
 def _left_of_eye(bands: TimelineLayout, row: LayerRow, frame: int) -> ImVec2:
-    """Return where an eye begins: below the keys of the active layer, and beside the others'."""
+    """Return the left of an eye: below pose keys of the active layer, beside those of others."""
     em, x = bands.look.em, bands.x(frame)
     if row.is_active and row.bottom - row.top > 2 * THIN * em:
         return ImVec2(x, row.bottom - (0.1 + THIN / 2) * em)
@@ -254,7 +253,7 @@ def _draw_eye(
 
 
 def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[Action]:
-    """Take what the pointer does to an eye, the last item, and tell what can be done with it."""
+    """Handle the pointer on an eye, which is the last item, and show its tooltip."""
     frame, document = switch.frame, bands.project.document
     if is_hovered_or_held():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -278,7 +277,6 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
 
 
 def _menu(row: LayerRow, frame: int) -> list[Action]:
-    """Draw the menu of an eye, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of switch {frame}"):
         if imgui.menu_item_simple("Delete"):

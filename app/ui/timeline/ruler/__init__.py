@@ -1,4 +1,4 @@
-"""The ruler and what stands at it: frames, the playhead, markers, the camera, the ends.
+"""The ruler with frames, playhead, markers, camera row, and range ends.
 
 In: the bands of the timeline.
 Out: actions on time.

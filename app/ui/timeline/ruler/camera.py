@@ -1,4 +1,4 @@
-"""The camera's keys, in a row of their own below the markers."""
+"""The camera's keys, in their own row below the markers."""
 
 from math import degrees, radians
 
@@ -20,12 +20,12 @@ from app.ui.style import (
 from app.ui.timeline.layout import TimelineLayout, draw_time_tag, format_seconds
 
 HALF = 0.36  # em: half the width of a key
-FIELD = 4.5  # em: width of the fields in its menu, and where they begin
+FIELD = 4.5  # em: width and position of the fields in the menu
 MENU = "menu of the camera"
 
 
 def draw_camera_row(bands: TimelineLayout) -> list[Action]:
-    """Draw the row of the camera, if there is one, and take what the pointer does to its keys."""
+    """Draw the camera row, if there are keys, and handle the pointer on them."""
     document, em = bands.project.document, bands.look.em
     if not document.camera:
         return []
@@ -48,7 +48,7 @@ def draw_camera_row(bands: TimelineLayout) -> list[Action]:
         key = document.camera[index]
         x, origin = bands.x(key.frame), key.frame
         if isinstance(gesture, CameraDrag) and gesture.at == key.frame:
-            origin = gesture.key  # its button stays the same one while it is dragged
+            origin = gesture.key  # its button keeps its id during a drag
         low, high = ImVec2(x - 2 * HALF * em, top), ImVec2(x + 2 * HALF * em, bottom)
         bands.button(f"camera key {origin}", low, high, right=True)
         half, colour = HALF * em, palette.accent if is_hovered_or_held() else palette.text
@@ -86,7 +86,7 @@ def _point(bands: TimelineLayout, key: CameraKey) -> list[Action]:
 
 
 def _field(look: Look, name: str, value: float, text: str) -> float | None:
-    """Draw a field for a number of a key; return it when it was entered and is another."""
+    """Draw a field for a number of a key. Return the number when a different one was entered."""
     imgui.align_text_to_frame_padding()
     imgui.text_unformatted(name)
     imgui.same_line(FIELD * look.em)
@@ -95,7 +95,6 @@ def _field(look: Look, name: str, value: float, text: str) -> float | None:
 
 
 def _menu(bands: TimelineLayout, key: CameraKey) -> list[Action]:
-    """Draw the menu of a key, if it is open."""
     actions: list[Action] = []
     if imgui.begin_popup(f"{MENU} {key.frame}"):
         if imgui.menu_item_simple("Go there", "Click"):

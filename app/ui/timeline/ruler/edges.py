@@ -1,4 +1,4 @@
-"""The preview range above the ruler, and the animation's end on the track."""
+"""The preview range above the ruler, and the animation's end on the tracks."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -8,11 +8,11 @@ from app.ui.shortcuts import BINDINGS
 from app.ui.style import colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
 
-GRIP = 0.55  # em: half the width in which the pointer takes an end
+GRIP = 0.55  # em: half the hit width of an end
 
 
 def draw_range_edges(bands: TimelineLayout) -> list[Action]:
-    """Draw what plays and where the animation ends; both are changed by dragging."""
+    """Draw the preview range and the animation's end. Both can be dragged."""
     return _preview_range(bands) + _animation_end(bands)
 
 
@@ -51,7 +51,7 @@ def _preview_range(bands: TimelineLayout) -> list[Action]:
 
 
 def _clear(bands: TimelineLayout, left: float, right: float) -> list[Action]:
-    """Draw a cross that clears the preview range, near the end of what is seen of it."""
+    """Draw a cross that clears the preview range, near the visible end of the range."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x = min(right, bands.right) - 3 * GRIP * em
     y, half = bands.top + (PREVIEW - 0.1) / 2 * em, 0.2 * em
@@ -84,7 +84,6 @@ def _edge(
 
 
 def begin_edge_drag(bands: TimelineLayout, edge: Edge) -> Action:
-    """Begin to drag an end."""
     document = bands.project.document
     drag = EdgeDrag(edge=edge, start=bands.pointed, before=document, after=document)
     return do(timeline_drag.begin_timeline_drag, drag, bands.time_view)

@@ -20,13 +20,12 @@ from app.ui.style import (
 )
 from app.ui.timeline.layout import TimelineLayout, draw_time_tag, format_seconds
 
-HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of where the pointer takes it
-NAME_ROOM = 30.0  # em that a name may reach into view from a marker at the left of it
-LEAST_NAME = 3.0  # em: with less room names are left out
+HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of its hit area
+NAME_ROOM = 30.0  # em: longest name that can reach into view from a marker at the left
+LEAST_NAME = 3.0  # em: names are omitted if less room is left
 
 
 def draw_markers(bands: TimelineLayout) -> list[Action]:
-    """Draw the markers, and take what the pointer does to them."""
     markers, em = bands.project.document.markers, bands.look.em
     if not markers:
         return []
@@ -63,7 +62,7 @@ def draw_markers(bands: TimelineLayout) -> list[Action]:
 
 
 def _origin(gesture: TimeGesture | None, frame: int) -> int:
-    """Return where a marker was before it was dragged, so that its button stays the same one."""
+    """Return the marker's frame before the drag, so that its button keeps its id."""
     return gesture.marker if isinstance(gesture, MarkerDrag) and gesture.at == frame else frame
 
 
@@ -120,7 +119,6 @@ def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
 
 
 def _menu(bands: TimelineLayout, marker: Marker) -> list[Action]:
-    """Draw the menu of a marker, if it is open."""
     asks = False
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of marker {marker.frame}"):

@@ -1,4 +1,4 @@
-"""The ruler with frames and seconds, the playhead, and the overview below the track."""
+"""The ruler with frames and seconds, the playhead, and the overview below the tracks."""
 
 from imgui_bundle import ImVec2, imgui
 
@@ -15,14 +15,14 @@ from app.ui.style import (
 )
 from app.ui.timeline.layout import TimelineLayout, format_seconds
 
-TICK_ROOM = 0.55  # em between small ticks at least
+TICK_ROOM = 0.55  # em: smallest distance of small ticks
 RULER_TAG = 1.2  # em: height of the playhead's number
-LABEL_GAP = 2.4  # em between labels at least
+LABEL_GAP = 2.4  # em: smallest distance of labels
 MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 
 
 def draw_ruler(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw frame numbers and seconds; a press there takes the playhead along."""
+    """Draw frame numbers and seconds. A press moves the playhead."""
     bands.button(
         "ruler", ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.markers_top)
     )
@@ -45,7 +45,7 @@ def draw_ruler(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _draw_ticks(bands: TimelineLayout, present: int) -> None:
-    """Draw ticks, and their labels where the playhead does not cover them."""
+    """Draw ticks, and their labels unless the playhead covers them."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     document = bands.project.document
     per_frame = bands.time_view.scale * em
@@ -84,14 +84,14 @@ def _draw_ticks(bands: TimelineLayout, present: int) -> None:
 
 
 def _steps(fps: float) -> list[int]:
-    """Return distances of ticks that divide seconds, or are made of whole ones."""
+    """Return tick distances that divide a second or are whole seconds."""
     second = max(1, round(fps))
     parts = [part for part in range(1, second + 1) if second % part == 0]
     return parts + [second * multiple for multiple in MULTIPLES]
 
 
 def draw_playhead(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw a line at the present frame, and its number on the ruler, to be dragged."""
+    """Draw the playhead as a line with its frame number on the ruler. It can be dragged."""
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x = bands.x(frame)
     with push_text_size(SMALL, bands.look.bold):
@@ -127,18 +127,17 @@ def draw_playhead(bands: TimelineLayout, frame: int) -> list[Action]:
 
 
 def _tag_width(bands: TimelineLayout, frame: int) -> float:
-    """Return the width of the playhead's number with its margins."""
     return max(imgui.calc_text_size(f"{frame}").x + 0.9 * bands.look.em, 1.9 * bands.look.em)
 
 
 @memoized_on
 def _frames_apart(layer: Layer, step: int) -> frozenset[int]:
-    """Return frames of keys, of which there is one in each of so many frames at most."""
+    """Return key frames rounded down to multiples of `step`."""
     return frozenset(key.frame // step * step for key in layer.keys if not layer.still)
 
 
 def draw_overview(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw below what part of all frames is on the screen; dragging it scrolls."""
+    """Draw the visible part of all frames below the tracks. Dragging it scrolls."""
     strip, frames, em = bands.time_view, bands.project.document.frames, bands.look.em
     end = strip.frame(bands.width)
     low, high = min(frames.first, strip.start), max(frames.last, end)
@@ -160,7 +159,7 @@ def draw_overview(bands: TimelineLayout, frame: int) -> list[Action]:
     bar = colour_u32(palette.dim if is_hovered_or_held() else palette.pressed)
     draw_list.add_rect_filled(ImVec2(left, top), ImVec2(right, bottom), bar, rounding)
     middle = (top + bottom) / 2
-    # Each place once, however many keys there are; those of the active layer over them.
+    # Each place once, however many keys it has; the active layer's on top.
     layer = bands.project.layer
     for layers, radius, colour in (
         (tuple(row.layer for row in bands.rows), 0.09 * em, colour_u32(palette.dim)),

@@ -1,8 +1,8 @@
-"""What the pointer has in hand in the viewport, and what it could take there.
+"""The active gesture in the viewport, and the items that can be dragged there.
 
 In: the screen, and the pointer.
-Out: marks of gestures, grips, words about both, and what they ask for.
-Imports: `app.ui.style`, `app.ui.shortcuts`, and where things are on the screen.
+Out: marks of gestures, grips, texts about both, and actions.
+Imports: `app.ui.style`, `app.ui.shortcuts`, and the screen mapping.
 """
 
 from app.ui.viewport.interaction.drag import (

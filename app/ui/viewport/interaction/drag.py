@@ -1,4 +1,4 @@
-"""What the pointer has begun in the viewport: what is drawn of it, and how it goes on."""
+"""The active gesture in the viewport: its overlays, and its steps."""
 
 from collections.abc import Iterable, Sequence
 
@@ -29,12 +29,12 @@ from engine.geometry import box_diagonal
 
 DIGITS = "0123456789.,-"
 AXES = ((imgui.Key.x, "x"), (imgui.Key.y, "y"))
-STROKE = 0.45  # opacity of one that is not done yet
-HALF = 0.5  # pixels by which what is shown of one may be beside it
+STROKE = 0.45  # opacity of a stroke that is not computed yet
+HALF = 0.5  # pixels: tolerance of a drawn stroke
 
 
 def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[Action]:
-    """Follow the pointer in what it began; end it where the button is let go."""
+    """Continue the gesture at the pointer. End it when the button is released."""
     gesture = session.active_tool
     if gesture is None:
         return []
@@ -43,10 +43,10 @@ def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[
     draw_gesture_overlays(look, screen, gesture.tool_overlays)
     io, pointer = imgui.get_io(), screen.pointer
     actions: list[Action] = []
-    # Only what is turned goes by steps; Ctrl let go after Ctrl+Z is not to pull once more.
+    # Only rotations snap to steps. A Ctrl released after Ctrl+Z must not drag again.
     is_turning = any(isinstance(mark, RotationOverlay) for mark in gesture.tool_overlays)
     is_stepped = is_turning and io.key_ctrl != session.is_snapping
-    # What is recorded goes on in time while the pointer rests.
+    # A recording continues while the pointer rests.
     is_recorded = screen.project.recording is not None and not screen.project.recording.is_over
     if io.mouse_delta.x or io.mouse_delta.y or is_stepped or is_recorded:
         move = tool_pointer.move_pointer_in_steps if io.key_ctrl else tool_pointer.move_pointer
@@ -62,7 +62,6 @@ def follow_pointer(session: Session, look: Look, screen: ScreenMapping) -> list[
 
 
 def draw_gesture_overlays(look: Look, screen: ScreenMapping, marks: Iterable[Mark]) -> None:
-    """Draw what marks a gesture over the picture."""
     for mark in marks:
         match mark:
             case BoxOverlay():
@@ -84,7 +83,7 @@ def draw_gesture_overlays(look: Look, screen: ScreenMapping, marks: Iterable[Mar
 
 
 def draw_pending_strokes(look: Look, screen: ScreenMapping) -> None:
-    """Draw the strokes of the brush that the worker has not come to yet."""
+    """Draw brush strokes that the worker has not processed yet."""
     layer, known = screen.project.layer, screen.project.layer_runtime.cut.source
     done = () if known is None else known.strokes
     for stroke in layer.cut_out.strokes[len(done) :]:
@@ -94,14 +93,14 @@ def draw_pending_strokes(look: Look, screen: ScreenMapping) -> None:
 
 
 def draw_cuts(look: Look, screen: ScreenMapping) -> None:
-    """Draw the lines along which the knife has parted, or is about to."""
+    """Draw the lines of finished cuts and of the active cut."""
     layer = screen.project.layer
     for slit in layer.cut_out.cut_lines:
         _draw_cut(look, screen, (slit.points + layer.corner).tolist())
 
 
 def _draw_cut(look: Look, screen: ScreenMapping, places: Sequence[complex]) -> None:
-    """Draw a line of the knife, as wide as the slit that comes of it."""
+    """Draw a cut line, as wide as the slit it makes."""
     width = CUT_WIDTH * box_diagonal(screen.project.layer.domain.outline) * screen.scale
     points = [screen.point(place) for place in places]
     draw_list = imgui.get_window_draw_list()
@@ -110,16 +109,16 @@ def _draw_cut(look: Look, screen: ScreenMapping, places: Sequence[complex]) -> N
 
 
 def _typed() -> str:
-    """Return what was typed for a drag in this frame, in the order in which it counts."""
+    """Return the text typed for a drag in this frame, in order."""
     characters = [chr(code) for code in imgui.get_io().input_queue_characters]
     text = "".join(character for character in characters if character in DIGITS)
-    # By their keys: a character is repeated while its key is held, and would let the axis go again.
+    # By keys, because characters repeat while a key is held, which would release the axis again.
     text += "".join(axis for key, axis in AXES if imgui.is_key_pressed(key, repeat=False))
     return text + (ERASE if imgui.is_key_pressed(imgui.Key.backspace) else "")
 
 
 def _draw_entry(look: Look, screen: ScreenMapping, mark: NumericEntryOverlay) -> None:
-    """Draw the axis that a drag keeps to, and beside the pointer what was typed."""
+    """Draw the locked axis of a drag, and the typed number beside the pointer."""
     corner, room = imgui.get_window_pos(), imgui.get_window_size()
     if mark.direction is not None:
         centre = screen.point(mark.place)
@@ -138,7 +137,7 @@ def _draw_stroke(look: Look, screen: ScreenMapping, mark: StrokeOverlay) -> None
     colour = colour_u32(find_stroke_colour(look, keeps=mark.keeps), STROKE)
     points = [screen.point(place) for place in mark.points]
     draw_list = imgui.get_window_draw_list()
-    # Soft edges of triangles would be seen where two meet.
+    # Anti-aliased edges would be visible between adjacent triangles.
     draw_list.push_draw_flag(imgui.ImDrawFlags_.aa_fill, False)  # noqa: FBT003 - enabled or not
     for corners in triangulate_stroke(points, mark.radius * screen.scale):
         draw_list.add_triangle_filled(*corners, colour)
@@ -146,10 +145,10 @@ def _draw_stroke(look: Look, screen: ScreenMapping, mark: StrokeOverlay) -> None
 
 
 def triangulate_stroke(way: Sequence[ImVec2], radius: float) -> list[tuple[ImVec2, ImVec2, ImVec2]]:
-    """Return triangles that cover each place within a radius of a way once, to half a pixel."""
+    """Return triangles that cover a stroke of this radius once, to half a pixel."""
     points = [(point.x, point.y) for point in way]
     line = shapely.LineString(points) if len(points) > 1 else shapely.Point(points[0])
-    # In each frame anew: of all places of a mouse that would take up to a tenth of a second.
+    # Per frame: with all points of a mouse this would take up to 0.1 s.
     line = line.simplify(HALF)
     parts = shapely.get_parts(shapely.constrained_delaunay_triangles(line.buffer(radius)))
     rings = shapely.get_coordinates(parts).reshape(-1, 4, 2).tolist()
@@ -157,7 +156,7 @@ def triangulate_stroke(way: Sequence[ImVec2], radius: float) -> list[tuple[ImVec
 
 
 def _draw_joint(look: Look, screen: ScreenMapping, mark: AttachOverlay) -> None:
-    """Draw the way from the anchor to the pointer, and the outline of the layer there."""
+    """Draw the line from the anchor to the pointer, and the outline of the layer there."""
     draw_list = imgui.get_window_draw_list()
     colour = look.palette.danger if mark.is_refused else look.palette.accent
     start, end = screen.point(mark.start), screen.point(mark.end)

@@ -1,4 +1,4 @@
-"""What lies over the drawing to be dragged: the ring that turns it, and the axis of mirroring."""
+"""Gizmos over the drawing: the rotation ring, and the mirror axis."""
 
 import math
 from typing import NamedTuple
@@ -21,28 +21,27 @@ from app.ui.style import (
 )
 from app.ui.viewport.screen import ScreenMapping
 
-RADIUS, BAND, KNOB = 2.2, 0.5, 0.3  # em: of the ring, of where the pointer takes it, of its knob
+RADIUS, BAND, KNOB = 2.2, 0.5, 0.3  # em: of the ring: radius, hit area, its knob's radius
 LINE = 0.12  # em
-AXIS_TOP, AXIS_RADIUS = 3.2, 0.85  # em: of the axis' grip, below the edge; its size
+AXIS_TOP, AXIS_RADIUS = 3.2, 0.85  # em: the axis' grip: distance from the top edge, radius
 DASH, GAP, THIN = 0.6, 0.45, 0.1  # em: of the axis
 
 
 class RotationGizmo(NamedTuple):
-    """The ring around the one selected handle, on the screen."""
+    """The ring around the selected handle, on the screen."""
 
     centre: ImVec2
-    turn: float  # how far the shape is turned there, in radians
-    is_dragged: bool  # whether the pointer turns it
-    swept: float  # how far it has turned it, in radians
+    turn: float  # rotation of the shape at the handle, in radians
+    is_dragged: bool  # whether the pointer is dragging the ring
+    swept: float  # rotation of this drag, in radians
 
     def is_pointed(self, look: Look) -> bool:
-        """Tell whether the pointer is on it."""
         away = imgui.get_mouse_pos() - self.centre
         return abs(math.hypot(away.x, away.y) - RADIUS * look.em) < BAND * look.em
 
 
 def find_rotation_gizmo(session: Session, screen: ScreenMapping) -> RotationGizmo | None:
-    """Return the ring around the one handle that is selected, where it can be turned."""
+    """Return the ring around the only selected handle, if the handle can be rotated."""
     project, gesture = screen.project, session.active_tool
     held = (
         next((m for m in gesture.tool_overlays if isinstance(m, RotationOverlay)), None)
@@ -70,7 +69,7 @@ def find_rotation_gizmo(session: Session, screen: ScreenMapping) -> RotationGizm
 
 
 def draw_rotation_gizmo(look: Look, ring: RotationGizmo, *, is_pointed: bool) -> None:
-    """Draw the ring with a knob where the turned shape's up is; while it is held, the angle."""
+    """Draw the ring with a knob at the shape's up direction, and the angle during a drag."""
     draw_list, radius = imgui.get_window_draw_list(), RADIUS * look.em
     is_hot = is_pointed or ring.is_dragged
     colour = look.palette.accent if is_hot else look.palette.text
@@ -91,7 +90,7 @@ def draw_rotation_gizmo(look: Look, ring: RotationGizmo, *, is_pointed: bool) ->
 
 
 class MirrorAxisGizmo(NamedTuple):
-    """The axis at which poses are flipped: where it is on the screen, if it is shown; its grip."""
+    """The axis at which poses are flipped: its place on the screen and its grip, if visible."""
 
     x: float | None = None
     is_hot: bool = False
@@ -99,7 +98,7 @@ class MirrorAxisGizmo(NamedTuple):
 
 
 def add_mirror_axis_gizmo(session: Session, look: Look, screen: ScreenMapping) -> MirrorAxisGizmo:
-    """Lay a button over the grip of the axis, if it is shown."""
+    """Lay a button over the grip of the axis, if it is visible."""
     if not flipping.is_mirror_axis_shown(session, screen.project):
         return MirrorAxisGizmo()
     x, radius = screen.point(complex(screen.project.layer.axis)).x, AXIS_RADIUS * look.em
@@ -112,7 +111,6 @@ def add_mirror_axis_gizmo(session: Session, look: Look, screen: ScreenMapping) -
 
 
 def draw_mirror_axis(look: Look, axis: MirrorAxisGizmo) -> None:
-    """Draw the axis from top to bottom, with its grip."""
     if axis.x is None:
         return
     palette, y = look.palette, imgui.get_window_pos().y

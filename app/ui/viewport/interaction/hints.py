@@ -1,4 +1,4 @@
-"""What the viewport says: what can be done under the pointer and next, and what is special now."""
+"""Texts of the viewport: hints under the pointer, next steps, and special states."""
 
 from functools import reduce
 
@@ -21,7 +21,7 @@ KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT,
 
 
 def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
-    """Return what can be done where the pointer is."""
+    """Return the possible gestures at the pointer."""
     project = screen.project
     if session.active_tool is not None:
         return _sentence(
@@ -68,7 +68,7 @@ def _format_hint(hint: Hint) -> str:
 def draw_badges(
     session: Session, look: Look, project: Project, corner: ImVec2, room: ImVec2
 ) -> list[Action]:
-    """Tell what is special now: a pose that no key holds, a tool in hand, or what to do next."""
+    """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed_pose is not None:
         return _draw_pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
@@ -85,7 +85,7 @@ def draw_badges(
 
 
 def _mode(session: Session, project: Project) -> str:
-    """Return in words what drags do instead of posing; empty where they pose."""
+    """Return a text about the active tool; empty if drags pose the layer."""
     if session.moves:
         return "Moving the whole layer"
     if session.material is not None:
@@ -96,14 +96,14 @@ def _mode(session: Session, project: Project) -> str:
 
 
 def draw_mode_badge(look: Look, what: str, corner: ImVec2, room: ImVec2) -> list[Action]:
-    """Tell what drags do instead of posing, and how to go back."""
+    """Draw the badge of the active tool, with the button that ends it."""
     keys = BINDINGS["pose"].shown_keys
     place = corner + ImVec2(room.x / 2, look.em)
     return _draw_pill(look, f"{what}: {keys} goes back to posing", place)
 
 
 def find_first_step(project: Project) -> int | None:
-    """Return which hint a new project is at; None where the person has found the way."""
+    """Return the index of a new project's next hint; None once the person has done all steps."""
     layer = project.layer
     if not layer.handles:
         return 0
@@ -115,7 +115,7 @@ def find_first_step(project: Project) -> int | None:
 def _draw_pill(
     look: Look, text: str, place: ImVec2, remedy: ActionSpec | None = None
 ) -> list[Action]:
-    """Write a text below a place; one that warns has the button of a remedy beside it."""
+    """Draw a text below a place. A warning has the button of a remedy beside it."""
     palette, draw_list = look.palette, imgui.get_window_draw_list()
     padding, height = 0.7 * look.em, 2.1 * look.em
     beside = imgui.calc_text_size(remedy.label).x + 1.6 * look.em if remedy else 0.0

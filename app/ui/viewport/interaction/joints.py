@@ -1,4 +1,4 @@
-"""The joints of a motion that is drafted, over the drawing."""
+"""The joints of a motion preset that is being set up, over the drawing."""
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
@@ -8,11 +8,11 @@ from app.editor.tools import find_joint_near
 from app.ui.style import Look, colour_u32, draw_knob, draw_tag, outline_strokes, tag_size
 from app.ui.viewport.screen import ScreenMapping
 
-DOT, LIMB = 0.42, 0.16  # em: radius of a joint, width of what is between two
+DOT, LIMB = 0.42, 0.16  # em: radius of a joint, width of a bone
 
 
 def draw_joints(session: Session, look: Look, screen: ScreenMapping) -> None:
-    """Draw joints and what is between them, each side in its own colour, with the pointed name."""
+    """Draw joints and bones, each side in its own colour, with the name of the pointed joint."""
     project = screen.project
     draft = project.motion_setup
     if draft is None or project.playhead.since is not None:
@@ -42,7 +42,7 @@ def draw_joints(session: Session, look: Look, screen: ScreenMapping) -> None:
 
 
 def joint_colour(look: Look, name: str) -> ImVec4:
-    """Return the colour of a joint: each side has its own."""
+    """Return the colour of a joint, which depends on its side."""
     palette = look.palette
     if name.endswith(".L"):
         return palette.good

@@ -1,4 +1,4 @@
-"""Tracks in the viewport: the keys on a path, and what to do with a drag that was recorded."""
+"""Tracks in the viewport: keys on a path, and the bar after a recorded drag."""
 
 from imgui_bundle import ImVec2, imgui, imgui_ctx
 
@@ -15,14 +15,14 @@ SLIDER, PADDING = 11.0, 0.6  # em
 def add_track_key_gizmos(
     session: Session, look: Look, screen: ScreenMapping
 ) -> tuple[int | None, bool]:
-    """Lay a button over each key on the path of the chosen track.
+    """Lay a button over each key on the path of the selected track.
 
     Returns
     -------
     frame : int or None
-        Of the one under the pointer.
+        The frame of the key under the pointer.
     pressed : bool
-        Whether one was pressed.
+        Whether a key was pressed.
     """
     hovered, pressed = None, False
     if not session.is_posing or screen.project.playhead.since is not None:
@@ -39,7 +39,7 @@ def add_track_key_gizmos(
 
 
 def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Action]:
-    """Draw a bar with what can be done with a drag that was recorded, until that is decided."""
+    """Draw the bar of a recorded drag, until the person keeps or discards it."""
     take = project.recording
     if take is None or not take.is_over:
         return []

@@ -1,7 +1,7 @@
-"""The card that leads through a first animation.
+"""The card that explains a first animation step by step.
 
-In: the guide of a session, and where things were drawn in the frame before.
-Out: what is clicked on the card, as actions.
+In: the tutorial state of a session, and the rectangles of items in the frame before.
+Out: the actions of the card's buttons.
 Imports: `app.ui.viewport`, `app.ui.shortcuts`.
 """
 

@@ -1,4 +1,4 @@
-"""The card itself: what to do next, beside where it is done."""
+"""The tutorial's card: the next step, beside the place where it is done."""
 
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
@@ -12,8 +12,8 @@ from app.ui.window.tutorial.layout import Rect, find_free_corner
 from app.ui.window.tutorial.steps import RING, Places, TutorialStep, find_tutorial_step
 from engine.arrays import Complexes
 
-WIDTH, GAP, MARGIN = 19.0, 1.6, 0.8  # em: of the card, between it and what it points at, around it
-SPARSE = 16  # one vertex of so many tells where the drawing is
+WIDTH, GAP, MARGIN = 19.0, 1.6, 0.8  # em: of the card: width, distance from its target, margin
+SPARSE = 16  # one vertex of this many stands for the drawing
 NAME = "Guide"
 TITLES: dict[TutorialStage, str] = {
     "handle": "Add a handle",
@@ -35,18 +35,18 @@ FLAGS = (
 
 
 class Callout:
-    """Draws the card, and keeps it where it is while the hand is at what it tells."""
+    """Draws the card, and keeps its place while the person does the step."""
 
     def __init__(self) -> None:
-        self.shown_text = ""  # by the card
+        self.shown_text = ""  # on the card
         self._size = ImVec2(0, 0)  # of the card in the frame before
         self._key: tuple[object, ...] = ()
         self._corner = ImVec2(0, 0)
 
     def draw(self, session: Session, look: Look, places: Places) -> list[Action]:
-        """Draw the card of the step that is next, if there is a guide; no dialog is covered.
+        """Draw the card of the next step, if the tutorial is active. It covers no dialog.
 
-        `places` has where things were drawn in the frame before, by their names.
+        `places` has the rectangles of items in the frame before, by their names.
         """
         guide, project = session.tutorial, session.project
         if guide is None or guide.project is not project or project is None:
@@ -88,14 +88,14 @@ class Callout:
         screen: ScreenMapping,
         rooms: list[Rect],
     ) -> None:
-        """Find the card's place, unless it has one for what it tells now."""
+        """Choose the card's place, unless the card already has one for this step."""
         project = screen.project
         if self._key and (session.active_tool or project.timeline.gesture):
             return
         boxes = lead.uncovered
         corners = [corner for box in (*rooms, *boxes) for corner in box]
         sides = (side / 4 for corner in corners for side in corner)
-        # While it plays, the card stays where it is.
+        # During playback the card stays in place.
         pose = None if project.playhead.since is not None else screen.shown.pose
         key = (guide.stage, lead.text, *self._size, pose, *map(round, sides))
         if key == self._key:
@@ -108,13 +108,13 @@ class Callout:
 
 
 def _pixels(screen: ScreenMapping, places: Complexes) -> Complexes:
-    """Return where places of the scene are on the screen."""
+    """Return points of the screen, in pixels, of places of the scene."""
     points = screen.points(places)
     return np.array([complex(point.x, point.y) for point in points])
 
 
 def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> list[Action]:
-    """Write the card; return what its buttons ask for."""
+    """Write the card. Return the actions of its buttons."""
     actions: list[Action] = []
     palette, steps = look.palette, tutorials.STEPS
     is_done = guide.stage == "done"
@@ -148,7 +148,7 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
 
 
 def _dots(look: Look, done: int, count: int) -> None:
-    """Draw a dot for each step, those up to the present one filled."""
+    """Draw a dot for each step, filled up to the present step."""
     corner, height = imgui.get_cursor_screen_pos(), imgui.get_frame_height()
     draw_list, radius = imgui.get_window_draw_list(), 0.25 * look.em
     for number in range(count):
@@ -159,9 +159,9 @@ def _dots(look: Look, done: int, count: int) -> None:
 
 
 def _point(look: Look, card: Rect, lead: TutorialStep) -> None:
-    """Draw a line from the card to what it points at, and from there to where it is to be dragged.
+    """Draw a line from the card to the step's item, and from there to the drop place.
 
-    They are drawn with the card, below menus and dialogs; the pointer goes through them.
+    Both are drawn with the card, below menus and dialogs, and ignore the pointer.
     """
     if lead.at is None:
         return
@@ -189,7 +189,7 @@ def _point(look: Look, card: Rect, lead: TutorialStep) -> None:
 
 
 def _towards(box: Rect, point: ImVec2, *, is_round: bool) -> ImVec2:
-    """Return the point of a ring's or a box's edge that faces another point."""
+    """Return the point on a ring's or a box's edge that faces another point."""
     if not is_round:
         return box.nearest(point)
     way = point - box.middle
@@ -198,7 +198,6 @@ def _towards(box: Rect, point: ImVec2, *, is_round: bool) -> ImVec2:
 
 
 def _arrow(look: Look, begin: ImVec2, end: ImVec2) -> None:
-    """Draw an arrow from a point to another one."""
     draw_list, em, colour = imgui.get_window_draw_list(), look.em, colour_u32(look.palette.accent)
     way = end - begin
     length = float(np.hypot(way.x, way.y))

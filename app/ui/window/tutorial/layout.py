@@ -1,4 +1,4 @@
-"""Rectangles of the screen, and a place for a card among them."""
+"""Rectangles of the screen, and a free place for a card."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -9,28 +9,24 @@ from imgui_bundle import ImVec2
 
 from engine.arrays import Booleans, Complexes
 
-COVERS = 1e5  # pixels of distance that it is worth not to cover the whole drawing
-LITTLE = 0.01  # of the drawing, that may be covered before another room is taken
-STEPS = 9  # places that are tried along each side of the room
+COVERS = 1e5  # cost of covering the whole drawing, in pixels of distance
+LITTLE = 0.01  # share of the drawing that may be covered before another room is tried
+STEPS = 9  # tried places along each side of the room
 
 
 class Rect(NamedTuple):
-    """A rectangle of the screen."""
-
     low: ImVec2
     high: ImVec2
 
     @property
     def middle(self) -> ImVec2:
-        """Its centre."""
         return (self.low + self.high) / 2
 
     def grown(self, by: float) -> "Rect":
-        """Return one that is larger on each side by so many pixels."""
+        """Return a rectangle that is larger on each side by so many pixels."""
         return Rect(self.low - ImVec2(by, by), self.high + ImVec2(by, by))
 
     def meets(self, other: "Rect") -> bool:
-        """Tell whether they overlap."""
         return (
             self.low.x < other.high.x
             and other.low.x < self.high.x
@@ -39,12 +35,11 @@ class Rect(NamedTuple):
         )
 
     def holds(self, points: Complexes) -> Booleans:
-        """Return which points are in it."""
+        """Return which of the points are inside."""
         inside = (points.real > self.low.x) & (points.real < self.high.x)
         return inside & (points.imag > self.low.y) & (points.imag < self.high.y)
 
     def nearest(self, point: ImVec2) -> ImVec2:
-        """Return its point that is nearest to another one."""
         x = min(max(point.x, self.low.x), self.high.x)
         return ImVec2(x, min(max(point.y, self.low.y), self.high.y))
 
@@ -52,26 +47,25 @@ class Rect(NamedTuple):
 def find_free_corner(
     size: ImVec2, boxes: Sequence[Rect], rooms: Sequence[Rect], drawing: Complexes, gap: float
 ) -> ImVec2:
-    """Return where a card of a size covers no box, nothing of a drawing, and is near.
+    """Return a near corner at which a card covers no box and, if possible, nothing of the drawing.
 
     Parameters
     ----------
-    size : ImVec2
     boxes : sequence of Rect
-        What is not covered; the card is near the first one.
+        Must not be covered; the card is near the first one.
     rooms : sequence of Rect
-        Where the card may be: in the first of them in which that can be.
+        Allowed areas for the card, in order of preference.
     drawing : complex128, shape (n,)
-        Points of it. If there is no other way, the card covers as few as can be.
+        Points of the drawing. The card covers as few as possible.
     gap : float
-        Pixels between the card and what it points at.
+        Pixels between the card and its boxes.
     """
     found = [_best_corner(size, boxes, room, drawing, gap) for room in rooms]
     return min(found, key=lambda each: (each.covers > 1.0, each.covers > LITTLE)).corner
 
 
 class _Corner(NamedTuple):
-    """A place for a card, and the share of the drawing that it covers; 2 if it covers a box."""
+    """A corner for a card, and the covered share of the drawing; 2 if the card covers a box."""
 
     corner: ImVec2
     covers: float

@@ -1,4 +1,4 @@
-"""What each step of a first animation says, and what it points at."""
+"""The text and the target of each step of the tutorial."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -14,22 +14,22 @@ from app.ui.viewport import ScreenMapping
 from app.ui.window.tutorial.layout import Rect
 
 Places = Mapping[str, tuple[ImVec2, ImVec2]]
-RING, REACH = 1.3, 5.0  # em: around a place of the drawing; how near a handle counts as there
+RING, REACH = 1.3, 5.0  # em: radius of the ring around a place; tolerance of a handle's place
 
 
 class TutorialStep(NamedTuple):
-    """What the card says, what it points at, and where that is to be dragged."""
+    """The card's text, the rectangle it points at, and the drop place of a drag."""
 
     text: str
     at: Rect | None = None
     to: Rect | None = None
     is_round: bool = False
-    # Whether the card may lie over panels, too.
+    # Whether the card may cover panels, too.
     anywhere: bool = False
 
     @property
     def uncovered(self) -> tuple[Rect, ...]:
-        """What the card does not cover: what it points at, and the way of the hand from there."""
+        """Rectangles that the card must not cover: its target, and the path of the drag."""
         if self.at is None:
             return ()
         if self.to is None:
@@ -42,9 +42,9 @@ class TutorialStep(NamedTuple):
 def find_tutorial_step(
     session: Session, look: Look, guide: TutorialState, screen: ScreenMapping, places: Places
 ) -> TutorialStep:
-    """Return what is to be done next, and where.
+    """Return the next step of the tutorial and its place.
 
-    `places` has where things were drawn in the frame before, by their names.
+    `places` has the rectangles of items in the frame before, by their names.
     """
     hindrance = _hindrance(session) if guide.stage in {"handle", "pose"} else ""
     return TutorialStep(hindrance) if hindrance else _to_step(session, look, guide, screen, places)
@@ -81,7 +81,7 @@ def _to_step(
 
 
 def _hindrance(session: Session) -> str:
-    """Return what is to be done before handles can be added and dragged; empty where they can."""
+    """Return the step that must come before handles can be added and dragged; else ""."""
     if not session.is_posing:
         return f"Something else than posing is in hand: {BINDINGS['pose'].shown_keys} goes back."
     if not session.overlays.handles:
@@ -151,6 +151,6 @@ def _box(places: Places, name: str) -> Rect | None:
 
 
 def _ring(look: Look, screen: ScreenMapping, place: complex) -> Rect:
-    """Return the box of a ring around a place of the drawing."""
+    """Return the bounding box of a ring around a place of the drawing."""
     point = screen.point(place)
     return Rect(point, point).grown(RING * look.em)
