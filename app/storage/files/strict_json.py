@@ -1,4 +1,4 @@
-"""JSON as its standard has it, which every reader takes."""
+"""Standard JSON, which every reader accepts."""
 
 import json
 
@@ -13,7 +13,7 @@ def strict_json(content: object, *, indent: int | None = None) -> str:
     Raises
     ------
     LissomError
-        If a number in it is infinite or none: Python would write words that are no JSON.
+        If a number is infinite or NaN: Python would write invalid JSON.
     """
     separators = (",", ":") if indent is None else None
     try:
