@@ -130,7 +130,7 @@ def load_project(path: Path) -> Document:
 
 
 def load_thumbnail(path: Path) -> bytes | None:
-    """Read only the small PNG picture of a project; None where it has none, or is no project."""
+    """Read only the thumbnail of a project, a PNG file; None without thumbnail or project."""
     return load_member(path, THUMBNAIL, LARGEST_THUMBNAIL)
 
 
