@@ -67,12 +67,7 @@ _CODECS: Final[Mapping[str, _Codec]] = MappingProxyType(
 
 
 class _Sink:
-    """A file for PyAV, which drops some errors of what it calls, and takes others for its own.
-
-    Parameters
-    ----------
-    file : binary file
-    """
+    """A file for PyAV that keeps its errors: PyAV drops or replaces errors of its callbacks."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
