@@ -1,4 +1,4 @@
-"""A mesh that is posed anew for each frame, by the processor or by the graphics card."""
+"""A mesh with a new pose in each frame, computed by the processor or by the graphics card."""
 
 import moderngl
 
@@ -21,9 +21,9 @@ class DrawnMesh:
     Parameters
     ----------
     mesh : GpuMesh
-        Released after it.
+        Released after the `DrawnMesh`.
     by_shader : bool
-        Whether streamed vertices are placed by the shader; `shader_is_faster` tells.
+        Whether the shader computes streamed vertices; see `shader_is_faster`.
     """
 
     def __init__(self, mesh: GpuMesh, *, by_shader: bool) -> None:
@@ -47,7 +47,6 @@ class DrawnMesh:
         return posed
 
     def release(self) -> None:
-        """Let the poses go."""
         self._pose.release()
         if self._series_pose is not None:
             self._series_pose.release()
@@ -74,10 +73,10 @@ class DrawnMesh:
 
 
 def shader_is_faster(context: moderngl.Context) -> bool:
-    """Tell whether the shader should place streamed vertices, and not the processor.
+    """Return whether the shader should compute streamed vertices, and not the processor.
 
-    Where the processor draws, its matrix-vector product with an upload is the faster of the two:
-    `python -m tests.bench streaming` measures both. A graphics card needs nothing but the weights.
+    In software OpenGL the processor's matrix-vector product with an upload is faster: `python -m
+    tests.bench streaming` measures both. A graphics card needs only the weights.
     """
     return not is_software(context)
 

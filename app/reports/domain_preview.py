@@ -21,7 +21,7 @@ def draw_preview(picture: Picture, domain: MeshedDomain) -> bytes:
     Parameters
     ----------
     domain : MeshedDomain
-        Its points are in the pixels of `picture`, y up.
+        In the pixels of `picture`, y up.
     """
     everything = np.concatenate([domain.cage, [0, complex(*picture.size)]])
     left, top = everything.real.min(), everything.imag.max()
