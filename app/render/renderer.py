@@ -153,9 +153,9 @@ class Renderer:
         heat: Heat | None = None,
         depth: int = 0,
     ) -> None:
-        """Draw parts on a layer of their own first, so deep in others, and then that on the target.
+        """Draw parts into the offscreen target of this depth, then composite it on `target`.
 
-        Else limbs that overlap would shine through each other.
+        Drawn directly, overlapping limbs would show through each other.
         """
         layer = self._layer_at(depth, target)
         layer.framebuffer.use()

@@ -79,7 +79,7 @@ class SegmentReport:
 
     @property
     def error(self) -> DistortionRange:
-        """By how much the true extremes may be worse than the measured ones: what is proven is."""
+        """Upper bound of the true extremes minus the measured ones, from the proof."""
         return self._proven.beyond(self.reached)
 
     @property

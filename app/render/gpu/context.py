@@ -199,7 +199,7 @@ class _OSMesa:
         }
         pairs = [number for pair in wanted.items() for number in pair]
         attributes = (ctypes.c_int * (len(pairs) + 1))(*pairs, 0)
-        if not _survives(self._library._name, tuple(pairs)):  # noqa: SLF001 - the name it was loaded by
+        if not _survives(self._library._name, tuple(pairs)):  # noqa: SLF001 - by which it was found
             raise LissomError("it crashes on this machine")
         self._context = self._library.OSMesaCreateContextAttribs(attributes, None)
         if not self._context:
