@@ -39,7 +39,7 @@ class DrawnMesh:
     def pose(
         self, vertices: Vertices, *, placement: RigidMotion | Similarity = IDENTITY_MOTION
     ) -> PosedMesh:
-        """Return the mesh with its vertices there and painted in their order; new ones go up."""
+        """Return the mesh posed and painted by these vertices; new vertices are uploaded."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
         posed = self._current[1]
