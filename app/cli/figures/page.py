@@ -1,4 +1,4 @@
-"""One page with all figures, that needs no other file."""
+"""A self-contained page with all figures."""
 
 import base64
 from collections.abc import Mapping
