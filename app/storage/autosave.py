@@ -66,7 +66,6 @@ class Autosave:
             save_project(self._path, replace(document, unknown_members=members), is_private=True)
 
     def remove(self) -> None:
-        """Remove the autosave."""
         self._path.unlink(missing_ok=True)
         if self._lock is not None:
             os.close(self._lock)
@@ -139,7 +138,6 @@ def mark_report_seen(folder: Path) -> bool:
 
 
 def remove_report(folder: Path) -> None:
-    """Remove all reports."""
     for name in (REPORT, SEEN_REPORT):
         (folder / name).unlink(missing_ok=True)
 

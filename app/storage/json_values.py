@@ -227,11 +227,9 @@ class Field:
     legacy_name: str = ""
 
     def value_of(self, value: Any) -> Any:
-        """Return the value of this field in an object."""
         return getattr(value, self.name) if self.get is None else self.get(value)
 
     def read(self, content: JsonObject, where: str) -> Any:
-        """Return the value of this field in a JSON object."""
         absent = self.legacy_default if self.default is MISSING else self.default
         name = (
             self.legacy_name

@@ -50,7 +50,6 @@ def is_layered(path: Path) -> bool:
 
 
 def read_layered(path: Path) -> LayeredPicture:
-    """Read a layered drawing."""
     data = read_file(path)
     try:
         return READERS[path.suffix.lower()](data)

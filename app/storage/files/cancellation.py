@@ -55,7 +55,7 @@ class Cancellation:
             raise LissomError(CANCELLED)
 
     def commit(self) -> None:
-        """Let the begun files take their places; later cancellation has no effect.
+        """Let the begun files take their places. Later cancellation has no effect.
 
         Raises
         ------
