@@ -74,12 +74,10 @@ class Preferences:
         return frozenset(folder for folder in chosen if folder is not None)
 
     def with_recent(self, path: Path) -> "Preferences":
-        """Return the preferences with this file as the most recent one."""
         others = (other for other in self.recent if other != path)
         return replace(self, recent=(path, *others)[:MOST_RECENT], folder=path.parent)
 
     def without_recent(self, path: Path) -> "Preferences":
-        """Return the preferences without this file among the recent ones."""
         return replace(self, recent=tuple(other for other in self.recent if other != path))
 
 
@@ -140,8 +138,6 @@ def save_preferences(folder: Path, preferences: Preferences) -> None:
 
 
 def _understood(content: dict[str, Any]) -> Preferences:
-    """Return the valid entries."""
-
     def number(name: str, low: float, high: float) -> Any:
         value = content.get(name)
         if isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high:

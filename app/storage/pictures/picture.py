@@ -81,7 +81,6 @@ class Picture:
 
     @property
     def is_opaque(self) -> bool:
-        """Whether all pixels are opaque."""
         # Row by row: in most drawings the first row decides.
         return all(bool((row[:, 3] == OPAQUE).all()) for row in self.rgba)
 
@@ -216,7 +215,6 @@ def apply_orientation(image: Image.Image) -> tuple[Image.Image, str]:
 
 
 def _pixels(image: Image.Image) -> Bytes:
-    """Return the pixels (h, w, 4) of a picture in sRGB."""
     width, height = image.size
     rgba = np.empty((height, width, 4), dtype=np.uint8)
     # Pillow returns pixels in small pieces. Bands stay in the processor's cache, which takes a

@@ -76,8 +76,6 @@ def layer_members(layer: Layer) -> dict[str, bytes]:
 
 
 class LayerMembers:
-    """Reads the members of a layer."""
-
     def __init__(self, archive: Archive, layer: int) -> None:
         self._archive = archive
         self._folder = _folder(layer)
@@ -126,7 +124,6 @@ class LayerMembers:
         return self._archive.numbers(f"{self._folder}/{STIFFNESS}", most=most)
 
     def mask(self, size: tuple[int, int]) -> Mask:
-        """Return the mask of the cut-out."""
         most = -(-size[0] * size[1] // 8)
         return Mask(bits=self._archive.bytes(f"{self._folder}/mask.npy", most=most), size=size)
 
