@@ -59,7 +59,7 @@ def put_on_clipboard(picture: Path) -> None:
                 with suppress(OSError):  # without locks another starting window may remove the file
                     lock(file.fileno())
             # The program may keep running to serve the clipboard, so nothing waits for its end.
-            subprocess.run(  # noqa: S603 - one of those above
+            subprocess.run(  # noqa: S603 - a fixed command
                 command,
                 stdin=file,
                 stdout=subprocess.DEVNULL,

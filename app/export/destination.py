@@ -48,7 +48,6 @@ class FrameNames:
         return [f"{start}{number:0{width}d}{end}" for number in range(first, first + count)]
 
     def fits(self, name: str) -> bool:
-        """Return whether a file is named as a frame."""
         start, digits, end = self._parts()
         pattern = rf"{re.escape(start)}\d{{{digits},}}{re.escape(end)}"
         return re.fullmatch(pattern, name) is not None

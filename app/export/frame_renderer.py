@@ -229,7 +229,6 @@ class FrameRenderer:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Notices about the posed frames."""
         # A camera crops on purpose.
         if self._document.camera or self._room.contains(self._reach, slack=_OUTSIDE):
             return ()

@@ -90,7 +90,6 @@ class MeshExport:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Notices about the exported meshes."""
         wanted, format_ = self._plan.shapes.tolerance, EXPORT_FORMATS[self._plan.format]
         found = []
         for shape in self.meshes:

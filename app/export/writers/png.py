@@ -53,7 +53,6 @@ def save_png(frame: Bytes, file: IO[bytes]) -> None:
 
 
 def png_chunk(kind: bytes, data: bytes) -> bytes:
-    """Return a chunk of a PNG file."""
     check = zlib_ng.crc32(data, zlib_ng.crc32(kind))
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
 
