@@ -125,7 +125,6 @@ class Report:
 
     @property
     def corrected_verdict(self) -> Verdict:
-        """The verdict of the corrected frames."""
         corrected = self.corrected
         if corrected is None or not (corrected.frames or corrected.left_out):
             return Verdict.PROVEN
@@ -186,7 +185,6 @@ def certify_clip(
 def _segment_report(
     clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: PoseSegment
 ) -> SegmentReport:
-    """Prove and measure the segment of this number."""
     layer, span = clip.layer, clip_segments(clip)[number]
     start, end, last = clip.keys[span.first], clip.keys[span.last], span.start + span.frames
     # A key with hold easing is shown until the next key.

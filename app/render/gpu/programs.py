@@ -57,7 +57,6 @@ class Programs:
 
 
 def set_uniforms(program: moderngl.Program, values: Mapping[str, object]) -> None:
-    """Set the uniforms of a program by name."""
     for name, value in values.items():
         program[name] = value
 
