@@ -32,7 +32,6 @@ def print_line(message: str) -> None:
 
 
 def print_notice(message: str) -> None:
-    """Print a notice."""
     print(f"lissom: {display_message(message)}", file=sys.stderr)
 
 

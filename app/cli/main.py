@@ -21,8 +21,8 @@ from app.errors import EXPECTED_ERRORS, REINSTALL, listen_to_progress
 
 EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
-# Subcommand → its summary. The module of that name in app.cli.usage declares its options, which is
-# quickly loaded; that in app.cli.commands runs it, and is loaded when all that was said is right.
+# The command's module in app.cli.usage declares its options and loads fast. Its module in
+# app.cli.commands runs it; it is loaded after the arguments are checked.
 TOO_LITTLE_MEMORY = (
     "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
     "Lissom more of it"

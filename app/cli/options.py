@@ -46,8 +46,6 @@ def input_file(text: str) -> Path:
 
 
 class Output(NamedTuple):
-    """The path of an output."""
-
     path: Path
     text: str  # as typed
 
@@ -96,7 +94,6 @@ def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:
 
 
 def add_project(parser: argparse.ArgumentParser) -> None:
-    """Declare the input project."""
     parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
 
 
@@ -107,7 +104,6 @@ def add_out(
     *,
     place: Callable[[str], Path | Output] = output_file,
 ) -> None:
-    """Declare the output."""
     parser.add_argument("--out", metavar=metavar, type=place, required=True, help=about)
 
 
@@ -129,7 +125,6 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of the cut-out."""
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
         "--background",

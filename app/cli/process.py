@@ -102,7 +102,6 @@ class SignalHandler:
 
     @property
     def is_signalled(self) -> bool:
-        """Whether a signal has come."""
         return self._number is not None
 
     @property

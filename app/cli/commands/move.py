@@ -33,8 +33,6 @@ NO_JOINTS = JointsFile(kind=None, joints={})
 
 
 class _LayerJoints(NamedTuple):
-    """The kind and the joints of a drawing."""
-
     kind: str
     joints: dict[str, complex]
 

@@ -34,7 +34,6 @@ class MeasuredMotion:
 
     @cached_property
     def frames(self) -> tuple[Inbetween, ...]:
-        """The in-betweens at all times."""
         return tuple(self.frame(float(time)) for time in self.times)
 
     @cached_property
