@@ -21,12 +21,12 @@ from app.errors import EXPECTED_ERRORS, REINSTALL, listen_to_progress
 
 EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
-# The command's module in app.cli.usage declares its options and loads fast. Its module in
-# app.cli.commands runs it; it is loaded after the arguments are checked.
 TOO_LITTLE_MEMORY = (
     "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
     "Lissom more of it"
 )
+# Subcommand → its summary. A module of this name in app.cli.usage declares its options and loads
+# fast. Its module in app.cli.commands runs it, and is loaded after the arguments are checked.
 COMMANDS = {
     "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
