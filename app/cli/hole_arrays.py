@@ -35,10 +35,7 @@ def hole_arrays(holes: Sequence[Hole]) -> dict[str, npt.NDArray[Any]]:
 def read_holes(data: Mapping[str, npt.NDArray[Any]]) -> tuple[Hole, ...]:
     """Return the holes from arrays; none if the arrays are absent.
 
-    Raises
-    ------
-    LissomError
-        If some of the arrays are missing, or do not fit each other.
+    Raises `LissomError` if some of the arrays are missing, or do not fit each other.
     """
     missing = [name for name in HOLE_ARRAYS if name not in data]
     if len(missing) == len(HOLE_ARRAYS):

@@ -58,10 +58,7 @@ class Keyframes:
 def read_keyframes(paths: list[Path]) -> Keyframes:
     """Read one file with all keyframes, or one mesh per keyframe.
 
-    Raises
-    ------
-    LissomError
-        If a file cannot be read, lacks an array, or does not fit the others.
+    Raises `LissomError` if a file cannot be read, lacks an array, or does not fit the others.
     """
     if len(paths) > 1:
         triangles, poses = read_mesh_keyframes(paths)

@@ -27,10 +27,7 @@ class PlaneMesh(NamedTuple):
 def read_mesh(path: Path) -> PlaneMesh:
     """Read a mesh in the format of the file's suffix.
 
-    Raises
-    ------
-    LissomError
-        If the file cannot be read, or is not a plane mesh.
+    Raises `LissomError` if the file cannot be read, or is not a plane mesh.
     """
     if path.suffix.lower() != ".obj":
         arrays = read_arrays(path, required=("vertices", "triangles"))
@@ -43,10 +40,7 @@ def read_mesh_keyframes(
 ) -> tuple[Integers, tuple[npt.NDArray[np.complex128], ...]]:
     """Read meshes with the same triangles, one for each keyframe.
 
-    Raises
-    ------
-    LissomError
-        As `read_mesh`, or if the triangles differ.
+    Raises `LissomError` as `read_mesh`, or if the triangles differ.
     """
     meshes = [read_mesh(path) for path in paths]
     first = meshes[0].triangles

@@ -43,10 +43,7 @@ def use_one_thread() -> None:
 def require_memory() -> None:
     """Refuse to start if libraries cannot be loaded, or would wait for memory forever.
 
-    Raises
-    ------
-    MemoryError
-        If the system limits this process to too little memory, as by `ulimit -v`.
+    Raises `MemoryError` if the system limits this process to too little memory, as by `ulimit -v`.
     """
     # −1 means no limit.
     if sys.platform != "win32" and 0 <= resource.getrlimit(resource.RLIMIT_AS)[0] < LEAST_MEMORY:

@@ -24,10 +24,7 @@ _OSASCRIPT: Final = (
 def clipboard_program() -> tuple[str, ...]:
     """Return the command that takes a PNG file from its standard input or LISSOM_PICTURE.
 
-    Raises
-    ------
-    LissomError
-        If this system has no such command.
+    Raises `LissomError` if this system has no such command.
     """
     if sys.platform == "win32":
         return ("powershell", "-NoProfile", "-STA", "-Command", _POWERSHELL)
@@ -47,10 +44,7 @@ def clipboard_program() -> tuple[str, ...]:
 def put_on_clipboard(picture: Path) -> None:
     """Put a PNG file on the clipboard. The file may be deleted afterwards.
 
-    Raises
-    ------
-    LissomError
-        If the system refuses the picture.
+    Raises `LissomError` if the system refuses the picture.
     """
     command = clipboard_program()
     try:

@@ -138,10 +138,7 @@ class FrameRenderer:
     def pose(self, frame: float) -> PosedFrame:
         """Compute the vertices at a frame; on any thread, one frame at a time.
 
-        Raises
-        ------
-        LissomError
-            If the motion fails there.
+        Raises `LissomError` if the motion fails there.
         """
         if self._looks:
             self._prepare_thinnings()
@@ -176,10 +173,7 @@ class FrameRenderer:
     def draw(self, posed: PosedFrame) -> Bytes:
         """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.
 
-        Raises
-        ------
-        LissomError
-            If the frame cannot be drawn.
+        Raises `LissomError` if the frame cannot be drawn.
         """
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)

@@ -120,11 +120,8 @@ class ExportPlan(FormatSettings):
 def check_request(document: Document, request: ExportRequest) -> None:
     """Refuse an impossible request before any long computation.
 
-    Raises
-    ------
-    LissomError
-        If the output path does not suit the format, frames lie outside the animation, or the format
-        cannot be written.
+    Raises `LissomError` if the output path does not suit the format, frames lie outside the
+    animation, or the format cannot be written.
     """
     settings = request.settings
     if not document.exported_layers:

@@ -126,10 +126,7 @@ def _write(
 ) -> None:
     """Write the queued frames until the queue ends; all file access is on this thread.
 
-    Raises
-    ------
-    LissomError
-        If a file cannot be written, or the export was cancelled.
+    Raises `LissomError` if a file cannot be written, or the export was cancelled.
     """
     with open_writer(plan, cancellation) as writer:
         opened.set_result(writer)

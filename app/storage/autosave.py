@@ -145,10 +145,7 @@ def remove_report(folder: Path) -> None:
 def open_fault_log(folder: Path) -> int:
     """Return a descriptor of the file into which Python writes its traceback at a crash.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be opened.
+    Raises `OSError` if the file cannot be opened.
     """
     return os.open(folder / FAULT_LOG, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
 

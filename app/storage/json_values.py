@@ -99,11 +99,8 @@ def repr_for_error(content: object) -> str:
 def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) -> Parsed:
     """Read a JSON file that a person wrote, and parse its decoded content.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, too large, not text, not JSON, or cannot be parsed. The message
-        names the file.
+    Raises `LissomError` if the file is missing, too large, not text, not JSON, or cannot be parsed.
+    The message names the file.
     """
     try:
         text = read_file(path, largest=largest).decode("utf-8-sig")

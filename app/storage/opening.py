@@ -72,10 +72,8 @@ class CutOutResult:
 def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a picture, find its outline, and return a document that shows it as drawn.
 
-    Raises
-    ------
-    LissomError, EngineError
-        If the file is no picture, or has no subject with an outline.
+    Raises `LissomError` or `EngineError` if the file is no picture, or has no subject with an
+    outline.
     """
     return build_scene(read_file(path), path, meshing, cut_out)
 

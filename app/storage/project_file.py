@@ -110,11 +110,8 @@ def project_digest(path: Path) -> str | None:
 def load_project(path: Path) -> Document:
     """Read a project file.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, is no project, was written by a newer version, or is damaged. The
-        message names the reason.
+    Raises `LissomError` if the file is missing, is no project, was written by a newer version, or
+    is damaged. The message names the reason.
     """
     try:
         with open_file(path) as (file, size), open_zip(file) as members:

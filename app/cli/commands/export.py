@@ -145,10 +145,7 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
 def _check_options(name: str, arguments: argparse.Namespace) -> None:
     """Refuse options that the format does not use.
 
-    Raises
-    ------
-    LissomError
-        If there is such an option.
+    Raises `LissomError` if there is such an option.
     """
     format_ = EXPORT_FORMATS[name]
     framing = () if format_.has_frame else ("size", "background", "framing")
@@ -170,10 +167,7 @@ def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
 
     For a single frame, pictures come first among several formats.
 
-    Raises
-    ------
-    LissomError
-        If no format or several formats have this suffix.
+    Raises `LissomError` if no format or several formats have this suffix.
     """
     suffix = out.suffix.lower()
     if out.is_dir() or not suffix:

@@ -17,10 +17,7 @@ MARGIN = 0.03  # of the larger side, around a box
 class ShapeRenderer:
     """Owner of the renderer of shapes; a context manager.
 
-    Raises
-    ------
-    LissomError
-        If this machine cannot draw.
+    Raises `LissomError` if this machine cannot draw.
     """
 
     def __init__(self) -> None:

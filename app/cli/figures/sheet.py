@@ -25,10 +25,7 @@ SHOWN = 1.9  # relative distortion above which curves are cut off
 def require_matplotlib() -> None:
     """Check for matplotlib before any computation.
 
-    Raises
-    ------
-    LissomError
-        If matplotlib is not installed.
+    Raises `LissomError` if matplotlib is not installed.
     """
     if remedy := install_hint("figures"):
         raise LissomError(f"the figures need matplotlib, which is not installed: {remedy}")

@@ -44,10 +44,7 @@ class _SheetLayout(NamedTuple):
 class SpritesheetWriter(FrameWriter):
     """Collects the frames; writes the sheet and its data at the end.
 
-    Raises
-    ------
-    LissomError
-        If the sheet would be too large.
+    Raises `LissomError` if the sheet would be too large.
     """
 
     def __init__(self, file: IO[bytes], data: IO[bytes], plan: ExportPlan) -> None:
@@ -89,10 +86,7 @@ class SpritesheetWriter(FrameWriter):
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
     """Return the columns and rows of a nearly square sheet of equal cells.
 
-    Raises
-    ------
-    LissomError
-        If it would be too large.
+    Raises `LissomError` if it would be too large.
     """
     count, padding = len(plan.times), plan.sheet.padding
     width, height = (side + padding for side in plan.view.size)

@@ -58,10 +58,8 @@ def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameW
 
     The file takes its place at the end of the block; after an error there is no file.
 
-    Raises
-    ------
-    LissomError
-        If the folder or the file cannot be made, or the format cannot hold such frames.
+    Raises `LissomError` if the folder or the file cannot be made, or the format cannot hold such
+    frames.
     """
     if plan.format in FOLDER_WRITERS:
         make_folder(plan.out)

@@ -102,10 +102,7 @@ class VideoWriter(FrameWriter):
     In MP4 an odd side gets one more row or column of the background: H.264 stores colours in blocks
     of 2 × 2 pixels.
 
-    Raises
-    ------
-    LissomError
-        If the codec is missing, or does not take frames of this size.
+    Raises `LissomError` if the codec is missing, or does not take frames of this size.
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:

@@ -76,10 +76,8 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
 def window_context() -> moderngl.Context:
     """Return the OpenGL context of the current window.
 
-    Raises
-    ------
-    LissomError
-        If the context lacks required features. The message names the package to install.
+    Raises `LissomError` if the context lacks required features. The message names the package to
+    install.
     """
     _require_memory()
     try:

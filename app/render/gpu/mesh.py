@@ -71,11 +71,8 @@ class PositionBuffer(VertexSource):
     def write(self, positions: Singles) -> None:
         """Upload the positions, float32 (v, 2), of a frame.
 
-        Raises
-        ------
-        LissomError
-            If the shape does not fit the mesh or a position is not finite. Such a frame would be
-            empty without an error.
+        Raises `LissomError` if the shape does not fit the mesh or a position is not finite. Such a
+        frame would be empty without an error.
         """
         if positions.shape != self._shape:
             raise LissomError(f"a frame needs {self._shape} positions, not {positions.shape}")

@@ -33,11 +33,8 @@ def read_arrays(
 ) -> dict[str, npt.NDArray[Any]]:
     """Read the required arrays and all present optional arrays from an NPZ file.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, is not an NPZ file, is damaged, would unpack to too much, or lacks a
-        required array.
+    Raises `LissomError` if the file is missing, is not an NPZ file, is damaged, would unpack to too
+    much, or lacks a required array.
     """
     try:
         with open_file(path) as (file, size), open_zip(file) as archive:

@@ -107,10 +107,8 @@ def write_atomically(
 def atomic_file(path: Path, cancellation: Cancellation | None = None) -> Iterator[IO[bytes]]:
     """Open a file that takes the place of `path` when the `with` block ends without an error.
 
-    Raises
-    ------
-    LissomError
-        As `write_atomically`. An `OSError` in the block counts as a refusal of the disk.
+    Raises `LissomError` as `write_atomically`. An `OSError` in the block counts as a refusal of the
+    disk.
     """
     with atomic_files(path, cancellation=cancellation) as (file,):
         yield file

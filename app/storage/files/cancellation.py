@@ -34,10 +34,7 @@ class Cancellation:
     def add_part(self, part: Path) -> None:
         """Register the hidden file into which a file is written.
 
-        Raises
-        ------
-        LissomError
-            If the operation is cancelled. The writer then removes the hidden file.
+        Raises `LissomError` if the operation is cancelled. The writer then removes the hidden file.
         """
         with self._lock:
             self.check()
@@ -46,10 +43,7 @@ class Cancellation:
     def check(self) -> None:
         """Continue unless the operation is cancelled.
 
-        Raises
-        ------
-        LissomError
-            If it is cancelled.
+        Raises `LissomError` if it is cancelled.
         """
         if self._is_cancelled:
             raise LissomError(CANCELLED)
@@ -57,10 +51,7 @@ class Cancellation:
     def commit(self) -> None:
         """Let the begun files take their places. Later cancellation has no effect.
 
-        Raises
-        ------
-        LissomError
-            If the operation is cancelled.
+        Raises `LissomError` if the operation is cancelled.
         """
         with self._lock:
             if self._parts:

@@ -26,10 +26,7 @@ LOCKED_BYTE = 2**31 - 2
 def open_to_lock(path: Path, flags: int = 0) -> int:
     """Return a descriptor of a file to lock; a read-only file is opened for reading.
 
-    Raises
-    ------
-    OSError
-        If the file is missing or unreadable.
+    Raises `OSError` if the file is missing or unreadable.
     """
     try:
         return os.open(path, os.O_RDWR | PLAIN | flags, 0o666)
@@ -40,10 +37,7 @@ def open_to_lock(path: Path, flags: int = 0) -> int:
 def lock(descriptor: int) -> bool:
     """Lock an open file until it is closed; return False if another process holds a lock.
 
-    Raises
-    ------
-    OSError
-        If the disk has no locks.
+    Raises `OSError` if the disk has no locks.
     """
     try:
         if sys.platform == "win32":

@@ -54,10 +54,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
 def make_folder(folder: Path) -> None:
     """Make a folder for outputs, with its missing parents.
 
-    Raises
-    ------
-    LissomError
-        If the folder cannot be made.
+    Raises `LissomError` if the folder cannot be made.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)

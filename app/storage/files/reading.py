@@ -71,11 +71,9 @@ def open_file(path: Path) -> Iterator[OpenFile]:
 def open_zip(file: IO[bytes]) -> Iterator[zipfile.ZipFile]:
     """Open a zip file whose members use the common packing methods.
 
-    Raises
-    ------
-    NotImplementedError
-        If a member uses another method: the decoders of other methods ignore size limits and raise
-        other errors. As every exception in `DAMAGED_ZIP`, it may also come of any damaged file.
+    Raises `NotImplementedError` if a member uses another method: the decoders of other methods
+    ignore size limits and raise other errors. As every exception in `DAMAGED_ZIP`, it may also come
+    of any damaged file.
     """
     with zipfile.ZipFile(file) as archive:
         if not {member.compress_type for member in archive.infolist()} <= METHODS:
@@ -97,10 +95,8 @@ def tail_digest(file: IO[bytes]) -> str:
 def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     """Return the bytes of a file.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, unreadable, no plain file, or larger than `largest` bytes.
+    Raises `LissomError` if the file is missing, unreadable, no plain file, or larger than `largest`
+    bytes.
     """
     try:
         with open_file(path) as (file, size):

@@ -10,10 +10,7 @@ NOT_FINITE = "a number in it is not finite, which JSON cannot say"
 def strict_json(content: object, *, indent: int | None = None) -> str:
     """Return a value as JSON, on one line or with this indent.
 
-    Raises
-    ------
-    LissomError
-        If a number is infinite or NaN: Python would write invalid JSON.
+    Raises `LissomError` if a number is infinite or NaN: Python would write invalid JSON.
     """
     separators = (",", ":") if indent is None else None
     try:

@@ -116,10 +116,8 @@ class GroupPaths:
     def add(self, around: str, group: Group) -> str:
         """Add a group inside the group with the path `around`; return its path.
 
-        Raises
-        ------
-        LissomError
-            If the nesting is too deep, there are too many groups, or the name is too long.
+        Raises `LissomError` if the nesting is too deep, there are too many groups, or the name is
+        too long.
         """
         if around.count("/") + bool(around) >= MAX_GROUP_DEPTH:
             raise LissomError(GROUPS_DEEP.format(most=MAX_GROUP_DEPTH))

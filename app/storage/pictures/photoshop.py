@@ -78,11 +78,8 @@ class _Place:
 def read_photoshop(data: bytes) -> LayeredPicture:
     """Read the layers of a Photoshop file. Masks are applied to the pixels.
 
-    Raises
-    ------
-    LissomError
-        If psd-tools is not installed, or if the file is no Photoshop file, is damaged, too large or
-        empty.
+    Raises `LissomError` if psd-tools is not installed, or if the file is no Photoshop file, is
+    damaged, too large or empty.
     """
     if not data.startswith(SIGNATURE):
         raise LissomError("it is not a Photoshop file")

@@ -88,10 +88,8 @@ class Picture:
 def decode_picture(data: bytes, name: str) -> Picture:
     """Decode the bytes of a picture file; errors call the file `name`.
 
-    Raises
-    ------
-    LissomError
-        If the bytes are no picture or damaged, or the picture is unreasonably large.
+    Raises `LissomError` if the bytes are no picture or damaged, or the picture is unreasonably
+    large.
     """
     (picture,) = decode_pictures([(data, name)])
     return picture

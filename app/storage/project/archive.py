@@ -114,10 +114,7 @@ class Archive:
     def read(self, name: str, *, largest: int | None = None) -> bytes:
         """Return the contents of a member, of at most `largest` bytes.
 
-        Raises
-        ------
-        LissomError
-            If the member is missing or larger; nothing is unpacked then.
+        Raises `LissomError` if the member is missing or larger; nothing is unpacked then.
         """
         if name not in self._members:
             raise LissomError(f"it lacks {name}")

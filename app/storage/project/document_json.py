@@ -433,10 +433,8 @@ def read_document(
 
     Layers in `known`, by id, are not read again from a just written archive; they come first.
 
-    Raises
-    ------
-    LissomError, EngineError
-        If a field is missing or of another kind, or the document would be invalid.
+    Raises `LissomError` or `EngineError` if a field is missing or of another kind, or the document
+    would be invalid.
     """
     if as_whole(content["schema"], "schema") == 1:
         _bring_up_to_schema_2(content)
