@@ -59,7 +59,7 @@ class Output(NamedTuple):
 def output(text: str) -> Output:
     """Return the path of an output file or folder, which need not exist.
 
-    Raises `LissomError` if it is empty, or a dash, which stands for standard output elsewhere.
+    Raises `LissomError` if the path is empty or a dash, which stands for standard output elsewhere.
     """
     if text == "-":
         raise LissomError(NO_STANDARD_OUTPUT)

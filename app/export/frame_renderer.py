@@ -138,7 +138,7 @@ class FrameRenderer:
     def pose(self, frame: float) -> PosedFrame:
         """Compute the vertices at a frame; on any thread, one frame at a time.
 
-        Raises `LissomError` if the motion fails there.
+        Raises `LissomError` if the motion fails at this frame.
         """
         if self._looks:
             self._prepare_thinnings()

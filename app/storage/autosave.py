@@ -21,7 +21,7 @@ from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 
 SECONDS = 20.0  # between a change and its autosave, at least
-# The member of the file that stores the project file of the work. Saved projects have none.
+# Member with the source of unsaved work. Saved projects do not have it.
 SOURCE_INFO = "origin.json"
 LARGEST_SOURCE_INFO = 100_000  # bytes
 # Crash reports, before and after the person was notified, and Python's own crash log.

@@ -40,7 +40,7 @@ from engine.errors import EngineError
 READERS = {".ora": read_openraster, ".psd": read_photoshop}
 # Minimum per layer, however many layers share the triangles.
 FEWEST_TRIANGLES = 4_000
-LARGEST_FLAT = 1_024  # pixels: larger layers are halved (or more) first
+LARGEST_FLAT = 1_024  # pixels: layers on a canvas of twice this size are reduced
 WHOLE = CutOut(background="none")  # removes only transparent pixels
 
 

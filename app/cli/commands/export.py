@@ -143,10 +143,7 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
 
 
 def _check_options(name: str, arguments: argparse.Namespace) -> None:
-    """Refuse options that the format does not use.
-
-    Raises `LissomError` if there is such an option.
-    """
+    """Raise `LissomError` for options that the format does not use."""
     format_ = EXPORT_FORMATS[name]
     framing = () if format_.has_frame else ("size", "background", "framing")
     useless = {option: option for option in (*framing, *(("names",) if format_.suffixes else ()))}

@@ -23,10 +23,7 @@ SHOWN = 1.9  # relative distortion above which curves are cut off
 
 
 def require_matplotlib() -> None:
-    """Check for matplotlib before any computation.
-
-    Raises `LissomError` if matplotlib is not installed.
-    """
+    """Raise `LissomError` if matplotlib is not installed, before any computation."""
     if remedy := install_hint("figures"):
         raise LissomError(f"the figures need matplotlib, which is not installed: {remedy}")
 

@@ -86,7 +86,7 @@ class SpritesheetWriter(FrameWriter):
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
     """Return the columns and rows of a nearly square sheet of equal cells.
 
-    Raises `LissomError` if it would be too large.
+    Raises `LissomError` if the sheet would be too large.
     """
     count, padding = len(plan.times), plan.sheet.padding
     width, height = (side + padding for side in plan.view.size)

@@ -44,7 +44,7 @@ _CODECS: Final[Mapping[str, _Codec]] = MappingProxyType(
             opaque="yuv420p",
             transparent="",
             # Nearly lossless to the eye; a short look-ahead bounds the memory. Without the last
-            # option one file in three hundred differed by a byte or more, with the same pictures.
+            # option one file in three hundred was a byte longer or shorter, with the same pictures.
             options={"crf": "15", "rc-lookahead": "10", "x264-params": "cpu-independent=1"},
         ),
         "webm": _Codec(

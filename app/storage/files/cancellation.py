@@ -41,10 +41,7 @@ class Cancellation:
             self._parts.add(part)
 
     def check(self) -> None:
-        """Continue unless the operation is cancelled.
-
-        Raises `LissomError` if it is cancelled.
-        """
+        """Raise `LissomError` if the operation is cancelled."""
         if self._is_cancelled:
             raise LissomError(CANCELLED)
 

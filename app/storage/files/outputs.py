@@ -52,10 +52,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder for outputs, with its missing parents.
-
-    Raises `LissomError` if the folder cannot be made.
-    """
+    """Make a folder for outputs and its missing parents, or raise `LissomError`."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as error:

@@ -73,7 +73,7 @@ def _octopus(triangles: int) -> Shape:
 
 
 def _swirled(shape: Shape) -> tuple[Complexes, Complexes]:
-    """Return the mesh waved from side to side, and swirled about its middle; both not harmonic."""
+    """Return the mesh waved from side to side, and swirled about its middle, both non-harmonic."""
     rest = shape.domain.mesh.vertices
     height = float(np.ptp(rest.imag))
     middle = rest.mean()

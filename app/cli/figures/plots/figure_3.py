@@ -40,6 +40,7 @@ def make_square_pair() -> ShapePair:
 
 
 def measure_stretch() -> tuple[StretchResult, ...]:
+    """Measure ν, scaled η and metric."""
     both = make_square_pair()
     found = []
     for method in (NU, SCALED_ETA, METRIC):
