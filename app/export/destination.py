@@ -73,9 +73,9 @@ def check_destination(
     Raises
     ------
     LissomError
-        If a folder is given for a file or a file for a folder, the suffix belongs to another
-        format, the name is a bare suffix, or the folder is missing or read-only; or as
-        `check_writable`, for every file.
+        If a folder is given for a file or a file for a folder, or the suffix belongs to another
+        format or is the whole name. Also if the folder is missing or read-only, and as
+        `check_writable` for every file.
     """
     suffixes, label = EXPORT_FORMATS[name].suffixes, EXPORT_FORMATS[name].label
     if out.name.lower() in _all_suffixes():

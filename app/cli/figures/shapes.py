@@ -77,7 +77,7 @@ def letter_s(triangles: int) -> ShapePair:
 
     The U is larger at one end. If a shape turns and grows, the blended Jacobians of ARAP belong to
     no map. The limit on k is tight, so that all of the shape is sheared nearly as far as its worst
-    point, and additional shear by other methods is visible.
+    point. Additional shear by other methods is then visible.
     """
     shape = _sample_picture("s", triangles)
     domain = shape.domain

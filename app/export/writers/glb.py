@@ -63,7 +63,7 @@ class _Asset:
         mesh: dict[str, Any] = {"name": shape.name, "primitives": [primitive]}
         if len(targets):
             primitive["targets"] = [{"POSITION": self._places(target)} for target in targets]
-            # Viewers that play no animation show the drawing at rest; a single frame shows its pose.
+            # Viewers without animation show the drawing at rest; a single frame shows its pose.
             is_still = len(weights) == 1
             mesh["weights"] = weights[0].tolist() if is_still else [0.0] * len(targets)
             names = [f"shape {number}" for number in range(1, len(targets) + 1)]

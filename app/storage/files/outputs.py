@@ -32,8 +32,8 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
     Raises
     ------
     LissomError
-        If an output is a folder, no plain file, a circular link or read-only, if its folder is
-        missing, or if it is the same file as a source or as another output.
+        If an output is a folder, no plain file, a circular link or read-only, or if its folder is
+        missing. Also if it is the same file as a source or as another output.
     """
     taken: dict[Identity, str] = {}
     for source in sources:

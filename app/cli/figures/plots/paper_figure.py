@@ -31,8 +31,8 @@ class PaperFigure:
     ----------
     picture : bytes
         A PNG file.
-    heads : tuple of str
-        Column titles of the numbers beside it; the first column holds the rows' names.
+    column_names : tuple of str
+        Titles of the numbers beside it; the first column holds the names of the rows.
     """
 
     title: str
