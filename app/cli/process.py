@@ -83,11 +83,8 @@ class SignalHandler:
 
     Signals that the starting program ignores, as `nohup` does, stay ignored.
 
-    Parameters
-    ----------
-    wake : callable, optional
-        Called on a thread of its own at the first signal; the block then polls `is_signalled`.
-        Without it, the block ends with a `KeyboardInterrupt`.
+    At the first signal, `wake` is called on a thread of its own; the block then polls
+    `is_signalled`. Without `wake`, the block ends with a `KeyboardInterrupt`.
     """
 
     def __init__(self, wake: Callable[[], None] | None = None) -> None:

@@ -62,10 +62,7 @@ class MeshDecimator:
     (Delaunay). Where a pose bends more, vertices are added until each vertex is drawn within the
     tolerance.
 
-    Parameters
-    ----------
-    scale : float
-        Pixels of the frame per unit of the plane.
+    `scale` is in pixels of the frame per unit of the plane.
     """
 
     def __init__(self, domain: MeshedDomain, scale: float) -> None:
@@ -93,12 +90,8 @@ class MeshDecimator:
     def triangles(self, positions: Complexes, painted: Integers) -> Integers:
         """Return the triangles to draw, (k, 3), from back to front.
 
-        Parameters
-        ----------
-        positions : complex128, shape (v,)
-            The posed vertices of the mesh.
-        painted : int32, shape (m, 3)
-            The triangles of the mesh from back to front. They are returned if no decimation pays.
+        `positions` are the posed vertices (v,). `painted` are the triangles (m, 3) of the mesh from
+        back to front. They are returned if no decimation pays.
         """
         sheet = self._sheet
         if sheet is not None and not (sheet.distances(positions) <= self._tolerance).all():

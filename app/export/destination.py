@@ -30,13 +30,7 @@ TOO_LITTLE_ROOM = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameNames:
-    """File names of frames.
-
-    Parameters
-    ----------
-    pattern : str
-        As in `ExportSettings.names`.
-    """
+    """File names of frames; `pattern` is as in `ExportSettings.names`."""
 
     pattern: str
     project: str
@@ -107,20 +101,7 @@ def check_destination(
 
 
 def check_room(out: Path, needed: int) -> None:
-    """Refuse an export that needs more bytes than its disk has.
-
-    Parameters
-    ----------
-    out : Path
-        Its folder exists.
-    needed : int
-        Smallest size in bytes.
-
-    Raises
-    ------
-    LissomError
-        If the disk has less room.
-    """
+    """Raise `LissomError` if the disk lacks the `needed` bytes; the folder of `out` must exist."""
     folder = out if out.is_dir() else out.parent
     free = shutil.disk_usage(folder).free
     if free < needed:

@@ -22,14 +22,8 @@ class CachedVertices:
     """Posed vertices with a cache: each pose is computed once within a memory budget.
 
     Framing, decimation and drawing request the same poses in turn. The cache keeps them in single
-    precision, as they are drawn.
-
-    Parameters
-    ----------
-    cancellation : Cancellation, optional
-        Of the export. After it, poses are no longer computed.
-    budget : int
-        In bytes. Poses beyond the budget are computed again.
+    precision, as they are drawn. Poses beyond the budget, in bytes, are computed again. A cancelled
+    export computes no further poses.
     """
 
     def __init__(

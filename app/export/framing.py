@@ -20,15 +20,8 @@ def find_shown_box(view: View) -> BoundingBox:
 def frame_view(settings: ExportSettings, document: Document, motion: BoundingBox) -> View:
     """Return the view of every frame of an export; with a camera it is the canvas.
 
-    A fitted frame without a given size has even sides, as video needs. It lies on the picture's
-    pixel grid, so that parts at rest stay sharp.
-
-    Parameters
-    ----------
-    settings : ExportSettings
-        Framing and size are used.
-    motion : BoundingBox
-        Around the whole motion.
+    `motion` is a box around the whole motion. A fitted frame without a given size has even sides,
+    as video needs. It lies on the picture's pixel grid, so that parts at rest stay sharp.
     """
     if settings.framing == "canvas" or document.camera:
         return canvas_view(document.canvas, settings.size)

@@ -68,13 +68,7 @@ class MorphMesh:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MorphScene:
-    """The meshes of a scene, from back to front.
-
-    Parameters
-    ----------
-    parts : tuple of (int or CompositeGroup)
-        Compositing of the meshes, by index, from back to front.
-    """
+    """The meshes of a scene, from back to front, and their compositing by mesh index."""
 
     meshes: tuple[MorphMesh, ...]
     parts: tuple[int | CompositeGroup[int], ...]

@@ -16,14 +16,9 @@ from engine.streaming import MOST_ROWS, Series
 
 
 class DrawnMesh:
-    """Owner of the poses of a mesh.
+    """Owner of the poses of a mesh; the mesh must be released after it.
 
-    Parameters
-    ----------
-    mesh : GpuMesh
-        Released after the `DrawnMesh`.
-    by_shader : bool
-        Whether the shader computes streamed vertices; see `shader_is_faster`.
+    `by_shader` means that the shader computes streamed vertices; see `shader_is_faster`.
     """
 
     def __init__(self, mesh: GpuMesh, *, by_shader: bool) -> None:

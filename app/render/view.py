@@ -59,15 +59,9 @@ class View:
 
 
 def canvas_view(picture: tuple[int, int], size: tuple[int, int] | None = None) -> View:
-    """Return the view of the source picture's own rectangle.
+    """Return the view of the source picture's own rectangle, centred and as large as possible.
 
-    Parameters
-    ----------
-    picture : tuple of int
-        Width and height of the source picture; its pixels are the plane's units.
-    size : tuple of int, optional
-        Size of the frame, by default the picture's. The picture is centred and as large as
-        possible.
+    The plane's units are the picture's pixels. The frame's size is by default the picture's.
     """
     return fit_view(0j, complex(*picture), size or picture)
 

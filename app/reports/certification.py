@@ -156,12 +156,7 @@ def certify_clip(
     Frames in which tracks and springs move handles are solved and proven one by one. Between two of
     these frames the distortion is measured.
 
-    Parameters
-    ----------
-    variant : Variant, optional
-        The layer's own by default.
-    carried : callable, optional
-        Motion of the layer's parent, by frame.
+    By default the variant is the layer's own. `carried` gives the parent's motion by frame.
     """
     layer, domain = clip.layer, clip.layer.domain
     boundary = Boundary.sample(domain)

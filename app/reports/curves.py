@@ -47,14 +47,9 @@ class Curves:
 
 
 class CorrectedSample(NamedTuple):
-    """Corrections of frames at some points, for handles with tracks and springs.
+    """Corrections of whole frames at some points, for handles with tracks and springs.
 
-    Parameters
-    ----------
-    frames : CorrectedFrames
-        Corrections of whole frames.
-    basis : SpanBasis
-        At the nodes of the in-betweens.
+    `basis` is at the nodes of the in-betweens.
     """
 
     frames: CorrectedFrames
@@ -75,12 +70,8 @@ def measure_curves(
 ) -> Curves:
     """Measure the distortion of a clip with at least two keys.
 
-    Parameters
-    ----------
-    inbetweens : sequence of AnyInbetweens
-        Of its segments, at the measured points.
-    corrected : CorrectedSample, optional
-        Corrections; with it, only whole frames are measured.
+    `inbetweens` are those of its segments, at the measured points. With `corrected`, only whole
+    frames are measured.
     """
     frames, ks, taus, extremes = [], [], [], []
     for span, transit, between in zip(

@@ -85,12 +85,7 @@ def format_trace(error: BaseException, hidden: Iterable[Path] = ()) -> str:
 def redact_names(text: str, hidden: Iterable[Path] = ()) -> str:
     """Return a text with program paths shortened and all other paths and names removed.
 
-    Parameters
-    ----------
-    text : str
-        Such as a traceback.
-    hidden : iterable of Path
-        Further files whose names are removed, of any form.
+    The names of `hidden` files are removed in any form.
     """
     text = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]}\n…\n{text[-LONGEST // 2 :]}"
     pieces = _FRAME.split(text)

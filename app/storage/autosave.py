@@ -40,13 +40,7 @@ UNKNOWN_SOURCE = SourceInfo("recovered", None)
 
 
 class Autosave:
-    """The unsaved work of one window.
-
-    Parameters
-    ----------
-    folder : Path
-        Made at the first write.
-    """
+    """The unsaved work of one window; the first write makes its folder."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / f"unsaved-{secrets.token_hex(8)}.lissom"

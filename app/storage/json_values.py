@@ -245,12 +245,8 @@ def record(
 ) -> Codec:
     """Return a codec of objects.
 
-    Parameters
-    ----------
-    make : callable
-        Receives the fields by their names, and the unknown fields as `unknown`.
-    unknown : callable, optional
-        Returns the unknown fields of an object.
+    `make` receives the fields by their names, and the unknown fields as `unknown`. The function
+    `unknown` returns the unknown fields of an object.
     """
     known = {field.name: field.codec.known_fields for field in fields}
     known |= {field.legacy_name: field.codec.known_fields for field in fields if field.legacy_name}

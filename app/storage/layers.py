@@ -177,11 +177,8 @@ def make_posable_layer(
 ) -> tuple[Layer, tuple[str, ...]]:
     """Return a posable layer of an imported layer, in its drawn place, with notices.
 
-    Parameters
-    ----------
-    is_cut_out : bool
-        Whether transparency alone separates the subject. A fully opaque layer then becomes a still
-        picture. Otherwise a plain background is removed first.
+    With `is_cut_out`, transparency alone separates the subject, and a fully opaque layer becomes a
+    still picture. Otherwise a plain background is removed first.
     """
     picture = imported.picture
     file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)

@@ -18,12 +18,9 @@ FOLDED = np.inf  # τ of a map that is not injective
 
 
 class MeasuredMotion:
-    """The in-betweens of a pair by one method; `frame` returns the in-between at a time in [0, 1].
+    """The in-betweens of a pair by one method, at `times` even times from 0 to 1.
 
-    Parameters
-    ----------
-    times : int
-        Number of measured times, evenly spaced from 0 to 1.
+    `frame` returns the in-between at a time in [0, 1].
     """
 
     def __init__(self, pair: ShapePair, method: ComparedMethod, times: int = TIMES) -> None:

@@ -37,12 +37,7 @@ class ShapeRenderer:
     def draw(self, shape: Shape, positions: Complexes, box: BoundingBox, *, pixels: int) -> Bytes:
         """Return a picture, uint8 (h, w, 4) with straight alpha, of a box of the plane.
 
-        Parameters
-        ----------
-        positions : complex128, shape (v,)
-            Of the vertices of the shape's mesh.
-        pixels : int
-            Of the longer side.
+        `positions` (v,) are those of the mesh's vertices; `pixels` is the longer side.
         """
         extent = box.upper - box.lower
         scale = pixels / max(extent.real, extent.imag)

@@ -36,10 +36,7 @@ RING_TURN, RING_GROWTH, RING_NU = 4.9, 0.8, 0.1
 class Shape:
     """A drawing on a mesh.
 
-    Parameters
-    ----------
-    picture : uint8, shape (h, w, 4)
-        Straight alpha; its lower left corner is the origin of the plane.
+    The picture, uint8 (h, w, 4), has straight alpha. Its lower left corner is the plane's origin.
     """
 
     picture: Bytes

@@ -7,15 +7,10 @@ from engine.arrays import Bytes
 
 
 class FrameWriter:
-    """Base of the writers of all frame formats.
+    """Base of the writers of all frame formats; the file must be seekable.
 
     `encode` is called once for each frame, on several threads and out of order. All other methods
     are called on one thread, in the order of the frames. No method is called on the drawing thread.
-
-    Parameters
-    ----------
-    file : binary file
-        Seekable.
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:

@@ -72,13 +72,7 @@ class PngFrames(FrameWriter):
 
 
 class PngSequence(PngFrames):
-    """Writes each frame to a file of its own, as soon as it is drawn.
-
-    Parameters
-    ----------
-    plan : ExportPlan
-        Its folder exists.
-    """
+    """Writes each frame to a file of its own, as soon as it is drawn; the folder must exist."""
 
     def __init__(self, plan: ExportPlan, cancellation: Cancellation) -> None:
         self._paths = iter([plan.out / name for name in plan.names])

@@ -21,13 +21,7 @@ _BT709: Final = 1  # FFmpeg's number of the colour space, primaries and transfer
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Codec:
-    """FFmpeg's settings of a format.
-
-    Parameters
-    ----------
-    opaque, transparent : str
-        Pixel formats; `transparent` is empty without alpha.
-    """
+    """FFmpeg's settings of a format; `transparent` is empty if the format has no alpha."""
 
     container: str
     name: str

@@ -136,12 +136,7 @@ class GpuMesh:
 class PosedMesh:
     """A mesh with a vertex source, ready to draw; owner of the source and of its draw order.
 
-    Parameters
-    ----------
-    mesh : GpuMesh
-        Released after its poses.
-    source : VertexSource
-        With the mesh's number of vertices.
+    The mesh must be released after its poses. The source must have the mesh's number of vertices.
     """
 
     def __init__(self, mesh: GpuMesh, source: VertexSource) -> None:
@@ -163,12 +158,9 @@ class PosedMesh:
         self._heat.write(np.ascontiguousarray(values, dtype=np.float32).data)
 
     def paint_in_order(self, triangles: Integers) -> None:
-        """Paint these triangles in this order: the last overlapping triangle is visible.
+        """Paint these triangles (k, 3) in this order: the last overlapping triangle is visible.
 
-        Parameters
-        ----------
-        triangles : int32, shape (k, 3)
-            Of the mesh's vertices; at most as many as the mesh has.
+        There may be at most as many as the mesh has.
         """
         if triangles is self._triangles:
             return

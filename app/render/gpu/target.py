@@ -53,10 +53,7 @@ class RenderTarget:
     def read_straight_rgba(self, part: Rectangle | None = None) -> Bytes:
         """Return the frame, uint8 (h, w, 4), with straight alpha and its first row on top.
 
-        Parameters
-        ----------
-        part : tuple of int, optional
-            Left, top, width and height of the requested part, in pixels of the frame.
+        `part` is left, top, width and height of the requested part, in pixels of the frame.
         """
         left, top, width, height = part or (0, 0, *self.size)
         context = self._programs.context

@@ -35,12 +35,7 @@ NOT_ALLOWED = {errno.EACCES, errno.EPERM, errno.EROFS}
 class DiskFullError(LissomError):
     """The disk has no room for a file. The message states the needed and the free bytes.
 
-    Parameters
-    ----------
-    needed : int
-        Bytes, as far as is known.
-    is_whole : bool
-        Whether `needed` counts the whole file.
+    `needed` is in bytes, as far as is known; `is_whole` means that it counts the whole file.
     """
 
     def __init__(self, path: Path, cause: OSError, needed: int, *, is_whole: bool = False) -> None:

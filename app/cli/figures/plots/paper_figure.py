@@ -25,15 +25,7 @@ class FigureContext:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperFigure:
-    """A finished figure.
-
-    Parameters
-    ----------
-    picture : bytes
-        A PNG file.
-    column_names : tuple of str
-        Titles of the numbers beside it; the first column holds the names of the rows.
-    """
+    """A finished figure: a PNG file and a table; the first column holds the names of the rows."""
 
     title: str
     caption: str
