@@ -1,4 +1,4 @@
-// Two colours in squares.
+// A checkerboard of two colours.
 
 uniform vec4 light;     // premultiplied
 uniform vec4 dark;

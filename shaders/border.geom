@@ -1,5 +1,5 @@
-// An edge of the mesh's border as a strip on its outer side, the right one. The triangles bring the
-// inner half of the line; the fill rules give each pixel along the edge to exactly one of the two.
+// An edge of the mesh's border as a strip on its outer, right side. The triangles draw the inner
+// half of the line. The fill rules give each pixel along the edge to exactly one half.
 
 layout(lines) in;
 layout(triangle_strip, max_vertices = 4) out;
@@ -16,7 +16,7 @@ void main() {
     vec2 outward = reach * vec2(along.y, -along.x) / max(length(along), 1e-6);
     for (int k = 0; k < 4; ++k) {
         float away = float(k / 2);
-        // Nothing else of the strip is an edge, nor is the border ever crowded.
+        // The strip's other sides are no edges, and the border is never crowded.
         edge_distance = vec3(away * reach, 1e6, 1e6);
         thickness = 1e6;
         vec4 place = gl_in[k % 2].gl_Position;

@@ -1,4 +1,4 @@
-// A disc with a rim, smooth at both of its edges.
+// A disc with a rim; both edges are smooth.
 
 in vec2 offset;
 flat in vec3 disc;

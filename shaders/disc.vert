@@ -1,14 +1,14 @@
-// A disc of constant size on the screen, one instance a disc.
+// A disc of constant size on the screen, one instance per disc.
 
 uniform vec4 view;
-uniform vec2 view_turn;   // by which the plane is turned before, of length 1
+uniform vec2 view_turn;   // rotation of the plane before it, of length 1
 uniform vec2 frame_size;   // in pixels
 
 in vec2 centre;
 in float radius;           // in pixels, to the rim's outer edge
 in float rim_width;
 in float softness;         // width of the outer edge in pixels, 1 for a sharp disc
-in vec4 fill;              // straight, as `rim`
+in vec4 fill;              // straight alpha, like `rim`
 in vec4 rim;
 
 out vec2 offset;           // from the centre, in pixels

@@ -1,8 +1,8 @@
-// Another frame of the drawing, laid under the current one in one colour.
+// A composited layer, or another frame of the drawing tinted as a ghost.
 
 uniform sampler2D frame;   // premultiplied
 uniform vec3 tint;
-uniform float strength;   // of the tint; 0 leaves the colours as they are
+uniform float strength;   // of the tint; 0 keeps the colours
 uniform float opacity;
 
 out vec4 colour;

@@ -1,10 +1,10 @@
-// The drawing painted in the colours of a quantity, its own lights and darks still to be seen.
+// The drawing in the colours of a quantity; its own lights and darks stay visible.
 
 uniform sampler2D ramp;      // colours of the quantity, one row
-uniform vec2 limits;         // quantities at the two ends of the ramp
-uniform float contours;      // lines of equal quantity between the limits; none where 0
+uniform vec2 limits;         // quantities at the ends of the ramp
+uniform float contours;      // number of contour lines between the limits
 uniform float strength;      // 1 hides the drawing's own colours, 0 the heat map
-uniform float two_sided;     // 1 where a quantity in the middle of the limits is none: as drawn
+uniform float two_sided;     // 1: a quantity in the middle of the limits changes nothing
 
 in vec2 texture_uv;
 in float vertex_heat;
@@ -25,7 +25,7 @@ void main() {
     float steepness = max(fwidth(line), 1e-6);
     float distance_px = abs(line - round(line)) / steepness;
     bool between = round(line) > 0.5 && round(line) < contours + 0.5;
-    // Where the quantity is flat or leaps within a pixel, a line says nothing.
+    // A line is meaningless if the quantity is flat or jumps within a pixel.
     float ink = between ? clamp(1.2 - distance_px, 0.0, 1.0) * clamp(0.5 / steepness, 0.0, 1.0) : 0.0;
     heat = mix(heat, vec3(1.0), 0.45 * ink);
 

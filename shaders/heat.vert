@@ -1,7 +1,7 @@
-// A vertex of the heat map: as mesh.vert, with the quantity that is shown.
+// A vertex of the heat map: as mesh.vert, with the shown quantity.
 
 uniform vec4 view;
-uniform vec2 view_turn;   // by which the plane is turned before, of length 1
+uniform vec2 view_turn;   // rotation of the plane before it, of length 1
 
 in vec2 uv;
 in float heat;

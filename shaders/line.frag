@@ -1,4 +1,4 @@
-// A segment with round ends, cut where its neighbours take over, so that no pixel is inked twice.
+// A segment with round ends, cut at its neighbours, so that no pixel is drawn twice.
 
 in vec2 place;
 flat in vec4 ends;

@@ -1,17 +1,17 @@
-// A segment of a polyline as a rectangle around it, one instance a segment.
+// A segment of a polyline as a rectangle around it, one instance per segment.
 
 uniform vec4 view;         // factors and offsets from the plane to clip space
-uniform vec2 view_turn;   // by which the plane is turned before, of length 1
+uniform vec2 view_turn;   // rotation of the plane before it, of length 1
 uniform vec2 frame_size;   // in pixels
 
-in vec2 before;            // the polyline's points about the segment; `before` is `start` and
-in vec2 start;             // `after` is `end` where the line begins and ends
+in vec2 before;            // points of the polyline around the segment; at the line's ends
+in vec2 start;             // `before` is `start`, and `after` is `end`
 in vec2 end;
 in vec2 after;
-in vec4 ink;               // straight
+in vec4 ink;               // straight alpha
 in float width;            // in pixels
 in float dash;             // length of a dash and of a gap in pixels; 0 for a solid line
-in float travelled;        // pixels from the polyline's beginning to `start`
+in float travelled;        // pixels along the polyline from its first point to `start`
 
 out vec2 place;            // of the fragment, in pixels
 flat out vec4 ends;        // `start` and `end`, in pixels

@@ -1,9 +1,9 @@
-// A vertex of the drawing. Where it is comes from the vertex source that is linked with this file.
+// A vertex of the drawing. The vertex source linked with this file gives its position.
 
 uniform vec4 view;   // factors and offsets from the plane to clip space
-uniform vec2 view_turn;   // by which the plane is turned before, of length 1
+uniform vec2 view_turn;   // rotation of the plane before it, of length 1
 
-in vec2 uv;          // place in the picture, (0, 0) its lower left corner
+in vec2 uv;          // position in the picture, (0, 0) its lower left corner
 
 out vec2 texture_uv;
 

@@ -1,4 +1,4 @@
-// The drawing as it is.
+// The drawing in its own colours.
 
 in vec2 texture_uv;
 

@@ -1,4 +1,4 @@
-// Where a figure is that is moved as a whole, or seen by a camera: turned, scaled and moved.
+// Applies the transform of a layer or a camera: rotation, scale and translation.
 
 uniform vec4 placement;   // real and imaginary part of the factor, and the shift
 

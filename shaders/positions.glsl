@@ -1,4 +1,4 @@
-// Vertex source: positions that the program writes anew for every frame.
+// Vertex source: positions that the program uploads for every frame.
 
 in vec2 position;
 

@@ -1,14 +1,14 @@
-// The source picture at a place in it: exact where the sample lies on a pixel's centre, smooth where
-// it is enlarged, and without aliasing or needless blur where it is squeezed along one axis.
+// A sample of the source picture. It is exact at a pixel's centre and smooth in enlargements. A
+// picture squeezed along one axis has no aliasing and no needless blur.
 
 uniform sampler2D picture;   // premultiplied, mip-mapped, transparent outside
 
 // Rasterisation moves vertices by up to 1/512 pixel, float32 by as much again on the largest
 // pictures. Without this zone around the centres, in texels, a frame at 1:1 would mix in a trace
-// of its neighbours, and at a soft edge that trace is many levels of a faint pixel's colour.
+// of the neighbours. At a soft edge this trace is many levels of a faint pixel's colour.
 const float EXACT_ZONE = 1.0 / 64.0;
 
-// Our own anisotropic filter: Mesa's drivers fray the edges with theirs, even enlarged ones.
+// Our own anisotropic filter: the filter of Mesa's drivers frays edges, also enlarged ones.
 const float MOST_TAPS = 8.0;
 
 vec4 picture_at(vec2 uv) {
@@ -23,7 +23,7 @@ vec4 picture_at(vec2 uv) {
 
     vec2 centre = round(place);
     vec2 offset = place - centre;
-    // The rest of the way to the neighbour is stretched, so that there is no seam.
+    // Stretch the rest of the distance to the neighbour, so that there is no seam.
     offset = sign(offset) * max(abs(offset) - EXACT_ZONE, 0.0) / (1.0 - 2.0 * EXACT_ZONE);
     if (offset == vec2(0.0) && longest < 1.2) {
         ivec2 pixel = ivec2(centre);
@@ -31,10 +31,10 @@ vec4 picture_at(vec2 uv) {
         return inside ? texelFetch(picture, pixel, 0) : vec4(0.0);
     }
 
-    // Samples as wide as the pixel's footprint is narrow, side by side along its length.
+    // Samples side by side along the pixel's footprint, each as wide as the footprint is narrow.
     float area = abs(step_x.x * step_y.y - step_x.y * step_y.x);
     float narrow = max(area / max(longest, 1e-6), 1.0);
-    // Whole numbers: compared as floats, garbage in lanes that draw nothing holds up software OpenGL.
+    // Integers: as floats, garbage in lanes that draw nothing slows software OpenGL down.
     int taps = max(int(min(longest / narrow + 0.75, MOST_TAPS)), 1);
     float level = log2(max(longest / float(taps), 1.0));
     vec2 stride = along / float(taps) / texels;

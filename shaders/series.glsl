@@ -1,5 +1,5 @@
-// Vertex source: a series in time. Its functions of time are the same for all vertices and come as
-// weights, so that what is left of Clenshaw's sum is one product a row.
+// Vertex source: a series in time. Its functions of time are the same for all vertices and are
+// uploaded as weights. Clenshaw's sum is then one product per row.
 
 in vec4 rows[ROW_PAIRS];            // two rows of the series each
 uniform vec2 weights[ROW_PAIRS];

@@ -1,11 +1,11 @@
-// Hands each corner of a triangle its distance in pixels to the opposite edge.
+// Gives each corner of a triangle its distance in pixels to the opposite edge.
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 
 uniform vec2 frame_size;   // in pixels
 
-// Along the screen, not in perspective: the interpolated values are distances all over the triangle.
+// Linear on the screen: the interpolated values are distances everywhere in the triangle.
 noperspective out vec3 edge_distance;
 flat out float thickness;   // smallest height of the triangle in pixels
 

@@ -1,6 +1,6 @@
-"""The command line: the only place where everything is wired together.
+"""The command line: the only place that connects all rooms.
 
 In: words of a command line.
 Out: files, text, a window, and an exit status.
-Imports: everything; only the command that is asked for is loaded.
+Imports: everything; only the requested command is loaded.
 """

@@ -1,4 +1,4 @@
-"""What a command says to the person who runs it."""
+"""Messages of a command on the terminal."""
 
 import argparse
 import sys
@@ -9,43 +9,42 @@ from typing import NoReturn, Self
 from app.errors import display_message, few_notices, printable
 
 EXIT_ERROR = 2
-PATIENCE = 0.5  # seconds before a person is told how far a computation is
+PATIENCE = 0.5  # seconds before progress is shown
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one line, as those of every other failure."""
+    """An argument parser with one-line errors, as for every other failure."""
 
     def error(self, message: str) -> NoReturn:
-        """Report bad usage and leave."""
+        """Report bad usage and exit."""
         exit_with_error(f"{message} (see '{self.prog} --help')")
 
 
 def exit_with_error(message: str) -> NoReturn:
-    """Print one line of error and leave with the exit status of bad input."""
+    """Print one line of error and exit with the status of bad input."""
     print(f"lissom: error: {display_message(message)}", file=sys.stderr)
     raise SystemExit(EXIT_ERROR)
 
 
 def print_line(message: str) -> None:
-    """Print what a command found or made, on one line or several."""
+    """Print the result of a command, on one line or several."""
     print(printable(message, keeps_lines=True))
 
 
 def print_notice(message: str) -> None:
-    """Tell the person what was done on their behalf."""
     print(f"lissom: {display_message(message)}", file=sys.stderr)
 
 
 def print_notices(messages: Sequence[str]) -> None:
-    """Tell the person several things; of many the first ones, and how many more there are."""
+    """Print the first notices, and the number of the others."""
     for message in few_notices(messages):
         print_notice(message)
 
 
 class StatusLine:
-    """One line on a terminal that tells what is going on; without a terminal it says nothing.
+    """A status line on a terminal; without a terminal it prints nothing.
 
-    At the end of its `with` it is left empty for whatever is printed next.
+    The end of the `with` block clears the line.
     """
 
     def __init__(self) -> None:
@@ -59,11 +58,11 @@ class StatusLine:
         self.show("")
 
     def show(self, text: str) -> None:
-        """Put a text in place of the one before."""
+        """Replace the shown text."""
         if self._is_seen:
             print(f"\r\x1b[K{display_message(text)}", end="", file=sys.stderr, flush=True)
 
     def show_progress(self, share: float) -> None:
-        """Tell how much of what takes long is done, from 0 to 1."""
+        """Show the finished share of a long computation, from 0 to 1."""
         if time.monotonic() - self._begun > PATIENCE:
             self.show(f"preparing the outline: {share:.0%}" if share < 1.0 else "")

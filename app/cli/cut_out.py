@@ -1,4 +1,4 @@
-"""What of a picture is its subject, as it was said."""
+"""The options that separate the subject from a picture's background."""
 
 import argparse
 
@@ -7,7 +7,6 @@ from engine.domain import CutOut
 
 
 def parse_cut_out(arguments: argparse.Namespace) -> CutOut:
-    """Return what tells the subject from its picture, as the options have it."""
     path = arguments.mask
     return CutOut(
         tolerance=arguments.tolerance,

@@ -1,4 +1,4 @@
-"""Holes of a domain as arrays, by which commands hand them on to each other."""
+"""Holes of a domain as arrays, for the exchange between commands."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -21,7 +21,7 @@ HOLE_SIZES = "{sizes} must be whole numbers that add up to the {count} vertices 
 
 
 def hole_arrays(holes: Sequence[Hole]) -> dict[str, npt.NDArray[Any]]:
-    """Return the arrays of holes, all empty where there are none."""
+    """Return the arrays of holes, all empty if there are none."""
     outlines, cages = [hole.outline for hole in holes], [hole.cage for hole in holes]
     return {
         "hole_outlines": _joined(outlines),
@@ -33,12 +33,9 @@ def hole_arrays(holes: Sequence[Hole]) -> dict[str, npt.NDArray[Any]]:
 
 
 def read_holes(data: Mapping[str, npt.NDArray[Any]]) -> tuple[Hole, ...]:
-    """Return the holes of arrays, none where the arrays are not there.
+    """Return the holes from arrays; none if the arrays are absent.
 
-    Raises
-    ------
-    LissomError
-        If some of the arrays are missing, or do not belong together.
+    Raises `LissomError` if some of the arrays are missing, or do not fit each other.
     """
     missing = [name for name in HOLE_ARRAYS if name not in data]
     if len(missing) == len(HOLE_ARRAYS):
@@ -55,7 +52,7 @@ def read_holes(data: Mapping[str, npt.NDArray[Any]]) -> tuple[Hole, ...]:
 
 
 def _joined(polygons: list[Complexes]) -> Complexes:
-    """Return the vertices of all polygons, one polygon after the other."""
+    """Return the vertices of all polygons in one array."""
     return np.concatenate([np.empty(0, dtype=np.complex128), *polygons])
 
 

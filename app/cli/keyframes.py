@@ -1,4 +1,4 @@
-"""Keyframes from files: harmonic maps, where the boundary goes, or poses of a mesh."""
+"""Keyframes from files: harmonic maps, boundary positions, or poses of a mesh."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from engine.baselines import harmonic_coordinate_maps
 from engine.maps import HarmonicMap
 
 OPTIONAL = ("anchor", "triangles", "turns", "handles")
-NEAR = 1e-4  # error of harmonic coordinates, over the size, that is not worth a word
+NEAR = 1e-4  # error of harmonic coordinates, over the size, up to which no notice is printed
 COEFFICIENT_SHAPE = (
     "phi and psi must both be of shape (keyframes, cage vertices); they are of shape {phi} and "
     "{psi}, with {count} vertices of the cage and those in holes"
@@ -27,17 +27,16 @@ COEFFICIENT_SHAPE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Keyframes:
-    """What is known of an animation.
+    """The contents of keyframe files.
 
     Parameters
     ----------
     maps : tuple of HarmonicMap
-        The keyframes; none where they are poses of a mesh.
+        The keyframes; empty if they are poses of a mesh.
     poses : tuple of complex, shape (n,)
-        Of the points, where they are.
+        Positions of the points.
     points : complex, shape (n,)
-        Where in-betweens are wanted.
-    outline : complex, shape (p,), or None
+        The points of requested in-betweens.
     anchor, triangles, turns, handles : array or None
         As in the file.
     """
@@ -53,17 +52,13 @@ class Keyframes:
 
     @property
     def count(self) -> int:
-        """The number of keyframes."""
         return len(self.maps or self.poses)
 
 
 def read_keyframes(paths: list[Path]) -> Keyframes:
-    """Read one file with all keyframes, or a mesh for each.
+    """Read one file with all keyframes, or one mesh per keyframe.
 
-    Raises
-    ------
-    LissomError
-        If a file cannot be read, or lacks something, or does not fit the others.
+    Raises `LissomError` if a file cannot be read, lacks an array, or does not fit the others.
     """
     if len(paths) > 1:
         triangles, poses = read_mesh_keyframes(paths)

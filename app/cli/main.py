@@ -1,4 +1,4 @@
-"""`lissom`: the entry point, its subcommands, and the boundary where errors become words."""
+"""`lissom`: the entry point, its subcommands, and the boundary that turns errors into messages."""
 
 import argparse
 import importlib
@@ -21,12 +21,12 @@ from app.errors import EXPECTED_ERRORS, REINSTALL, listen_to_progress
 
 EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
-# Subcommand → its summary. The module of that name in app.cli.usage declares its options, which is
-# quickly loaded; that in app.cli.commands runs it, and is loaded when all that was said is right.
 TOO_LITTLE_MEMORY = (
     "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
     "Lissom more of it"
 )
+# Subcommand → its summary. A module of this name in app.cli.usage declares its options and loads
+# fast. Its module in app.cli.commands runs it, and is loaded after the arguments are checked.
 COMMANDS = {
     "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
@@ -60,7 +60,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 command = importlib.import_module(f"app.cli.commands.{arguments.command}")
                 status = int(command.run(arguments))
             finally:
-                # Here, and not when Python ends, where nobody could answer for a closed pipe.
+                # Here, because at Python's own end nobody could handle a closed pipe.
                 sys.stdout.flush()
     except EXPECTED_ERRORS as error:
         exit_with_error(str(error))
@@ -75,11 +75,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print(f"lissom: interrupted by {endings.signal_name}", file=sys.stderr, flush=True)
         if has_running_threads():
-            # What was under way may take long, and must not be taken down under its threads.
+            # Running jobs may take long, and libraries must not be taken down under their threads.
             os._exit(endings.exit_status)
         return endings.exit_status
     except BrokenPipeError:
-        # Whoever read the output has seen enough.
+        # The reader of the output has closed it.
         discard_output()
         return EXIT_PIPE_CLOSED
     except OSError as error:
@@ -87,13 +87,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         exit_with_error(
             f"cannot use {error.filename or 'standard output'}: {error.strerror or error}"
         )
-    except Exception as error:  # noqa: BLE001 - the command line: what nobody thought of
+    except Exception as error:  # noqa: BLE001 - the command line: unexpected errors
         return _report(error, words)
     return status
 
 
 def _report(error: Exception, words: Sequence[str]) -> int:
-    """Tell that the program itself has failed, as somebody else may read it."""
+    """Print a report of the program's own failure that may be passed on."""
     reports = importlib.import_module("app.reports")
     files = [Path(word) for word in words if {".", os.sep}.intersection(word)]
     trace = reports.trace_in_words(error, files)
@@ -105,7 +105,7 @@ def _report(error: Exception, words: Sequence[str]) -> int:
 
 
 def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
-    """Return the parser; only the subcommand that `words` names is loaded."""
+    """Return the parser; only the subcommand in `words` is loaded."""
     parser = Parser(
         prog="lissom",
         description="Pose a drawing with a few handles and get in-betweens that never fold.",

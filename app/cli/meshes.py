@@ -12,7 +12,7 @@ from app.errors import LissomError
 from app.storage import read_arrays, read_file
 from engine.arrays import Complexes, Integers
 
-LARGEST = 64 * 1024 * 1024  # bytes; a mesh of a million triangles has as many
+LARGEST = 64 * 1024 * 1024  # bytes; the size of a mesh of a million triangles
 FLAT = 1e-9  # spread of z, over that of x and y, up to which a mesh is plane
 NO_VERTEX = "a face of {path} names vertex {number}, and there are only {count}"
 
@@ -25,12 +25,9 @@ class PlaneMesh(NamedTuple):
 
 
 def read_mesh(path: Path) -> PlaneMesh:
-    """Read a mesh by the ending of its file.
+    """Read a mesh in the format of the file's suffix.
 
-    Raises
-    ------
-    LissomError
-        If the file cannot be read, or is not a plane mesh.
+    Raises `LissomError` if the file cannot be read, or is not a plane mesh.
     """
     if path.suffix.lower() != ".obj":
         arrays = read_arrays(path, required=("vertices", "triangles"))
@@ -43,10 +40,7 @@ def read_mesh_keyframes(
 ) -> tuple[Integers, tuple[npt.NDArray[np.complex128], ...]]:
     """Read meshes with the same triangles, one for each keyframe.
 
-    Raises
-    ------
-    LissomError
-        As `read_mesh`, or if the triangles are not the same.
+    Raises `LissomError` as `read_mesh`, or if the triangles differ.
     """
     meshes = [read_mesh(path) for path in paths]
     first = meshes[0].triangles
@@ -61,10 +55,10 @@ def read_mesh_keyframes(
 
 
 def _parsed(text: str, path: Path) -> PlaneMesh:
-    """Read the vertices and faces of an OBJ file; faces of more corners become fans."""
-    # Packed, as lists of Python's numbers take ten times as much memory as the file.
+    """Parse the vertices and faces of an OBJ file; faces of more corners become fans."""
+    # Packed: lists of Python numbers take ten times the memory of the file.
     places, corners = array("d"), array("q")
-    # A line that ends in a backslash goes on in the next.
+    # A backslash at the end continues a line.
     for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
         words = line.split("#", 1)[0].split()
         try:
@@ -96,7 +90,7 @@ def _parsed(text: str, path: Path) -> PlaneMesh:
 
 
 def _index(word: str, count: int) -> int:
-    """Return the vertex that a corner of a face names, from 0; negative ones count from the end."""
+    """Return the index, from 0, of a face's vertex; negative numbers count from the end."""
     index = int(word.split("/", 1)[0])
     place = index - 1 if index > 0 else count + index
     if index == 0 or place < 0:

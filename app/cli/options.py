@@ -1,7 +1,7 @@
-"""Options that several subcommands share, and the words that they choose from.
+"""Options shared by several subcommands, and their choices.
 
-Words and defaults stand here once more where what they choose takes long to load, so that usage is
-told at once; a test compares them with it.
+Choices and defaults are repeated here if their own module loads slowly, so that usage is printed at
+once. A test compares them with the original.
 """
 
 import argparse
@@ -30,12 +30,12 @@ NO_STANDARD_OUTPUT = "standard output is not offered; name a file instead of -"
 
 
 def input_file(text: str) -> Path:
-    """Return the path of a file that is read; refuse one that is not there before all else.
+    """Return the path of an input file; refuse a missing one before anything else.
 
     Raises
     ------
     LissomError
-        Not an error of usage: what was said is right, but nothing is there.
+        Not a usage error: the option is correct, but the file is missing.
     """
     path = Path(_named(text))
     try:
@@ -46,25 +46,20 @@ def input_file(text: str) -> Path:
 
 
 class Output(NamedTuple):
-    """Where to write."""
-
     path: Path
-    text: str  # as it was said
+    text: str  # as typed
 
     def as_file(self) -> Path:
-        """Return the path of a file; raise a `LissomError` if only folders are named so."""
+        """Return the path of a file; raise a `LissomError` if the text can only name a folder."""
         if os.path.basename(self.text) in {"", "."}:  # noqa: PTH119 - paths end without a slash
             raise LissomError(NAMED_LIKE_FOLDER.format(name=self.text))
         return self.path
 
 
 def output(text: str) -> Output:
-    """Return where a file or folder is written; it may not be there yet.
+    """Return the path of an output file or folder, which need not exist.
 
-    Raises
-    ------
-    LissomError
-        If it is a dash, which stands for standard output elsewhere, or empty.
+    Raises `LissomError` if the path is empty or a dash, which stands for standard output elsewhere.
     """
     if text == "-":
         raise LissomError(NO_STANDARD_OUTPUT)
@@ -72,19 +67,19 @@ def output(text: str) -> Output:
 
 
 def output_file(text: str) -> Path:
-    """Return the path of a file that is written, as `output`."""
+    """Return the path of an output file, as `output`."""
     return output(text).as_file()
 
 
 def _named(text: str) -> str:
-    """Return the name of a file; refuse an empty one, which Python takes for this folder."""
+    """Return the name of a file; refuse an empty one, which Python takes for the current folder."""
     if not text:
         raise LissomError("the name of a file is empty; name one")
     return text
 
 
 def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:
-    """Return what reads a whole number in a range, both ends included."""
+    """Return a parser of whole numbers in a range, both ends included."""
     wanted = f"at least {least:,}" if most == sys.maxsize else f"between {least:,} and {most:,}"
 
     def read(text: str) -> int:
@@ -96,7 +91,6 @@ def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:
 
 
 def add_project(parser: argparse.ArgumentParser) -> None:
-    """Declare the project that is read."""
     parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
 
 
@@ -107,7 +101,6 @@ def add_out(
     *,
     place: Callable[[str], Path | Output] = output_file,
 ) -> None:
-    """Declare where to write."""
     parser.add_argument("--out", metavar=metavar, type=place, required=True, help=about)
 
 
@@ -129,7 +122,6 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
-    """Declare what of a picture is its subject."""
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
         "--background",
@@ -181,7 +173,7 @@ def _background(text: str) -> str | tuple[int, int, int]:
 
 
 def add_variant_option(parser: argparse.ArgumentParser) -> None:
-    """Declare how keyframes are blended where it need not be as the project says."""
+    """Declare the variant, by default the project's."""
     parser.add_argument(
         "--variant", choices=VARIANTS, help="how to blend the keyframes (default: the project's)"
     )

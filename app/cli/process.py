@@ -1,8 +1,7 @@
-"""The process that a command runs in: its threads of linear algebra, and the signals that end it.
+"""The process of a command: its threads of linear algebra, and the signals that end it.
 
-Python runs handlers of signals only between two of its own steps. A second thread hears of them at
-once, so that a window that waits for events can be woken, and what hangs does not keep the process
-alive.
+Python runs signal handlers only between two of its own steps. A second thread receives signals at
+once. It can wake a window that waits for events, and end a process that is stuck.
 """
 
 import ctypes
@@ -22,13 +21,13 @@ if sys.platform != "win32":
     import resource
 
 SIGNALS: Final = ("SIGINT", "SIGTERM", "SIGHUP")
-# Seconds after which a worker hands Python's lock over. A frame takes it some twenty times; with
-# the usual 5 ms a job that seldom lets go would leave two frames a second.
+# Seconds after which a worker releases Python's lock. A frame takes the lock some twenty times.
+# With the usual 5 ms, a job that seldom releases the lock would leave two frames a second.
 SWITCH_INTERVAL: Final = 0.0005
-PATIENCE: Final = 10.0  # seconds that a process has to end by itself
-# Bytes of addresses. With 300 MB OpenBLAS asks for more again and again, and never ends.
+PATIENCE: Final = 10.0  # seconds for a process to end by itself
+# Bytes of address space. With 300 MB OpenBLAS asks for more again and again, and never ends.
 LEAST_MEMORY: Final = 400_000_000
-_INTERRUPTED: Final = 128  # and the signal's number: the exit status that shells know
+_INTERRUPTED: Final = 128  # plus the signal's number: the usual exit status in shells
 
 
 def use_one_thread() -> None:
@@ -42,29 +41,26 @@ def use_one_thread() -> None:
 
 
 def require_memory() -> None:
-    """Refuse to begin where libraries cannot be loaded, or would wait for memory for ever.
+    """Refuse to start if libraries cannot be loaded, or would wait for memory forever.
 
-    Raises
-    ------
-    MemoryError
-        If the system lets this process have too little of it, as by `ulimit -v`.
+    Raises `MemoryError` if the system limits this process to too little memory, as by `ulimit -v`.
     """
-    # Where there is no limit, it is −1.
+    # −1 means no limit.
     if sys.platform != "win32" and 0 <= resource.getrlimit(resource.RLIMIT_AS)[0] < LEAST_MEMORY:
         raise MemoryError
 
 
 def reopen_std_streams() -> None:
-    """Let what is said go nowhere where a standard stream is closed, and never fail at a letter.
+    """Redirect closed standard streams to nowhere, and make all streams accept any letter.
 
-    A file that is opened later would take the place of the closed one, and what libraries say would
-    go into it.
+    Otherwise a file opened later takes the place of the closed stream, and messages of libraries go
+    into it.
     """
     for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
         try:
             os.fstat(descriptor)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free number
         if getattr(sys, name) is None:
             setattr(sys, name, open(descriptor, "w" if descriptor else "r", closefd=False))  # noqa: SIM115
     for stream in (sys.stdout, sys.stderr):
@@ -73,25 +69,22 @@ def reopen_std_streams() -> None:
 
 
 def discard_output() -> None:
-    """Let Python not try at its end to write what standard output has not taken."""
+    """Prevent Python from writing the rest of standard output at its end."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def set_switch_interval() -> None:
-    """Let workers and the window take turns often."""
+    """Make workers and the window alternate often."""
     sys.setswitchinterval(SWITCH_INTERVAL)
 
 
 class SignalHandler:
-    """Hears the signals that end the program while a `with` block lasts; one of them is enough.
+    """Receives the signals that end the program during a `with` block; the first one counts.
 
-    Signals that whoever started the program lets it ignore, as `nohup` does, stay ignored.
+    Signals that the starting program ignores, as `nohup` does, stay ignored.
 
-    Parameters
-    ----------
-    wake : callable, optional
-        Called on a thread of its own when the first of them comes; whether one has is then looked
-        at now and then. Without it, the block ends with a `KeyboardInterrupt`.
+    At the first signal, `wake` is called on a thread of its own; the block then polls
+    `is_signalled`. Without `wake`, the block ends with a `KeyboardInterrupt`.
     """
 
     def __init__(self, wake: Callable[[], None] | None = None) -> None:
@@ -103,21 +96,20 @@ class SignalHandler:
 
     @property
     def is_signalled(self) -> bool:
-        """Whether a signal has come."""
         return self._number is not None
 
     @property
     def signal_name(self) -> str:
-        """What the signal is called; empty before there is one."""
+        """Name of the signal; empty before there is one."""
         return "" if self._number is None else signal.Signals(self._number).name
 
     @property
     def exit_status(self) -> int:
-        """The exit status that tells of the signal."""
+        """The shells' exit status for the signal."""
         return _INTERRUPTED + (self._number or signal.SIGINT)
 
     def __enter__(self) -> Self:
-        """Listen; only the main thread can."""
+        """Listen for signals; on other threads than the main thread this does nothing."""
         if threading.current_thread() is not threading.main_thread():
             return self
         self._pipe = os.pipe()
@@ -131,7 +123,7 @@ class SignalHandler:
         arguments = self._pipe[0], threading.get_ident()
         try:
             threading.Thread(target=self._listen, args=arguments, daemon=True).start()
-        except RuntimeError as error:  # that is how Python says so
+        except RuntimeError as error:  # Python's exception for no memory for a thread
             raise MemoryError from error
         return self
 
@@ -141,13 +133,13 @@ class SignalHandler:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Leave signals to whoever had them before."""
+        """Restore the previous signal handlers."""
         if self._pipe is None:
             return
         for number, before in self._before.items():
             signal.signal(number, signal.SIG_DFL if before is None else before)
         signal.set_wakeup_fd(self._wakeup)
-        # By which the thread ends as well, unless the process is to end.
+        # This also ends the thread, unless the process is about to end.
         os.close(self._pipe[1])
 
     def _note(self, number: int, _: FrameType | None) -> None:
@@ -165,21 +157,21 @@ class SignalHandler:
                 name = signal.Signals(told[0]).name
                 words = f"lissom: interrupted by {name}, while something was still at work\n"
                 exit_within(PATIENCE, _INTERRUPTED + told[0], "" if self._wake else words)
-            except RuntimeError:  # there is no memory for another thread
+            except RuntimeError:  # no memory for another thread
                 os._exit(_INTERRUPTED + told[0])
-            # A signal that comes just before the main thread begins to wait does not end that wait.
+            # A signal just before the main thread begins to wait does not end this wait.
             while not self.is_signalled and os.name != "nt":
                 signal.pthread_kill(main_thread, told[0])
                 time.sleep(SWITCH_INTERVAL)
-        while os.read(pipe, 1):  # where Python tells of more signals, which change nothing
+        while os.read(pipe, 1):  # further signals from Python change nothing
             pass
         os.close(pipe)
 
 
 def on_display_lost(keep: Callable[[], None], status: int) -> object:
-    """Let something be done when the X server goes away, before the process ends with a status.
+    """Call `keep` when the X server goes away, before the process ends with this status.
 
-    Xlib ends it at once otherwise. What is returned must live as long as the window.
+    Otherwise Xlib ends the process at once. The result must live as long as the window.
     """
     if sys.platform != "linux":
         return None
@@ -191,16 +183,16 @@ def on_display_lost(keep: Callable[[], None], status: int) -> object:
             os._exit(status)
 
     heard = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p)(lost)
-    with suppress(OSError):  # without the library there are no such windows
+    with suppress(OSError):  # without the library there are no X windows
         ctypes.CDLL("libX11.so.6").XSetIOErrorHandler(heard)
     return heard
 
 
 @contextmanager
 def redirect_faulthandler(descriptor: int) -> Iterator[None]:
-    """Let Python tell in a file where it is if the process crashes while a `with` block lasts.
+    """Write Python's traceback to a file if the process crashes during a `with` block.
 
-    Where it is to tell somewhere else already, it does so.
+    An already enabled fault handler stays.
     """
     tells = not faulthandler.is_enabled()
     if tells:
@@ -214,13 +206,13 @@ def redirect_faulthandler(descriptor: int) -> Iterator[None]:
 
 
 def has_running_threads() -> bool:
-    """Tell whether Python would wait for other threads, as of an export that was cancelled."""
+    """Return whether Python would wait for other threads, such as those of a cancelled export."""
     others = set(threading.enumerate()) - {threading.main_thread()}
     return any(not thread.daemon for thread in others)
 
 
 def exit_within(seconds: float, status: int, words: str = "") -> None:
-    """End the process after so many seconds at the latest, whatever hangs in it; then say why."""
+    """End the process after at most this many seconds, even if it is stuck, with a last message."""
 
     def end() -> None:
         time.sleep(seconds)

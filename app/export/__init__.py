@@ -1,6 +1,6 @@
 """From a document to picture files, each of them whole or absent, with bounded memory.
 
-In: a document, its motion, and what the person asks for.
+In: a document, its motion, and an export request.
 Out: PNG frames, animated pictures, sprite sheets, video, models.
 Imports: `app.render`, `app.motion`, `app.storage`.
 """

@@ -1,4 +1,4 @@
-"""Colours under what is transparent, for readers that mix neighbours before they see alpha."""
+"""Colours under transparent pixels, for readers that mix neighbouring pixels before alpha."""
 
 from typing import Final
 
@@ -7,21 +7,17 @@ from PIL import Image
 
 from engine.arrays import Bytes
 
-# Sides of the squares whose visible colours fill what is transparent in them, one after the other.
+# Sides of squares in pixels. The visible colours of a square fill its transparent pixels; one pass
+# per size.
 _SQUARES: Final = (4, 16, 64)
-_ENOUGH: Final = 16  # levels of alpha, below which a mean of 8 bits has lost its colour
+_ENOUGH: Final = 16  # levels of alpha; below them a mean of 8 bits loses its colour
 
 
 def bleed_edges(frame: Bytes) -> Bytes:
-    """Return a picture whose colours go on where it is transparent.
+    """Return a picture, uint8 (h, w, 4), whose visible colours continue under transparent pixels.
 
-    Textures are enlarged, and video is compressed, with straight alpha: what is not seen there
-    darkens the edges of what is.
-
-    Parameters
-    ----------
-    frame : uint8, shape (h, w, 4)
-        Straight alpha.
+    Textures are enlarged, and video is compressed, with straight alpha. Without the bleed, black
+    transparent pixels darken the edges.
     """
     hollow = frame[..., 3] == 0
     if not hollow.any() or hollow.all():

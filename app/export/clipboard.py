@@ -24,10 +24,7 @@ _OSASCRIPT: Final = (
 def clipboard_program() -> tuple[str, ...]:
     """Return the command that takes a PNG file from its standard input or LISSOM_PICTURE.
 
-    Raises
-    ------
-    LissomError
-        If this system has none.
+    Raises `LissomError` if this system has no such command.
     """
     if sys.platform == "win32":
         return ("powershell", "-NoProfile", "-STA", "-Command", _POWERSHELL)
@@ -45,21 +42,18 @@ def clipboard_program() -> tuple[str, ...]:
 
 
 def put_on_clipboard(picture: Path) -> None:
-    """Put a PNG file on the clipboard; the file is not needed any more afterwards.
+    """Put a PNG file on the clipboard. The file may be deleted afterwards.
 
-    Raises
-    ------
-    LissomError
-        If the system does not take it.
+    Raises `LissomError` if the system refuses the picture.
     """
     command = clipboard_program()
     try:
         with picture.open("rb") as file:
             if sys.platform != "win32":
-                with suppress(OSError):  # without locks another window that starts may remove it
+                with suppress(OSError):  # without locks another starting window may remove the file
                     lock(file.fileno())
-            # The program may stay to serve the clipboard, so that nothing of it is waited for.
-            subprocess.run(  # noqa: S603 - one of those above
+            # The program may keep running to serve the clipboard, so nothing waits for its end.
+            subprocess.run(  # noqa: S603 - a fixed command
                 command,
                 stdin=file,
                 stdout=subprocess.DEVNULL,

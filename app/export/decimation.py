@@ -1,4 +1,4 @@
-"""Fewer triangles that draw a posed mesh as all of them would."""
+"""Mesh decimation: fewer triangles, each vertex drawn at most 0.05 px from its place."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -12,27 +12,29 @@ from engine.domain import MeshedDomain
 from engine.domain.meshing import Mesh, copy_draw_order
 from engine.geometry import as_xy
 
-TOLERANCE: Final = 0.05  # pixels between where a vertex is and where it is drawn, at most
-# Of the tolerance: what is looked for, so that the frames in between need no more.
+TOLERANCE: Final = 0.05  # pixels from a vertex to its drawn place, at most
+# The target of a refinement, as a share of the tolerance. The in-betweens then seldom need more
+# vertices.
 _AIM: Final = 0.7
-_SPACING: Final = 10.0  # pixels between vertices where nothing bends
-_WORTH: Final = 0.5  # of the vertices, above which it is easier to draw all triangles
-# Of the spacing. Points of a lattice lie on common circles, which takes Qhull long to sort out.
+_SPACING: Final = 10.0  # pixels between vertices if nothing bends
+_WORTH: Final = 0.5  # share of kept vertices above which all triangles are drawn
+# Random shift, as a share of the spacing. Lattice points lie on common circles, which make Qhull
+# slow.
 _SHAKE: Final = 1e-5
-_FLAT: Final = 1e-8  # of the spacing's square: triangles between points of one straight edge
+_FLAT: Final = 1e-8  # of the spacing's square: slivers along a straight edge
 
 
 class _ReducedMesh(NamedTuple):
-    """Triangles between some of a mesh's vertices, and where the others lie in them.
+    """Triangles between some of a mesh's vertices, and the places of the others in them.
 
     Parameters
     ----------
     triangles : int32, shape (k, 3)
         They cover the convex hull.
     dropped : int64, shape (d,)
-        The vertices that no triangle has.
+        Vertices without a triangle.
     homes : int32, shape (d,)
-        The triangles in which they lie at rest.
+        The triangles around the dropped vertices at rest.
     weights : float32, shape (3, d)
         Barycentric, at rest.
     """
@@ -43,7 +45,7 @@ class _ReducedMesh(NamedTuple):
     weights: Singles
 
     def distances(self, positions: Complexes) -> Singles:
-        """Return how far each dropped vertex (d,) is from where it is drawn."""
+        """Return the distance (d,) from each dropped vertex to its interpolated place."""
         places = positions.astype(np.complex64)
         off = -places[self.dropped]
         for corner, weight in zip(self.triangles[self.homes].T, self.weights, strict=True):
@@ -53,24 +55,21 @@ class _ReducedMesh(NamedTuple):
 
 
 class MeshDecimator:
-    """Finds fewer triangles of a mesh that show the same in every pose that it is asked about.
+    """Finds fewer triangles of a mesh that draw the same picture in every requested pose.
 
-    To software OpenGL a triangle of a few pixels is as dear as one of many. Where a map bends
-    little, a few vertices tell where all are. They are triangulated (Delaunay) together with the
-    whole border, and wherever a pose bends more, more of them, until each vertex of the mesh lies
-    within the tolerance of where it is drawn.
+    In software OpenGL a triangle of a few pixels costs as much as one of many. Where a map bends
+    little, a few vertices determine all others. They and the whole border are triangulated
+    (Delaunay). Where a pose bends more, vertices are added until each vertex is drawn within the
+    tolerance.
 
-    Parameters
-    ----------
-    scale : float
-        Pixels of the frame per unit of the plane.
+    `scale` is in pixels of the frame per unit of the plane.
     """
 
     def __init__(self, domain: MeshedDomain, scale: float) -> None:
         self._domain = domain
         self._tolerance = TOLERANCE / scale
         self._spacing = _SPACING / scale
-        # Of an equilateral triangle of the mean size.
+        # Edge length of an equilateral triangle of the mean area.
         self._edge = float(np.sqrt(4 / np.sqrt(3) * domain.mesh.areas().mean()))
         self._border = border_edges(domain.mesh.triangles)
         self._kept: Booleans = np.zeros(len(domain.mesh.vertices), dtype=np.bool_)
@@ -79,9 +78,9 @@ class MeshDecimator:
         self._ordered: tuple[Integers, Integers] | None = None
 
     def prepare(self, poses: Sequence[Complexes]) -> None:
-        """Find triangles that show these poses, each (v,), and most likely those between them.
+        """Find triangles that draw these poses, each (v,), and most likely the in-betweens.
 
-        For 100,000 triangles it takes a second where they bend much, a quarter where they do not.
+        For 100,000 triangles this takes a second if they bend much, otherwise a quarter of it.
         """
         self._kept = _one_in_each_square(self._domain.mesh.vertices, self._spacing)
         self._kept[self._border] = True
@@ -91,12 +90,8 @@ class MeshDecimator:
     def triangles(self, positions: Complexes, painted: Integers) -> Integers:
         """Return the triangles to draw, (k, 3), from back to front.
 
-        Parameters
-        ----------
-        positions : complex128, shape (v,)
-            Where the vertices of the mesh are.
-        painted : int32, shape (m, 3)
-            The triangles of the mesh from back to front; they come back where fewer would not do.
+        `positions` are the posed vertices (v,). `painted` are the triangles (m, 3) of the mesh from
+        back to front. They are returned if no decimation pays.
         """
         sheet = self._sheet
         if sheet is not None and not (sheet.distances(positions) <= self._tolerance).all():
@@ -109,12 +104,12 @@ class MeshDecimator:
         return self._ordered[1]
 
     def _refine(self, poses: Sequence[Complexes]) -> None:
-        """Keep more vertices until none is farther off than is aimed at."""
+        """Keep more vertices until all distances are within the target."""
         is_first = True
         while self._sheet is not None:
             off = np.max([self._sheet.distances(positions) for positions in poses], axis=0)
             excess = off / (_AIM * self._tolerance)
-            # Not a number where a triangle is too flat to tell the place in it.
+            # The distance is NaN in a triangle too flat for barycentric weights.
             if (excess <= 1).all():
                 break
             self._keep_more(self._sheet, excess, is_graded=is_first)
@@ -124,10 +119,11 @@ class MeshDecimator:
         self._ordered = None
 
     def _keep_more(self, sheet: _ReducedMesh, excess: Singles, *, is_graded: bool) -> None:
-        """Keep dropped vertices, by how many times farther off (d,) than is aimed at they are.
+        """Keep dropped vertices by their `excess` (d,), their distance as a multiple of the target.
 
-        Graded, it is one in each square that is as small as it must be: the error of linear
-        interpolation falls with the square of the spacing. Else all in the triangles that fail.
+        Graded, it keeps one vertex in each square. The square's side follows from the excess: the
+        error of linear interpolation falls with the square of the spacing. Otherwise it keeps all
+        vertices in failing triangles.
         """
         fails = ~(excess <= 1)
         if not is_graded:
@@ -144,7 +140,7 @@ class MeshDecimator:
         self._kept[sheet.dropped[fails]] = True
 
     def _triangulate(self) -> None:
-        """Triangulate the vertices that are kept, unless there are too many."""
+        """Triangulate the kept vertices, unless they are too many."""
         vertices = self._domain.mesh.vertices
         kept, dropped = np.flatnonzero(self._kept), np.flatnonzero(~self._kept)
         if len(kept) > _WORTH * len(vertices):
@@ -165,19 +161,19 @@ class MeshDecimator:
         )
 
     def _inside(self, sheet: _ReducedMesh) -> Mesh | None:
-        """Return what of a sheet lies in the domain; None if its border is not the domain's."""
+        """Return the part of a sheet in the domain; None if its border is not the domain's."""
         vertices = self._domain.mesh.vertices
         areas = Mesh(vertices=vertices, triangles=sheet.triangles).areas()
         inside = np.abs(areas) > _FLAT * self._spacing**2
         inside &= self._domain.contains(vertices[sheet.triangles].mean(axis=1))
         triangles = np.where(areas[:, np.newaxis] < 0, sheet.triangles[:, ::-1], sheet.triangles)
-        # Across a narrow gap, a nearer point may have taken the place of a part of the border.
+        # Across a narrow gap, the triangulation may replace border edges by shorter ones.
         is_whole = np.array_equal(border_edges(triangles[inside]), self._border)
         return Mesh(vertices=vertices, triangles=triangles[inside]) if is_whole else None
 
 
 def _one_in_each_square(points: Complexes, side: float) -> Booleans:
-    """Mark of the points (n,) in each square of a grid the one that is nearest to its middle."""
+    """Mark the point (of n) nearest to the middle in each square of a grid."""
     columns, rows = np.floor(points.real / side), np.floor(points.imag / side)
     away = np.abs(points / side - (columns + 0.5) - 1j * (rows + 0.5))
     order = np.lexsort((away, columns, rows))

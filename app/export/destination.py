@@ -1,4 +1,4 @@
-"""Where an export goes: names that suit its format, and what is there already."""
+"""The destination of an export: names that suit its format, and existing files."""
 
 import os
 import re
@@ -12,10 +12,10 @@ from app.errors import LissomError
 from app.export_formats import EXPORT_FORMATS
 from app.storage import NO_FOLDER, check_writable
 
-FRAMES: Final = " frames"  # what the name of a folder for them ends in
-# Stands for the project's name.
+FRAMES: Final = " frames"  # suffix of a frame folder's name
+# Placeholder of the project's name.
 PROJECT: Final = "{name}"
-# A name's last dot is no ending where a number follows, as in v1.2.
+# A dot before a digit starts no suffix, as in v1.2.
 _ENDING: Final = re.compile(r"\.[a-z]\w*")
 NAMED_LIKE_FILE = (
     "{label} go to a folder, but {out} is named like a file; name a folder, or choose the format "
@@ -30,27 +30,18 @@ TOO_LITTLE_ROOM = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameNames:
-    """How the files of frames are called.
-
-    Parameters
-    ----------
-    pattern : str
-        As in `ExportSettings.names`.
-    project : str
-        The name of the project.
-    """
+    """File names of frames; `pattern` is as in `ExportSettings.names`."""
 
     pattern: str
     project: str
 
     def of(self, first: int, count: int) -> list[str]:
-        """Return the names of pictures numbered from `first` on; all have equally many digits."""
+        """Return the names of `count` frames from number `first`; all have equally many digits."""
         start, digits, end = self._parts()
         width = max(digits, len(str(first + count - 1)))
         return [f"{start}{number:0{width}d}{end}" for number in range(first, first + count)]
 
     def fits(self, name: str) -> bool:
-        """Tell whether a file is named as a frame is."""
         start, digits, end = self._parts()
         pattern = rf"{re.escape(start)}\d{{{digits},}}{re.escape(end)}"
         return re.fullmatch(pattern, name) is not None
@@ -64,21 +55,21 @@ class FrameNames:
 def check_destination(
     out: Path, name: str, frames: Sequence[str] = (), sources: Iterable[Path] = ()
 ) -> None:
-    """Refuse a path that does not suit a format, before anything long begins.
+    """Refuse a path that does not suit the format, before any long computation.
 
     Parameters
     ----------
     frames : sequence of str
-        The names of the pictures, where each is a file of its own.
+        The names of the pictures, if each is a file of its own.
     sources : iterable of Path
-        The files that the export is made from.
+        The input files of the export.
 
     Raises
     ------
     LissomError
-        If it is a folder instead of a file or the other way round, is named like another format or
-        by an ending alone, or its folder is missing or may not be written to; or as
-        `check_writable`, of every file.
+        If a folder is given for a file or a file for a folder, or the suffix belongs to another
+        format or is the whole name. Also if the folder is missing or read-only, and as
+        `check_writable` for every file.
     """
     suffixes, label = EXPORT_FORMATS[name].suffixes, EXPORT_FORMATS[name].label
     if out.name.lower() in _all_suffixes():
@@ -110,20 +101,7 @@ def check_destination(
 
 
 def check_room(out: Path, needed: int) -> None:
-    """Refuse an export for which there is not room enough.
-
-    Parameters
-    ----------
-    out : Path
-        Its folder exists.
-    needed : int
-        Bytes that it takes at least.
-
-    Raises
-    ------
-    LissomError
-        If the disk has less.
-    """
+    """Raise `LissomError` if the disk lacks the `needed` bytes; the folder of `out` must exist."""
     folder = out if out.is_dir() else out.parent
     free = shutil.disk_usage(folder).free
     if free < needed:
@@ -133,14 +111,14 @@ def check_room(out: Path, needed: int) -> None:
 
 
 def data_file(out: Path, name: str) -> Path | None:
-    """Return where the data of a format go, beside its file; None where it has none."""
+    """Return the path of the format's data file beside the output; None if it has none."""
     format_ = EXPORT_FORMATS[name]
     stem = out.stem if out.suffix.lower() in format_.suffixes else out.name
     return out.parent / f"{stem}{format_.data_suffix}" if format_.data_suffix else None
 
 
 def with_suffix_for(out: Path, name: str) -> Path:
-    """Return a path with the ending of a format, in place of that of another one.
+    """Return a path with the suffix of this format in place of another format's suffix.
 
     A folder of frames ends in a word. Any other dot belongs to the name: a folder `shot.010` stays
     as it is.
@@ -156,10 +134,10 @@ def with_suffix_for(out: Path, name: str) -> Path:
 
 
 def choose_frame_folder(chosen: Path, name: str, is_frame: Callable[[str], bool]) -> Path:
-    """Return the folder for frames where a person chose an existing one and a name was proposed.
+    """Return the folder for frames from a person's chosen folder and a proposed name.
 
-    It is the chosen one if that is empty, holds frames alone or has the name; else it is a folder
-    of that name in it, so that frames never lie among other files.
+    Frames never lie among other files. The chosen folder is used if it is empty, holds only frames,
+    or has the proposed name. Otherwise a folder of that name is made in it.
     """
     try:
         others = [
@@ -167,18 +145,18 @@ def choose_frame_folder(chosen: Path, name: str, is_frame: Callable[[str], bool]
             for path in chosen.iterdir()
             if not path.name.startswith(".") and not is_frame(path.name)
         ]
-    except OSError:  # whoever writes there will tell what is wrong
+    except OSError:  # the writer reports the problem later
         others = []
     return chosen / name if others and chosen.name != name else chosen
 
 
 def find_overwritten_files(out: Path, name: str, frames: Sequence[str]) -> list[str]:
-    """Return the names of the files that an export would take the place of."""
+    """Return the names of existing files that an export replaces."""
     return [file.name for file in _files(out, name, frames) if file.exists()]
 
 
 def find_stale_frames(out: Path, names: FrameNames, frames: list[str]) -> list[str]:
-    """Return the names of the frames in a folder that an export will not write again, in order."""
+    """Return the sorted names of frames in a folder that an export does not rewrite."""
     if not out.is_dir():
         return []
     there = {path.name for path in out.iterdir() if names.fits(path.name)}
@@ -186,7 +164,7 @@ def find_stale_frames(out: Path, names: FrameNames, frames: list[str]) -> list[s
 
 
 def _files(out: Path, name: str, frames: Sequence[str]) -> list[Path]:
-    """Return all files that an export writes."""
+    """Return all output files of an export."""
     if not EXPORT_FORMATS[name].suffixes:
         return [out / frame for frame in frames]
     return [file for file in (out, data_file(out, name)) if file is not None]

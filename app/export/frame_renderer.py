@@ -1,4 +1,4 @@
-"""The pictures of an export, drawn by the renderer that the window draws with."""
+"""The pictures of an export, drawn by the same renderer as the window."""
 
 import math
 from collections.abc import Generator, Mapping
@@ -32,26 +32,26 @@ from engine.domain import find_closed_cuts
 from engine.domain.meshing import Mesh
 from engine.geometry import IDENTITY_MOTION, Similarity
 
-_SMALL: Final = 0.75  # pixels of the frame per pixel of the picture
-_TILE: Final = 4096  # pixels each way that are drawn at once, at most
-_MOST_PIXELS: Final = 2**28  # of a frame: a gigabyte
-_MANY: Final = 24  # frames from which on it is worth while to find fewer triangles
-_LOOKS: Final = 9  # frames that are looked at for it
-_TINY: Final = 16.0  # square pixels, below which triangles cost more than what is in them
+_SMALL: Final = 0.75  # frame pixels per picture pixel
+_TILE: Final = 4096  # pixels each way drawn at once, at most
+_MOST_PIXELS: Final = 2**28  # pixels of a frame: a gigabyte
+_MANY: Final = 24  # frames from which on decimation pays
+_LOOKS: Final = 9  # frames examined for decimation
+_TINY: Final = 16.0  # square pixels; a smaller triangle costs more than its pixels
 _NO_ERROR: Final = "GL_NO_ERROR"
-_OUTSIDE: Final = 1.0  # pixels; less than this is seen by nobody
+_OUTSIDE: Final = 1.0  # pixels; nobody sees less than this
 
 
 class PosedFrame(NamedTuple):
-    """A frame of the timeline, and where the vertices of each layer are in it."""
+    """A frame of the timeline, and the posed vertices of each layer."""
 
     frame: float
     vertices: tuple[VertexArray, ...]  # in the plane
-    camera: Similarity | None  # by which the canvas comes to show what the camera does
+    camera: Similarity | None  # moves the camera's view onto the canvas
 
 
 class _Tile(NamedTuple):
-    """A part of a frame that is drawn at once, and where its upper left corner is."""
+    """A part of a frame that is drawn at once, and its upper left corner."""
 
     view: View
     left: int
@@ -59,17 +59,16 @@ class _Tile(NamedTuple):
 
 
 class FrameRenderer:
-    """Owner of what the frames of an export are drawn with.
+    """Owner of the renderer and targets for an export's frames.
 
     Parameters
     ----------
     context : Context
-        Current on the thread that draws.
+        Current on the drawing thread.
     pictures : mapping of int to uint8, shape (h, w, 4)
-        The layers' pictures, decoded, by their ids.
+        Decoded pictures by layer id.
     poses : mapping of int to CachedVertices
-        The layers', by their ids.
-    plan : ExportPlan
+        By layer id.
 
     Raises
     ------
@@ -108,18 +107,18 @@ class FrameRenderer:
             self._renderer = Renderer(context)
             owned.callback(self._renderer.release)
             programs = self._renderer.programs
-            # At its own size the drawing comes out exact from one sample a pixel; made much smaller
-            # it is finer from four.
+            # At its own size the drawing is exact with one sample a pixel. Much smaller, it is
+            # finer with four.
             finer = 2 if smallest < _SMALL else 1
             self._tiles = _tiles(plan.view, min(_TILE, largest_size(context) // finer))
             self._target = RenderTarget(programs, self._tiles[0].view.size, finer)
             owned.callback(self._target.release)
-            # Errors up to here are a window's, or of moderngl, which binds the framebuffer of
-            # before again though it may be gone. A target without memory has raised by itself.
+            # Earlier errors belong to a window, or to moderngl, which binds the previous
+            # framebuffer even if it is deleted. A target without memory has raised by itself.
             while context.error != _NO_ERROR:
                 pass
             self._drawn = []
-            textures: dict[int, GpuPicture] = {}  # by the pictures, which layers may share
+            textures: dict[int, GpuPicture] = {}  # by picture; layers may share one
             for layer, mesh in zip(layers, meshes, strict=True):
                 rest = mesh.vertices - layer.corner
                 texture = textures.get(id(pictures[layer.id]))
@@ -137,12 +136,9 @@ class FrameRenderer:
             self._owned = owned.pop_all()
 
     def pose(self, frame: float) -> PosedFrame:
-        """Work out where the vertices are at a frame; on any thread, one frame at a time.
+        """Compute the vertices at a frame; on any thread, one frame at a time.
 
-        Raises
-        ------
-        LissomError
-            If the motion fails there.
+        Raises `LissomError` if the motion fails at this frame.
         """
         if self._looks:
             self._prepare_thinnings()
@@ -166,10 +162,10 @@ class FrameRenderer:
         return PosedFrame(frame, tuple(vertices), camera)
 
     def _prepare_thinnings(self) -> None:
-        """Look ahead at the motion, for triangles that will do in all of its frames."""
+        """Find decimated triangles that suit sampled frames of the whole motion."""
         looks, self._looks = self._looks, ()
         for poses, thinning in zip(self._poses, self._thinnings, strict=True):
-            # A frame that fails says so when its turn comes.
+            # A failing frame raises its error when it is drawn.
             with suppress(*EXPECTED_ERRORS):
                 if thinning is not None:
                     thinning.prepare([poses.cache_positions(frame) for frame in looks])
@@ -177,10 +173,7 @@ class FrameRenderer:
     def draw(self, posed: PosedFrame) -> Bytes:
         """Return the picture of a posed frame, uint8 (h, w, 4) with straight alpha.
 
-        Raises
-        ------
-        LissomError
-            If the frame cannot be drawn.
+        Raises `LissomError` if the frame cannot be drawn.
         """
         try:
             drawn = zip(self._drawn, posed.vertices, self._clips, strict=True)
@@ -197,22 +190,22 @@ class FrameRenderer:
                 self._read(posed, tile.view, pixels[tile.top :, tile.left :])
         except (*EXPECTED_ERRORS, GlError) as error:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: {error}") from error
-        # OpenGL goes on after an error, with pictures that are black or of another frame.
+        # OpenGL continues after an error, with black or outdated pictures.
         if self._context.error != _NO_ERROR:
             raise LissomError(f"frame {posed.frame:g} cannot be drawn: OpenGL failed; try again")
         return pixels
 
     def _read(self, posed: PosedFrame, view: View, pixels: Bytes) -> None:
-        """Read back what was drawn of a view, the rest of which has the background's colour.
+        """Read back the drawn part of a view; the rest has the background's colour.
 
-        Only the part where the layers are is read. `pixels` begin where the view does, and may end
-        before it.
+        Only the box around the layers is read. `pixels` begin at the view's corner and may be
+        smaller than the view.
         """
         height, width, _ = pixels.shape
         width, height = min(width, view.size[0]), min(height, view.size[1])
         vertices = np.concatenate([placed.positions for placed in posed.vertices])
         box = bounding_box(view.to_pixels((posed.camera or IDENTITY_MOTION).apply(vertices)))
-        # Two pixels more: none that a triangle touches is left out.
+        # Two more pixels: no touched pixel is left out.
         left, top = (max(0, math.floor(side) - 2) for side in _sides(box.lower))
         right, bottom = (math.ceil(side) + 2 for side in _sides(box.upper))
         right, bottom = min(width, right), min(height, bottom)
@@ -223,28 +216,26 @@ class FrameRenderer:
     def run(
         self, *, waits: bool = True, cancellation: Cancellation | None = None
     ) -> Generator[int]:
-        """Make what was planned, one frame at each step, as `export` does."""
+        """Run the plan one frame a step, as `export_frames` does."""
         return export_frames(
             self._plan, self.pose, self.draw, waits=waits, cancellation=cancellation
         )
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """What the person should know about the frames that were posed."""
-        # What a camera shows is what was wanted.
+        # A camera crops on purpose.
         if self._document.camera or self._room.contains(self._reach, slack=_OUTSIDE):
             return ()
         return ("the motion leaves the frame; the framing 'fit' shows all of it",)
 
     def release(self) -> None:
-        """Let everything go."""
         self._owned.close()
 
 
 def _pays(plan: ExportPlan, mesh: Mesh, context: Context, scale: float) -> bool:
-    """Tell whether fewer triangles of a mesh would save more time than it takes to find them.
+    """Return whether decimation saves more time than it takes.
 
-    The scale is in pixels of the frame per unit of the plane, at most.
+    `scale` is the largest number of frame pixels per unit of the plane.
     """
     area = mesh.areas().mean() * scale**2
     return len(plan.times) >= _MANY and bool(area < _TINY) and is_software(context)
@@ -254,7 +245,7 @@ def _filled(size: tuple[int, int], colour: Colour) -> Bytes:
     """Return pixels (h, w, 4) of one colour."""
     width, height = size
     pixel = np.rint(255 * np.array(colour)).astype(np.uint8)
-    # Four bytes at a time, which is many times faster than each by itself.
+    # Four bytes at a time: many times faster than single bytes.
     pixels = np.full((height, width), pixel.view(np.uint32)[0])
     return pixels.view(np.uint8).reshape(height, width, 4)
 
@@ -264,7 +255,7 @@ def _sides(corner: complex) -> tuple[float, float]:
 
 
 def _tiles(view: View, side: int) -> list[_Tile]:
-    """Divide a frame into equal tiles; the last ones may reach beyond it."""
+    """Divide a frame into equal tiles; the last ones may extend beyond it."""
     width, height = view.size
     if width * height > _MOST_PIXELS:
         raise LissomError(

@@ -1,4 +1,4 @@
-"""Where the vertices of a layer are in the frames of an export."""
+"""The vertices of a layer in the frames of an export."""
 
 from typing import Final, Protocol
 
@@ -8,28 +8,22 @@ import numpy.typing as npt
 from app.storage import Cancellation
 from engine.arrays import Complexes
 
-CACHE_BUDGET: Final = 2**28  # bytes of positions that are kept from the framing for the drawing
+CACHE_BUDGET: Final = 2**28  # bytes of positions cached between framing and drawing
 
 
 class FrameVertices(Protocol):
-    """Where the vertices of a layer's mesh are at any time."""
+    """Posed mesh vertices of a layer at any time."""
 
     def positions(self, frame: float) -> Complexes:
-        """Return the vertices, complex128 (v,), at a frame, whole or between two."""
+        """Return the vertices, complex128 (v,), at a frame or between two frames."""
 
 
 class CachedVertices:
-    """Poses each of which is worked out once though it is asked for several times, in a budget.
+    """Posed vertices with a cache: each pose is computed once within a memory budget.
 
-    First for the framing, then to choose triangles, and last for the drawing. What is kept in
-    between has the single precision that is drawn.
-
-    Parameters
-    ----------
-    cancellation : Cancellation, optional
-        Of the export: once it was cancelled, no more of them are worked out.
-    budget : int
-        In bytes; what does not fit is worked out again.
+    Framing, decimation and drawing request the same poses in turn. The cache keeps them in single
+    precision, as they are drawn. Poses beyond the budget, in bytes, are computed again. A cancelled
+    export computes no further poses.
     """
 
     def __init__(
@@ -45,7 +39,7 @@ class CachedVertices:
         self._kept: dict[float, npt.NDArray[np.complex64]] = {}
 
     def cache_positions(self, frame: float) -> Complexes:
-        """Return the positions, and keep them for when they are asked for again."""
+        """Return the positions, and keep them in the cache."""
         self._cancellation.check()
         if frame in self._kept:
             return self._kept[frame].astype(np.complex128)
@@ -56,7 +50,7 @@ class CachedVertices:
         return positions
 
     def positions(self, frame: float) -> Complexes:
-        """Return the positions, and keep them no longer."""
+        """Return the positions, and remove them from the cache."""
         self._cancellation.check()
         kept = self._kept.pop(frame, None)
         return self._poses.positions(frame) if kept is None else kept.astype(np.complex128)

@@ -1,4 +1,4 @@
-"""Which part of the plane an export shows."""
+"""The part of the plane that an export shows."""
 
 import math
 from typing import Final
@@ -7,7 +7,7 @@ from app.document import Document, ExportSettings
 from app.motion import BoundingBox
 from app.render import View, canvas_view, fit_view
 
-# Room at each side of a motion that is fitted, as a share of its longer side.
+# Margin at each side of a fitted motion, as a share of its longer side.
 MARGIN: Final = 0.02
 
 
@@ -18,22 +18,10 @@ def find_shown_box(view: View) -> BoundingBox:
 
 
 def frame_view(settings: ExportSettings, document: Document, motion: BoundingBox) -> View:
-    """Return the view of every frame of an export.
+    """Return the view of every frame of an export; with a camera it is the canvas.
 
-    With a camera, which shows what it does on the canvas, it is the canvas.
-
-    Parameters
-    ----------
-    settings : ExportSettings
-        Its framing and size.
-    document : Document
-    motion : BoundingBox
-        Around the whole motion.
-
-    Notes
-    -----
-    A fitted frame without a size of its own is even both ways, as video needs it, and lies on the
-    picture's own grid of pixels, so that what rests stays as sharp as it is.
+    `motion` is a box around the whole motion. A fitted frame without a given size has even sides,
+    as video needs. It lies on the picture's pixel grid, so that parts at rest stay sharp.
     """
     if settings.framing == "canvas" or document.camera:
         return canvas_view(document.canvas, settings.size)

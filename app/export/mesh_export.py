@@ -1,4 +1,4 @@
-"""Exports of shapes: nothing is drawn, and a few steps of the work are taken at a time."""
+"""Exports of meshes without rendering, computed a few steps at a time."""
 
 from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -20,21 +20,20 @@ from app.export_formats import EXPORT_FORMATS
 from app.storage import Cancellation, write_atomically
 from engine.arrays import Bytes
 
-_BATCH: Final = 16  # steps between two looks at whether the export is still wanted
+_BATCH: Final = 16  # steps between two checks for cancellation
 
 
 class MeshExport:
-    """An export of shapes.
+    """An export of meshes.
 
     Parameters
     ----------
     document : Document
-        With the meshes that are exported.
+        With the reduced meshes.
     pictures : mapping of int to uint8, shape (h, w, 4)
-        The layers' pictures, decoded, by their ids.
-    poses : mapping of int to Poses
-        The layers', by their ids.
-    plan : ExportPlan
+        Decoded pictures by layer id.
+    poses : mapping of int to FrameVertices
+        By layer id.
     """
 
     def __init__(
@@ -52,33 +51,26 @@ class MeshExport:
 
     @property
     def meshes(self) -> tuple[MorphMesh, ...]:
-        """What was found of the layers; none before the end."""
+        """The meshes of the layers; empty before the end."""
         return () if self._scene is None else self._scene.meshes
 
     def run(
         self, *, waits: bool = True, cancellation: Cancellation | None = None
     ) -> Generator[int]:
-        """Make what was planned, a part of it at each step.
+        """Run the plan, a part of it at each step.
 
-        Parameters
-        ----------
-        waits, cancellation
-            As in `export`.
+        Closing the iterator, or an exception, ends the export without any file. The running job is
+        not awaited, as it may take long.
 
         Yields
         ------
         int
-            As how many of the plan's frames the work that is done may count.
+            Finished work as a number of the plan's frames.
 
         Raises
         ------
         LissomError
-            If the motion fails somewhere, or the file cannot be written.
-
-        Notes
-        -----
-        Closing the iterator, or an exception, ends the export, and nothing of it stays. What is
-        under way is left to itself, as it may take long.
+            If the motion fails at some frame, or the file cannot be written.
         """
         cancellation = cancellation or Cancellation()
         total, worker = len(self._plan.times), ThreadPoolExecutor(1)
@@ -98,7 +90,6 @@ class MeshExport:
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """What the person should know about the shapes that were found."""
         wanted, format_ = self._plan.shapes.tolerance, EXPORT_FORMATS[self._plan.format]
         found = []
         for shape in self.meshes:
@@ -127,7 +118,7 @@ class MeshExport:
         return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
 
     def _uncomposited(self, label: str) -> Iterator[str]:
-        """Tell what does not look as it does here in a format that paints layer upon layer."""
+        """Yield notices about blends that a format without compositing cannot show."""
         groups = self._document.groups
         painted: list[Layer | Group] = [*self._document.exported_layers, *groups]
         for what, names in (

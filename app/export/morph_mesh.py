@@ -1,4 +1,4 @@
-"""A layer as other programs play it: a light textured mesh, and few shapes that it blends."""
+"""A layer for other programs: a light textured mesh with a few morph targets."""
 
 import math
 from collections.abc import Callable, Generator, Mapping
@@ -31,9 +31,9 @@ from engine.streaming import MorphTargets, build_morph_targets
 Value = TypeVar("Value")
 
 DEFAULT_TOLERANCE: Final = 0.5  # pixels
-MOST_TARGETS: Final = 8  # viewers of glTF need show no more
-_BORDER: Final = 2  # transparent pixels around a texture: readers repeat what is at its edge
-_CLOSE: Final = 0.5  # frames between the moments that are looked at first
+MOST_TARGETS: Final = 8  # glTF viewers must support only this many
+_BORDER: Final = 2  # transparent pixels around a texture: readers repeat its edge
+_CLOSE: Final = 0.5  # frames between the first samples
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -42,21 +42,19 @@ class MorphMesh:
 
     Parameters
     ----------
-    name : str
     texture : uint8, shape (h, w, 4)
-        Straight alpha, with colours where it is transparent; the part of the picture that the mesh
-        shows.
+        The part of the picture inside the mesh; straight alpha, with colours under transparent
+        pixels.
     opacity : float
-        Of the whole layer, where it is the most, with those of its groups.
+        The layer's largest opacity in time, multiplied by its groups'.
     uv : float64, shape (v, 2)
         u right, v up; [0, 1] spans the texture.
-    orders : tuple of (float, int32 of shape (m, 3))
-        The triangles, counter-clockwise, in the order of painting, and from when on they are
-        painted so.
-    sights : tuple of (float, bool)
-        From when on the layer is seen, or is not.
+    triangle_orders : tuple of (float, int32 of shape (m, 3))
+        Start times, and counter-clockwise triangles in painting order.
+    visibility_changes : tuple of (float, bool)
+        Start times, and visibility from then on.
     motion : MorphTargets
-        In pixels, y up; its times, like all others, are seconds from the first frame on.
+        In pixels, y up. All times are in seconds from the first frame.
     """
 
     name: str
@@ -70,21 +68,14 @@ class MorphMesh:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MorphScene:
-    """The shapes of a scene, the one behind all others first.
-
-    Parameters
-    ----------
-    shapes : tuple of MorphMesh
-    parts : tuple of (int or Composite)
-        How they are composited, by their numbers, from back to front.
-    """
+    """The meshes of a scene, from back to front, and their compositing by mesh index."""
 
     meshes: tuple[MorphMesh, ...]
     parts: tuple[int | CompositeGroup[int], ...]
 
 
 def with_reduced_meshes(document: Document, triangles: int) -> Document:
-    """Return a document whose meshes have at most so many triangles, about."""
+    """Return a document whose meshes have at most about this many triangles."""
     return replace(document, layers=tuple(_lighter(f, triangles) for f in document.layers))
 
 
@@ -102,24 +93,23 @@ def build_morph_scene(
     poses: Mapping[int, FrameVertices],
     plan: ExportPlan,
 ) -> Generator[float, None, MorphScene]:
-    """Find the shapes of every layer; yield how much of the work is done, from 0 to 1.
+    """Build the meshes of every layer; yield the finished share of the work, from 0 to 1.
 
-    Where the format shows a part of the plane, shapes are as the camera shows them there.
+    If the format shows a part of the plane, the meshes are in the camera's view.
 
     Parameters
     ----------
     document : Document
-        With the meshes that are exported.
+        With the reduced meshes.
     pictures : mapping of int to uint8, shape (h, w, 4)
-        The layers' pictures, decoded, by their ids.
-    poses : mapping of int to Poses
-        The layers', by their ids.
-    plan : ExportPlan
+        Decoded pictures by layer id.
+    poses : mapping of int to FrameVertices
+        By layer id.
 
     Raises
     ------
     LissomError
-        If nothing is seen, or the motion fails somewhere.
+        If no layer is visible, or the motion fails at some frame.
     """
     document = _with_peak_opacity(document)
     first, last = plan.span
@@ -171,7 +161,7 @@ def build_morph_scene(
 
 
 def _with_peak_opacity(document: Document) -> Document:
-    """Return a document whose layers are as opaque as they are at most, at all times."""
+    """Return a document with each layer's largest opacity at all times."""
     layers = tuple(
         replace(each, opacity_keys=(), opacity=max(key.opacity for key in each.opacity_keys))
         if each.opacity_keys
@@ -184,7 +174,7 @@ def _with_peak_opacity(document: Document) -> Document:
 def _painted(
     document: Document, plan: ExportPlan, seam: ClosedCuts | None, poses: FrameVertices
 ) -> Callable[[float], Complexes]:
-    """Return where vertices are painted at a time: with slits closed, as the camera shows them."""
+    """Return a function from time to painted vertices: cuts closed, in the camera's view."""
     has_frame = EXPORT_FORMATS[plan.format].has_frame
 
     def at(frame: float) -> Complexes:
@@ -208,7 +198,7 @@ def _changes(values: list[tuple[int, Value]]) -> list[tuple[int, Value]]:
 def _share(
     steps: Generator[float, None, MorphTargets], frames: tuple[int, int], part: tuple[int, int]
 ) -> Generator[float, None, MorphTargets]:
-    """Take steps that tell which frame they are at, and yield what that is of the whole work."""
+    """Turn steps that yield frames into steps that yield the finished share of the whole work."""
     (first, last), (index, count) = frames, part
     while True:
         try:
@@ -220,7 +210,7 @@ def _share(
 
 
 def _cut_out(picture: Bytes, vertices: Complexes) -> tuple[Bytes, Floats]:
-    """Return the part of a picture that a mesh shows, with a border, and the places in it.
+    """Return the part of a picture inside a mesh, with a border, and the vertices' uv in it.
 
     The vertices are in pixels from the lower left corner of the picture.
     """
@@ -229,7 +219,7 @@ def _cut_out(picture: Bytes, vertices: Complexes) -> tuple[Bytes, Floats]:
     left, bottom = (math.floor(side) - _BORDER for side in (box.lower.real, box.lower.imag))
     right, top = (math.ceil(side) + _BORDER for side in (box.upper.real, box.upper.imag))
     texture = np.zeros((top - bottom, right - left, 4), dtype=np.uint8)
-    # The mesh may reach beyond the picture.
+    # The mesh may extend beyond the picture.
     x0, x1, y0, y1 = max(left, 0), min(right, width), max(bottom, 0), min(top, height)
     texture[top - y1 : top - y0, x0 - left : x1 - left] = picture[height - y1 : height - y0, x0:x1]
     offsets = vertices - complex(left, bottom)

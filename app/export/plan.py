@@ -1,4 +1,4 @@
-"""What an export will make, settled and checked before the first frame is drawn."""
+"""The plan of an export, checked before the first frame is drawn."""
 
 import math
 from collections.abc import Mapping
@@ -30,26 +30,24 @@ from app.export_formats import EXPORT_FORMATS, FormatSettings
 from app.motion import BoundingBox, bounding_box, motion_bounding_box
 from app.render import View
 
-# Bytes that a pixel of a frame takes at least: an empty PNG has about as many.
+# Minimum of bytes per frame pixel: an empty PNG has about as many.
 LEAST: Final = 0.001
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportRequest:
-    """What the person asks for.
+    """The person's request for an export.
 
     Parameters
     ----------
     out : Path
         A folder for PNG frames, a file for every other format.
     settings : ExportSettings
-        The document's own, or others for this once.
-    project : str
-        The project's name.
+        The document's own, or others for this export.
     fps : float, optional
         Pictures per second; the document's rate by default.
     sources : tuple of Path
-        The files that it is made from, which must not be written over.
+        The input files, which must not be overwritten.
     """
 
     out: Path
@@ -60,12 +58,11 @@ class ExportRequest:
 
     @property
     def names(self) -> FrameNames:
-        """How the files of frames are called."""
         return FrameNames(pattern=self.settings.names, project=self.project)
 
 
 class FrameTag(NamedTuple):
-    """A name for some pictures of an export, from the index of the first to that of the last."""
+    """A name for consecutive pictures of an export, given by first and last index."""
 
     name: str
     first: int
@@ -74,38 +71,30 @@ class FrameTag(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportPlan(FormatSettings):
-    """What an export makes.
+    """The contents of an export.
 
     Parameters
     ----------
-    out : Path
     format : str
         A name of `EXPORT_FORMATS`.
     view : View
-        What every frame shows, and its size.
+        Shown part of the plane and size of every frame.
     background : tuple of 3 ints, optional
-        Red, green and blue; None leaves transparent what is so.
+        Red, green and blue; None keeps transparency.
     times : tuple of float
-        The frame of the timeline, whole or between two, that each picture shows.
+        The timeline frame of each picture, whole or between two.
     first : int
-        Number of the first picture; the next ones count on from there, whatever the rate.
+        Number of the first picture. The following ones count on, whatever the rate.
     span : tuple of int
-        The frames of the timeline from which and to which shapes move; in a loop the last one is
-        the first one again.
+        First and last timeline frame of the motion of meshes. In a loop the last equals the first.
     fps : float
         Pictures per second.
     canvas : tuple of int
-        Width and height of the document's.
-    loop : bool
-        Whether an animation plays for ever, or once.
+        Width and height of the document's canvas.
     frame_names : FrameNames
-        Of the pictures, where each is a file of its own.
+        Names of the pictures, if each is a file of its own.
     tags : tuple of FrameTag
-        Parts of the motion, from marker to marker; all of it where there is none.
-    sheet, shapes
-        What single formats ask.
-    notices : tuple of str
-        What the person should know about it.
+        Parts of the motion between markers; without markers the whole motion.
     """
 
     out: Path
@@ -124,18 +113,15 @@ class ExportPlan(FormatSettings):
 
     @property
     def names(self) -> list[str]:
-        """The file names of the pictures, where each is a file of its own."""
+        """File names of the pictures, if each is a file of its own."""
         return self.frame_names.of(self.first, len(self.times))
 
 
 def check_request(document: Document, request: ExportRequest) -> None:
-    """Refuse what cannot work, before anything long begins.
+    """Refuse an impossible request before any long computation.
 
-    Raises
-    ------
-    LissomError
-        If the output path does not suit the format, the frames are not the animation's, or the
-        format cannot be written.
+    Raises `LissomError` if the output path does not suit the format, frames lie outside the
+    animation, or the format cannot be written.
     """
     settings = request.settings
     if not document.exported_layers:
@@ -177,7 +163,7 @@ def check_request(document: Document, request: ExportRequest) -> None:
 
 
 def list_overwritten_files(document: Document, request: ExportRequest) -> list[str]:
-    """Return the names of the files that an export would take the place of."""
+    """Return the names of existing files that an export replaces."""
     return find_overwritten_files(request.out, request.settings.format, _names(document, request))
 
 
@@ -187,15 +173,14 @@ def plan_export(
     poses: Mapping[int, CachedVertices],
     extent: BoundingBox | None = None,
 ) -> ExportPlan:
-    """Settle an export whose request has passed `check_request`.
+    """Plan an export whose request has passed `check_request`.
 
     Parameters
     ----------
-    request : ExportRequest
     poses : mapping of int to CachedVertices
-        One for each layer, by its id; looked at only where the framing depends on the motion.
+        By layer id; used only if the framing depends on the motion.
     extent : BoundingBox, optional
-        Around all of the motion, where that is known already.
+        Box around the whole motion, if already known.
 
     Raises
     ------
@@ -235,7 +220,7 @@ def plan_export(
 
 
 def _check_size(name: str, size: tuple[int, int]) -> None:
-    """Refuse pictures that a format cannot hold."""
+    """Refuse pictures too large for a format."""
     largest = EXPORT_FORMATS[name].largest
     if largest is not None and max(size) > largest:
         raise LissomError(
@@ -245,7 +230,7 @@ def _check_size(name: str, size: tuple[int, int]) -> None:
 
 
 def _names(document: Document, request: ExportRequest) -> list[str]:
-    """Return the names of the pictures, where each is a file of its own."""
+    """Return the names of the pictures, if each is a file of its own."""
     frames = _frames(document, request.settings)
     return request.names.of(frames.first, len(frame_times(document, frames, request.fps)))
 
@@ -269,8 +254,8 @@ def _tags(
 
 
 def _end(document: Document, settings: ExportSettings, frames: FrameRange) -> int:
-    """Return the frame at which a motion ends that is shown without steps."""
-    # Pictures of a loop leave out its last frame, which is the first one again.
+    """Return the last frame of a continuous motion."""
+    # The pictures of a loop leave out its last frame, which equals the first.
     return frames.last if settings.frames is not None else document.frames.last
 
 
@@ -282,7 +267,7 @@ def _colour(background: str) -> tuple[int, int, int] | None:
 
 
 def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
-    """Tell of rows and columns that a format of whole blocks needs."""
+    """Return notices about rows and columns that a format of whole blocks adds."""
     width, height = EXPORT_FORMATS[plan.format].whole_blocks(plan.view.size)
     if (width, height) == plan.view.size:
         return ()
@@ -292,7 +277,7 @@ def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
 
 
 def _left_frames(plan: ExportPlan) -> tuple[str, ...]:
-    """Tell of frames in the folder that this export will not write again."""
+    """Return notices about frames in the folder that this export does not rewrite."""
     others = (
         []
         if EXPORT_FORMATS[plan.format].suffixes

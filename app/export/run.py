@@ -15,13 +15,13 @@ from engine.arrays import Bytes
 T = TypeVar("T")
 
 ENCODERS: Final = 2  # threads
-AHEAD: Final = 4  # frames that are posed but not yet drawn
-# Frames that are drawn but not yet written: as many as these bytes hold, and no more than that.
+AHEAD: Final = 4  # frames posed but not yet drawn
+# Frames drawn but not yet written: limited in bytes and in number.
 QUEUED_BYTES, MOST_QUEUED = 2**26, 8
 
 
 class _InFlight(NamedTuple):
-    """A frame that is to be written, and what is done when it is."""
+    """A frame in the writing queue; `written` completes after it is written."""
 
     encoded: Future[Any]
     written: Future[None]
@@ -35,40 +35,35 @@ def export_frames(
     waits: bool = True,
     cancellation: Cancellation | None = None,
 ) -> Generator[int]:
-    """Make what was planned, one frame at each step.
+    """Run the plan, one frame at each step.
+
+    Closing the iterator, or an exception, ends the export. Written PNG frames stay, each of them
+    whole; other formats leave no file. The running pose job is not awaited, as it may take long.
+
+    Memory does not grow with the number of frames, except for a sprite sheet, nor with slow
+    encoding.
 
     Parameters
     ----------
-    plan : ExportPlan
     pose : callable
-        Returns what `draw` needs of a frame of the timeline. It is called in their order, on a
-        thread of its own.
+        Returns the input of `draw` for a timeline frame. It is called in order, on a thread of its
+        own.
     draw : callable
-        Returns the picture, uint8 (h, w, 4) with straight alpha. It is called on the thread that
-        takes the steps, which may be the one of a window.
+        Returns the picture, uint8 (h, w, 4) with straight alpha. It is called on the stepping
+        thread, which may belong to a window.
     waits : bool
-        Whether a step waits until another frame is drawn. Else it returns at once where there is
-        nothing to draw yet, and nowhere does the thread that takes it wait for others, not even
-        where the export ends early.
-    cancellation : Cancellation, optional
-        By which it can be cancelled before the iterator is closed.
+        Whether a step waits for the next drawn frame. Otherwise no step ever waits for another
+        thread, not even when the export ends early.
 
     Yields
     ------
     int
-        The number of frames that are drawn.
+        The number of drawn frames.
 
     Raises
     ------
     LissomError
         If a frame cannot be drawn or written.
-
-    Notes
-    -----
-    Closing the iterator, or an exception, ends the export: PNG frames that are written stay, each
-    of them whole, and of any other format nothing stays. The pose under way is left to itself, as
-    it may take long. The memory does not grow with the number of frames (that of a sprite sheet
-    does with its size), nor with how slowly they are encoded.
     """
     cancellation = cancellation or Cancellation()
     width, height = plan.view.size
@@ -110,12 +105,12 @@ def export_frames(
 
 
 def wait_some(*awaited: Future[Any], count: int, waits: bool) -> Iterator[int]:
-    """Go on yielding the count until one of some is done, unless they may be waited for.
+    """Wait until one of the jobs is done; without waiting, yield `count` until then.
 
     Raises
     ------
     Exception
-        What one of them failed with.
+        The exception of a failed job.
     """
     while not waits and not any(each.done() for each in awaited):
         yield count
@@ -129,12 +124,9 @@ def _write(
     opened: Future[FrameWriter],
     due: SimpleQueue[_InFlight | None],
 ) -> None:
-    """Write what is due until nothing more is; on the one thread that has the files in its hands.
+    """Write the queued frames until the queue ends; all file access is on this thread.
 
-    Raises
-    ------
-    LissomError
-        If something cannot be written, or was cancelled.
+    Raises `LissomError` if a file cannot be written, or the export was cancelled.
     """
     with open_writer(plan, cancellation) as writer:
         opened.set_result(writer)

@@ -1,8 +1,9 @@
-"""Drawing: the same renderer for the window and without one.
+"""Drawing: the same renderer for the window and for offscreen frames.
 
 In: a `Scene`, as values, and a `View`.
 Out: pixels in a target.
-Imports: `app.document`, `app.motion`, `app.storage`; with `app.render.gpu` it alone sees OpenGL.
+Imports: `app.document`, `app.motion`, `app.storage`. Only this package and `app.render.gpu` use
+OpenGL.
 """
 
 from app.render.colormap import heat_colormap as heat_colormap

@@ -7,8 +7,8 @@ import numpy as np
 from engine.arrays import Bytes, Floats, readonly
 
 # Lightness, chroma and hue (degrees) in OKLCh, at equal steps: from a quiet indigo through magenta
-# and orange to a bright yellow. Lightness rises all the way, so that the order of the colours is
-# seen whatever one's colour vision, and in print without colours too.
+# and orange to a bright yellow. Lightness rises throughout: the order is visible with any colour
+# vision, and in grey print.
 _STOPS = np.array(
     [
         [0.26, 0.10, 278.0],
@@ -24,7 +24,7 @@ _SIZE = 256
 
 @cache
 def heat_colormap() -> Bytes:
-    """Return the colours, uint8 (256, 3), from the least to the most distorted."""
+    """Return the colours, uint8 (256, 3), from the smallest to the largest distortion."""
     place = np.linspace(0, len(_STOPS) - 1, _SIZE)
     lightness, chroma, hue = (
         np.interp(place, np.arange(len(_STOPS)), column) for column in _STOPS.T
@@ -37,10 +37,8 @@ def heat_colormap() -> Bytes:
 
 
 def oklab_to_srgb(colours: Floats) -> Floats:
-    """Return sRGB colours (n, 3), 0 … 1, of colours in OKLab (n, 3); clipped to the gamut.
+    """Return sRGB colours (n, 3), 0 … 1, of OKLab colours (n, 3), clipped to the gamut.
 
-    Notes
-    -----
     Matrices of B. Ottosson, "A perceptual color space for image processing" (2020).
     """
     to_cones = np.array(

@@ -1,4 +1,4 @@
-"""A mesh that is posed anew for each frame, by the processor or by the graphics card."""
+"""A mesh with a new pose in each frame, computed by the processor or by the graphics card."""
 
 import moderngl
 
@@ -16,14 +16,9 @@ from engine.streaming import MOST_ROWS, Series
 
 
 class DrawnMesh:
-    """Owner of the poses of a mesh.
+    """Owner of the poses of a mesh; the mesh must be released after it.
 
-    Parameters
-    ----------
-    mesh : GpuMesh
-        Released after it.
-    by_shader : bool
-        Whether streamed vertices are placed by the shader; `shader_is_faster` tells.
+    `by_shader` means that the shader computes streamed vertices; see `shader_is_faster`.
     """
 
     def __init__(self, mesh: GpuMesh, *, by_shader: bool) -> None:
@@ -39,7 +34,7 @@ class DrawnMesh:
     def pose(
         self, vertices: Vertices, *, placement: RigidMotion | Similarity = IDENTITY_MOTION
     ) -> PosedMesh:
-        """Return the mesh with its vertices there and painted in their order; new ones go up."""
+        """Return the mesh posed and painted by these vertices; new vertices are uploaded."""
         if self._current is None or self._current[0] is not vertices:
             self._current = vertices, self._placed(vertices)
         posed = self._current[1]
@@ -47,7 +42,6 @@ class DrawnMesh:
         return posed
 
     def release(self) -> None:
-        """Let the poses go."""
         self._pose.release()
         if self._series_pose is not None:
             self._series_pose.release()
@@ -74,10 +68,10 @@ class DrawnMesh:
 
 
 def shader_is_faster(context: moderngl.Context) -> bool:
-    """Tell whether the shader should place streamed vertices, and not the processor.
+    """Return whether the shader should compute streamed vertices, and not the processor.
 
-    Where the processor draws, its matrix-vector product with an upload is the faster of the two:
-    `python -m tests.bench streaming` measures both. A graphics card needs nothing but the weights.
+    In software OpenGL the processor's matrix-vector product with an upload is faster: `python -m
+    tests.bench streaming` measures both. A graphics card needs only the weights.
     """
     return not is_software(context)
 

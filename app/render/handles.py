@@ -1,4 +1,4 @@
-"""How handles look: from their states to lines and discs."""
+"""The look of handles: from their states to lines and discs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ RADIUS, RIM_WIDTH, BLUR = 7.0, 2.0, 5.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HandleMark:
-    """A handle as it is to be shown."""
+    """The state of a drawn handle."""
 
-    place: complex  # where the handle is, in the plane
-    target: complex | None = None  # where it should be, if it is out of reach within the bounds
+    place: complex  # position of the handle, in the plane
+    target: complex | None = None  # its target, if the limits make it unreachable
     anchor: bool = False
     selected: bool = False
     hovered: bool = False
@@ -35,14 +35,15 @@ class HandleMark:
 def mark_handles(
     marks: Sequence[HandleMark], *, scale: float = 1.0
 ) -> tuple[tuple[Line, ...], tuple[Disc, ...]]:
-    """Return the lines and discs that show handles, at the interface's scale; later ones on top."""
+    """Return the lines and discs of handles at the interface's scale; later ones on top."""
     lines: list[Line] = []
     discs: list[Disc] = []
     for mark in marks:
         if mark.target is not None:
             way = np.array([mark.target, mark.place])
             lines += [
-                # On white, so that the dashes are seen on a drawing of their own colour.
+                # A shadow under white, so that the dashes are visible on a drawing of their own
+                # colour.
                 Line(points=way, colour=SHADOW, width=4.5 * scale),
                 Line(points=way, colour=RIM, width=2.5 * scale),
                 Line(points=way, colour=TARGET, width=2.5 * scale, dash=5.0 * scale),
@@ -54,7 +55,7 @@ def mark_handles(
 
 
 def mark_anchor(place: complex, *, scale: float = 1.0) -> tuple[Disc, ...]:
-    """Return the discs that show an anchor where no handle is; smaller, since it is no handle."""
+    """Return the discs of an anchor without a handle; smaller than a handle's."""
     dot = _disc(place, 0.6 * RADIUS, scale, fill=ANCHOR, rim=RIM, rim_width=0.75 * RIM_WIDTH)
     return _shadow(place, 0.6 * RADIUS, scale), dot
 

@@ -20,7 +20,7 @@ _DISC_FIELDS: Final = ("centre", "radius", "rim_width", "softness", "fill", "rim
 
 
 class Overlay:
-    """Owner of the buffers that lines and discs are drawn from."""
+    """Owner of the buffers of lines and discs."""
 
     def __init__(self, programs: Programs) -> None:
         self._lines = _Instances(programs, _LINE, _LINE_LAYOUT, _LINE_FIELDS)
@@ -35,13 +35,12 @@ class Overlay:
             self._discs.draw(np.array([_disc(disc) for disc in discs], np.float32), uniforms)
 
     def release(self) -> None:
-        """Let the buffers go."""
         self._lines.release()
         self._discs.release()
 
 
 class _Instances:
-    """Rectangles of one program, one instance a row of floats; the buffer grows as needed."""
+    """Rectangles of one program, one instance per row of floats; the buffer grows as needed."""
 
     def __init__(
         self, programs: Programs, files: ShaderFiles, layout: str, fields: tuple[str, ...]

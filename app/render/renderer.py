@@ -1,4 +1,4 @@
-"""Draws scenes: the same for the window and without one."""
+"""Draws scenes, for the window and offscreen."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -22,10 +22,10 @@ _WIRE: Final = ShaderFiles(vertex=_MESH, geometry="wire.geom", fragment=("wire.f
 _BORDER: Final = replace(_WIRE, geometry="border.geom")
 _GHOST: Final = ShaderFiles(vertex=("screen.vert",), fragment=("ghost.frag",))
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
-# "Compositing and Blending Level 1" of the W3C, Sections 9.1.4, 10.1.2 and 10.1.3, of premultiplied
-# colours: factors of the source s and of the backdrop b, for the colours and for alpha. What is
-# multiplied comes in two passes, since its factor 1 − α_b + b is none of OpenGL's: first
-# s·b + (1 − α_s)·b with the backdrop's alpha as it was, then (1 − α_b)·s added to it.
+# "Compositing and Blending Level 1" of the W3C, Sections 9.1.4, 10.1.2 and 10.1.3, for
+# premultiplied colours: factors of the source s and of the backdrop b, for the colours and for
+# alpha. OpenGL lacks the factor 1 − α_b + b of multiply, which takes two passes. The first gives
+# s·b + (1 − α_s)·b and keeps the backdrop's alpha. The second adds (1 − α_b)·s.
 _OVER: Final = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 _BESIDE: Final = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
 _STAYS: Final = (moderngl.ZERO, moderngl.ONE)
@@ -36,8 +36,8 @@ _BLENDS: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
     "multiply": (_WITHIN, (*_BESIDE, *_BESIDE)),
     "screen": ((moderngl.ONE, moderngl.ONE_MINUS_SRC_COLOR, *_OVER),),
 }
-# What is clipped meets its backdrop as if that were opaque, and leaves its alpha: α_b times the
-# blend of the straight colours by α_s, as if painted first and then cut out.
+# A clipped source meets its backdrop as if the backdrop were opaque, and keeps the backdrop's
+# alpha: α_b times the blend of the straight colours by α_s, as if painted first and then cut out.
 _CLIPPED: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
     "normal": ((moderngl.DST_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS),),
     "multiply": (_WITHIN,),
@@ -49,7 +49,7 @@ _CLIPPED: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
 
 
 class Renderer:
-    """Owner of the programs of a context and of what is drawn on the way."""
+    """Owner of the programs of a context and of its offscreen targets."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self.programs = Programs(context)
@@ -61,7 +61,7 @@ class Renderer:
         self._ramp.repeat_x = self._ramp.repeat_y = False
 
     def draw(self, target: RenderTarget, view: View, scene: Scene) -> None:
-        """Draw a scene in place of whatever the target holds, and leave the target bound.
+        """Draw a scene over the target's previous content, and leave the target bound.
 
         The view has the target's size.
         """
@@ -153,9 +153,9 @@ class Renderer:
         heat: Heat | None = None,
         depth: int = 0,
     ) -> None:
-        """Draw parts on a layer of their own first, so deep in others, and then that on the target.
+        """Draw parts into the offscreen target of this depth, then composite it on `target`.
 
-        Else limbs that overlap would shine through each other.
+        Drawn directly, overlapping limbs would show through each other.
         """
         layer = self._layer_at(depth, target)
         layer.framebuffer.use()
@@ -168,8 +168,8 @@ class Renderer:
         }
         passes = (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]
         if whole.is_pass_through:
-            # On the layer is what will be there in the end: of what is there as much is taken away
-            # as comes from it then.
+            # The offscreen target holds the final colours. First subtract its share of the old
+            # colours from the target, then add the same share of the final colours.
             self._context.copy_framebuffer(layer.framebuffer, target.framebuffer)
             passes = (_ADDED,)
             self._context.enable_only(moderngl.BLEND)
@@ -187,7 +187,7 @@ class Renderer:
         passes: Sequence[tuple[int, int, int, int]],
         uniforms: Mapping[str, object],
     ) -> None:
-        """Draw a layer on a target as often as there are factors of a blend."""
+        """Composite an offscreen target on a target, one pass for each pair of blend factors."""
         target.framebuffer.use()
         layer.texture.use(_LAYER_UNIT)
         for factors in passes:
@@ -208,7 +208,7 @@ class Renderer:
         self._layers.clear()
 
     def release(self) -> None:
-        """Let everything go that the renderer made; targets, poses and pictures are not its own."""
+        """Release everything the renderer made; targets, poses and pictures have other owners."""
         self._release_layers()
         self._ramp.release()
         self._overlay.release()

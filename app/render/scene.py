@@ -1,4 +1,4 @@
-"""What a frame shows, as values: the renderer draws them, panels and exports make them."""
+"""The contents of a frame as values: panels and exports make them, the renderer draws them."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -18,26 +18,24 @@ TRANSPARENT: Final[Colour] = (0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Backdrop:
-    """What lies behind everything."""
+    """The background behind everything."""
 
     colour: Colour = TRANSPARENT
-    checks: Colour | None = None  # the second colour of a checkerboard
+    checks: Colour | None = None  # second colour of a checkerboard
     # Side of its squares in pixels. They move with the plane but keep their size.
     square: float = 12.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Heat:
-    """A heat map of the values that the meshes were given."""
+    """A heat map of the values written to the meshes."""
 
-    # The values at the two ends of the colours; those beyond get the colour of the end.
+    # The values at the two ends of the colours; values beyond get the colour of the end.
     low: float
     high: float
-    contours: int = 9  # number of lines of equal value in between
+    contours: int = 9  # number of contour lines
     strength: float = 0.85  # 1 shows the heat map alone, 0 the drawing alone
-    two_sided: bool = (
-        False  # whether a value in the middle is none, and leaves the drawing as it is
-    )
+    two_sided: bool = False  # whether values in the middle leave the drawing unchanged
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,10 +48,10 @@ class Wireframe:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Ghost:
-    """A drawing that shines through: another frame of it under the current one, an onion skin."""
+    """A translucent drawing of another frame, under the current frame: an onion skin."""
 
-    meshes: tuple[Painted, ...]  # the drawing in that frame, the furthest first
-    # Red, green and blue; None leaves the colours as they are.
+    meshes: tuple[Painted, ...]  # the drawing in that frame, back to front
+    # Red, green and blue; None keeps the colours.
     tint: tuple[float, float, float] | None
     opacity: float
 
@@ -62,11 +60,11 @@ class Ghost:
 class Line:
     """A smooth polyline of constant width on the screen."""
 
-    points: Complexes  # complex128 (n,): At least two, in the plane
+    points: Complexes  # complex128 (n,) in the plane, n ≥ 2
     colour: Colour
     width: float = 1.5  # in pixels
-    dash: float = 0.0  # length of a dash and of a gap in pixels; 0 for a solid line
-    closed: bool = False  # join the last point to the first
+    dash: float = 0.0  # pixels of a dash and of a gap; 0 for a solid line
+    closed: bool = False  # joins the last point to the first
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,23 +76,23 @@ class Disc:
     fill: Colour
     rim: Colour = TRANSPARENT
     rim_width: float = 0.0  # in pixels
-    softness: float = 1.0  # width of the outer edge in pixels: 1 is sharp, more makes a shadow
+    softness: float = 1.0  # pixels of the outer edge: 1 is sharp, more makes a shadow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Scene:
     """A frame, from back to front: background, ghosts, drawing, wireframe, lines, discs.
 
-    Ghosts may come later, before some of the drawing's meshes or after all of them.
+    Ghosts may also be in front of some or all of the drawing's meshes.
     """
 
     background: Backdrop = Backdrop()
-    # The drawing in this frame, the furthest first.
+    # The drawing in this frame, back to front.
     meshes: tuple[Painted, ...] = ()
     # Paints the drawing in the colours of the values last written to its meshes.
     heat: Heat | None = None
     wireframe: Wireframe | None = None
-    ghosts: tuple[Ghost, ...] = ()  # the furthest first
-    ghosts_over: int = 0  # how many of the meshes are behind them
+    ghosts: tuple[Ghost, ...] = ()  # back to front
+    ghosts_over: int = 0  # number of meshes behind the ghosts
     lines: tuple[Line, ...] = ()
     discs: tuple[Disc, ...] = ()

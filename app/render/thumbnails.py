@@ -1,4 +1,4 @@
-"""Small pictures of files and of layers, as textures for the window."""
+"""Thumbnails of files and of layers, as textures for the window."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -17,31 +17,31 @@ class Thumbnail(NamedTuple):
 
 
 class Thumbnails:
-    """Owner of one small texture for each picture or project that was asked for."""
+    """Owner of one texture for each requested picture or project."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
         self._textures: dict[Path, moderngl.Texture | None] = {}
         self._animation_frames: dict[Path, list[moderngl.Texture]] = {}
         self._fresh = True
-        self.is_behind = False  # whether more were asked for in this frame than were read
+        self.is_behind = False  # whether this frame requested more files than it read
 
     @property
     def files(self) -> frozenset[Path]:
-        """The files that were read."""
+        """Files that were read."""
         return frozenset(self._textures)
 
     @property
     def animated_files(self) -> frozenset[Path]:
-        """The files whose small animation was read."""
+        """Files whose small animation was read."""
         return frozenset(self._animation_frames)
 
     def begin_frame(self) -> None:
-        """Allow one more file to be read: one a frame, so that the window opens at once."""
+        """Allow reading one more file: one per frame, so that the window opens at once."""
         self._fresh, self.is_behind = True, False
 
     def get(self, path: Path) -> Thumbnail | None:
-        """Return a file's thumbnail; None while it is not read, or where it has none."""
+        """Return a file's thumbnail; None before it is read, or if it has none."""
         if path not in self._textures:
             if self._fresh:
                 self._textures[path] = self._read(path)
@@ -51,7 +51,7 @@ class Thumbnails:
         return None if texture is None else Thumbnail(texture.glo, texture.size)
 
     def animation_frames(self, path: Path) -> list[Thumbnail]:
-        """Return the pictures of a small animation; none where it cannot be read."""
+        """Return the frames of a small animation; empty if it is unreadable."""
         if path not in self._animation_frames:
             pictures = read_animation_frames(path)
             self._animation_frames[path] = [
@@ -60,9 +60,9 @@ class Thumbnails:
         return [Thumbnail(texture.glo, texture.size) for texture in self._animation_frames[path]]
 
     def release(self, but: Path | None = None) -> None:
-        """Let the textures go, but those of files in one folder, if it is named.
+        """Release the textures, except those of files in the folder `but`.
 
-        Files that are asked for again are read again.
+        Released files are read again on request.
         """
         while self._animation_frames:
             for moment in self._animation_frames.popitem()[1]:
@@ -78,7 +78,7 @@ class Thumbnails:
 
 
 class LayerPictures:
-    """Owner of one small texture for each layer whose picture was asked for."""
+    """Owner of one texture for each requested layer."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -86,13 +86,13 @@ class LayerPictures:
         self._wanted: set[int] = set()
 
     def begin_frame(self) -> None:
-        """Let those go that were not asked for in the last frame."""
+        """Release the textures that the last frame did not request."""
         for identity in self._textures.keys() - self._wanted:
             self._textures.pop(identity)[1].release()
         self._wanted.clear()
 
     def get(self, identity: int, small: Bytes) -> Thumbnail:
-        """Return the small picture of a layer, uint8 (h, w, 4), by the layer's id, as a texture."""
+        """Return a layer's thumbnail, uint8 (h, w, 4), as a texture cached by the layer's id."""
         known = self._textures.get(identity)
         if known is None or known[0] is not small:
             if known is not None:
@@ -102,7 +102,6 @@ class LayerPictures:
         return Thumbnail(known[1].glo, known[1].size)
 
     def release(self) -> None:
-        """Let all textures go."""
         self._wanted.clear()
         self.begin_frame()
 

@@ -1,4 +1,4 @@
-"""Which part of the plane a frame shows, at which scale."""
+"""The part of the plane that a frame shows, and its scale."""
 
 from dataclasses import dataclass, replace
 
@@ -8,12 +8,12 @@ from engine.arrays import Complexes
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class View:
-    """A camera that looks straight at the plane."""
+    """A camera perpendicular to the plane."""
 
-    centre: complex  # the point, x + iy with y up, in the middle of the frame
+    centre: complex  # centre of the frame, x + iy with y up
     scale: float  # pixels of the frame per unit of the plane
     size: tuple[int, int]  # width and height of the frame in pixels
-    turn: complex = 1.0 + 0j  # of modulus 1, by which what is shown is turned
+    turn: complex = 1.0 + 0j  # rotation of the plane, of modulus 1
 
     def __post_init__(self) -> None:
         if min(self.size) < 1:
@@ -32,11 +32,11 @@ class View:
 
     @property
     def uniforms(self) -> dict[str, object]:
-        """What shaders need to turn the plane, and then to bring it to OpenGL's -1 … 1."""
+        """Shader uniforms: the rotation of the plane, then the map to OpenGL's -1 … 1."""
         return {"view": self.transform, "view_turn": (self.turn.real, self.turn.imag)}
 
     def to_pixels(self, points: Complexes) -> Complexes:
-        """Return pixels x + iy, from the frame's upper left corner with y down, of points."""
+        """Return the pixels of points, x + iy from the frame's upper left corner with y down."""
         offset = (self.turn * (points - self.centre)).conj() * self.scale
         pixels: Complexes = offset + complex(*self.size) / 2
         return pixels
@@ -52,22 +52,16 @@ class View:
         return replace(self, centre=self.centre - moved)
 
     def zoomed(self, factor: float, pixel: complex) -> "View":
-        """Return the view magnified by `factor`; the point under `pixel` stays where it is."""
+        """Return the view magnified by `factor`; the point under `pixel` stays fixed."""
         fixed = self.to_plane(pixel)
         centre = fixed + (self.centre - fixed) / factor
         return replace(self, centre=centre, scale=self.scale * factor)
 
 
 def canvas_view(picture: tuple[int, int], size: tuple[int, int] | None = None) -> View:
-    """Return the view of the source picture's own rectangle.
+    """Return the view of the source picture's own rectangle, centred and as large as possible.
 
-    Parameters
-    ----------
-    picture : tuple of int
-        Width and height of the source picture; the plane is measured in its pixels.
-    size : tuple of int, optional
-        Size of the frame, the picture's own by default. The picture is centred in it, as large as
-        it fits.
+    The plane's units are the picture's pixels. The frame's size is by default the picture's.
     """
     return fit_view(0j, complex(*picture), size or picture)
 
@@ -82,11 +76,11 @@ def fit_view(lower: complex, upper: complex, size: tuple[int, int], *, margin: f
     size : tuple of int
         Width and height of the frame in pixels.
     margin : float
-        Pixels to leave free at each side of the frame.
+        Pixels left free at each side of the frame.
     """
     extent = upper - lower
     free = [max(side - 2 * margin, 1.0) for side in size]
-    # A box without width or height is limited by its other side alone, a point by neither.
+    # A box without width or height is limited by its other side alone; a point has no limit.
     scales = [
         side / length
         for side, length in zip(free, (extent.real, extent.imag), strict=True)

@@ -1,4 +1,4 @@
-"""How far an animation distorts its drawing, as numbers and pictures; what to tell of a problem.
+"""Reports: the distortion of an animation as numbers and pictures, and program errors.
 
 In: a document, and its motion; exceptions.
 Out: certificates, curves over time, and pictures of them; texts.

@@ -1,4 +1,4 @@
-"""At which frames of a clip its tracks and springs act, each of those that repeat once."""
+"""The frames of a clip at which tracks and springs act; repeated frames are listed once."""
 
 import numpy as np
 
@@ -8,17 +8,17 @@ from engine.geometry.kinematics import FADE_FRAMES, frames_to_settle
 
 
 def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:
-    """Return the frames (n,) at which tracks or springs act, and how often each repeats (n,).
+    """Return the frames (n,) at which tracks or springs act, and the count of each (n,).
 
-    Frames at which the poses and all tracks are alike are told once, by the first of them. Springs,
-    and tracks of a layer that hangs, go on from repeat to repeat: there each frame is one.
+    Frames with equal poses and tracks are listed once, by their first frame. Springs, and tracks of
+    a layer with a parent, continue across repeats: there each frame is listed.
     """
     layer = clip.layer
     frames = np.arange(clip.frames.first, clip.frames.last + 1)
     springs = [spring for spring in layer.springs if spring.enabled]
     tracks = [track for track in layer.tracks if track.enabled]
     acts = np.full(len(frames), bool(springs) and (is_carried or clip.loop))
-    # Where nothing moves they come to rest.
+    # Springs come to rest after the last motion.
     end = max([clip.keys[-1].frame, *(ring.end for ring in segment_layout(clip).cycles)])
     for spring in springs:
         settled = frames_to_settle(clip.fps, spring.frequency, spring.damping)
@@ -39,7 +39,7 @@ def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Ind
 
 
 def _times(track: Track, clip: Clip, frames: Indices) -> Floats:
-    """Return the frame among a track's keys that each frame shows, ∞ where it does not act."""
+    """Return the track time that each frame shows, ∞ where the track does not act."""
     first, last = track.keys[0].frame, track.keys[-1].frame
     cycle, period = track_cycle(track, clip), clip.period if clip.loop else 0
     times, covered = frames - track.delay, np.ones(len(frames), bool)
@@ -56,7 +56,7 @@ def _times(track: Track, clip: Clip, frames: Indices) -> Floats:
 
 
 def _posed(clip: Clip, frames: Indices) -> Indices:
-    """Return the first frame that shows what each frame shows of the poses."""
+    """Return for each frame the first frame with the same pose."""
     keys = clip.keys
     if len(keys) == 1:
         return np.zeros_like(frames)

@@ -1,4 +1,4 @@
-"""How far an animation distorts its drawing: the keyframes' certificates, and the in-betweens'."""
+"""The distortion of an animation: certificates of its keyframes and of its in-betweens."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -23,18 +23,18 @@ from engine.arrays import Floats
 from engine.interpolation import Inbetweens, Proof, prove
 from engine.maps import Boundary, Certificate, certify
 
-TIMES = 65  # in each interval, at which in-betweens are measured
-CLOSER = 15  # more, between the neighbours of each worst one
-# By how much values may be beyond the limits and count as within: of k, and as a share of σ_a and
-# σ_b. By as much enclosures are wider than what they enclose.
+TIMES = 65  # samples of the in-betweens in each segment
+CLOSER = 15  # further samples between the neighbours of each worst one
+# Tolerance beyond the limits: absolute for k, relative for σ_a and σ_b. Enclosures are wider than
+# the enclosed values by as much.
 BEYOND = 0.002
 
 
 class Verdict(StrEnum):
-    """What is known of every moment of an interval, or of an animation, the best first.
+    """The result for all moments of a segment or of an animation, the best first.
 
-    Proven to be within its limits; measured to be, and proven not to fold; or else beyond its
-    limits, or not proven not to fold.
+    PROVEN: within the limits. MEASURED: within the limits by measurement, and proven not to fold.
+    OVER: beyond the limits, or not proven not to fold.
     """
 
     PROVEN = "proven"
@@ -43,18 +43,18 @@ class Verdict(StrEnum):
 
     @staticmethod
     def worst(verdicts: Iterable["Verdict"]) -> "Verdict":
-        """Return the worst of some, the best where there are none."""
+        """Return the worst verdict; the best one if there are none."""
         return max(verdicts, key=list(Verdict).index, default=Verdict.PROVEN)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SegmentReport:
-    """One interval: what its in-betweens reach, beside what its two keys do.
+    """The distortion of the in-betweens of one segment, and of its two keys.
 
-    `limits` is what they are to keep: the keys' own distortion, but where handles stay or the
-    motion passes through a key, the layer's bounds, or what the keys around have beyond them.
-    `proof` encloses the in-betweens at all times. `unsettled` are the frames about which it cannot
-    tell that they do not fold, `loose` others at which it is less tight.
+    `limits` are the keys' own distortion. With auto-pins or a smooth tangent they are the layer's
+    limits, or larger values of the keys around. `proof` encloses the in-betweens at all times.
+    `unsettled` are the frames without a proof against folding, `loose` other frames with a less
+    tight proof.
     """
 
     first: int
@@ -69,7 +69,7 @@ class SegmentReport:
 
     @property
     def excess(self) -> DistortionRange:
-        """By how much what is proven is beyond the limits."""
+        """Proven values beyond the limits."""
         return self._proven.beyond(self.limits)
 
     @property
@@ -79,7 +79,7 @@ class SegmentReport:
 
     @property
     def error(self) -> DistortionRange:
-        """By how much the true extremes may be worse than the measured ones: what is proven is."""
+        """Upper bound of the true extremes minus the measured ones, from the proof."""
         return self._proven.beyond(self.reached)
 
     @property
@@ -88,36 +88,35 @@ class SegmentReport:
 
     @property
     def verdict(self) -> Verdict:
-        """What is known of the interval."""
         if self.may_fold or not self.is_within:
             return Verdict.OVER
         return Verdict.PROVEN if _are_within(self._proven, self.limits) else Verdict.MEASURED
 
     @property
     def is_within(self) -> bool:
-        """Whether the in-betweens as measured keep the limits."""
+        """Whether the measured in-betweens keep the limits."""
         return _are_within(self.reached, self.limits)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Report:
-    """Intervals of a document, and its keyframes' certificates, proven anew against its bounds."""
+    """The segments of a document, and certificates of its keyframes against its limits."""
 
     keys: tuple[tuple[int, Certificate], ...]
     segments: tuple[SegmentReport, ...]
     corrected: CorrectedReport | None = None
-    cycles: tuple[Cycle, ...] = ()  # of which the intervals stand for all repeats
+    cycles: tuple[Cycle, ...] = ()  # the segments stand for all repeats of these
 
     @property
     def verdict(self) -> Verdict:
-        """The worst of the intervals' and the frames'; over if a keyframe is not certified."""
+        """The worst verdict of segments and corrected frames; OVER with an uncertified keyframe."""
         if not all(certificate.is_certified for _, certificate in self.keys):
             return Verdict.OVER
         return Verdict.worst([*(each.verdict for each in self.segments), self.corrected_verdict])
 
     @property
     def reached(self) -> DistortionRange:
-        """The worst that is reached: of keys as proven, in between and in own ways as measured."""
+        """The worst distortion: proven at keys, measured in segments and corrected frames."""
         found = [DistortionRange(own.k, own.sigma_a, own.sigma_b) for _, own in self.keys]
         found += [each.reached for each in self.segments]
         if self.corrected is not None and self.corrected.frames:
@@ -126,7 +125,6 @@ class Report:
 
     @property
     def corrected_verdict(self) -> Verdict:
-        """What is known of the frames that are corrected."""
         corrected = self.corrected
         if corrected is None or not (corrected.frames or corrected.left_out):
             return Verdict.PROVEN
@@ -137,7 +135,7 @@ class Report:
 
 
 def _are_within(reached: DistortionRange, limits: DistortionRange) -> bool:
-    """Tell whether extremes keep limits; of whatever kind they are, with one tolerance."""
+    """Return whether extremes keep the limits; all quantities have the same tolerance."""
     return (
         reached.k <= limits.k + BEYOND
         and reached.sigma_a <= limits.sigma_a * (1 + BEYOND)
@@ -150,17 +148,15 @@ def certify_clip(
 ) -> Report:
     """Prove and measure the distortion of a layer over time and space.
 
-    It is that of its own variant, unless another one is given; `carried` tells where a layer that
-    hangs on others is, at a frame.
-
-    Notes
-    -----
     |ν| and log σ_a are subharmonic, so that the worst distortion of every in-between is on the
-    outline; there it is measured at graded samples, some hundred an edge, the same for keys and
-    in-betweens. The proof leaves nothing out between samples and times, and is of the in-betweens
-    as they are defined, with the handles that stay; what is measured is as they are worked out.
-    Frames in which tracks and springs move handles are solved and proven one by one; what is
-    between two of them is measured.
+    outline. It is measured at graded samples, some hundred per edge, the same for keys and
+    in-betweens. The proof covers all points and times, and concerns the in-betweens as defined,
+    with auto-pins. The measurement concerns the computed in-betweens.
+
+    Frames in which tracks and springs move handles are solved and proven one by one. Between two of
+    these frames the distortion is measured.
+
+    By default the variant is the layer's own. `carried` gives the parent's motion by frame.
     """
     layer, domain = clip.layer, clip.layer.domain
     boundary = Boundary.sample(domain)
@@ -184,10 +180,9 @@ def certify_clip(
 def _segment_report(
     clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: PoseSegment
 ) -> SegmentReport:
-    """Prove and measure the interval of this number."""
     layer, span = clip.layer, clip_segments(clip)[number]
     start, end, last = clip.keys[span.first], clip.keys[span.last], span.start + span.frames
-    # A key that is held is all that is seen until the next one.
+    # A key with hold easing is shown until the next key.
     held = start.easing == HOLD
     ends = [
         DistortionRange.measured(*layer.map_of(key.pose).derivatives(boundary.points))
@@ -241,7 +236,7 @@ def _measured(inbetweens: Inbetweens) -> DistortionRange:
 def _frames(
     clip: Clip, interval: int, stretches: tuple[tuple[float, float], ...]
 ) -> tuple[int, ...]:
-    """Return the frames of an interval nearest to which stretches of its time, [0, 1], are."""
+    """Return the frames of a segment nearest to these ranges of its time in [0, 1]."""
     span, transit = clip_segments(clip)[interval], pose_segments(clip)[interval]
     start, end = span.start, span.start + span.frames
     found = []

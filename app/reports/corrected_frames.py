@@ -1,4 +1,4 @@
-"""Frames that tracks and springs change: how far they distort, and what handles miss."""
+"""Frames that tracks and springs change: their distortion and their target errors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,20 +21,20 @@ from engine.interpolation import prove
 from engine.maps import Boundary
 
 NOTHING = DistortionRange(0.0, 1.0, 1.0)
-MOST_LOOKED_AT: Final = 1_000  # frames; up to so many are all looked at
-SPREAD: Final = 150  # frames that are looked at of more
-MOST_DRIVEN: Final = 8_000  # frames whose motion is worked out, since springs follow it
-BETWEEN = (0.25, 0.5, 0.75)  # of each segment of the outline: where it is measured beside its ends
+MOST_LOOKED_AT: Final = 1_000  # frames; up to so many are all examined
+SPREAD: Final = 150  # examined frames of more
+MOST_DRIVEN: Final = 8_000  # frames whose motion is computed, since springs follow it
+BETWEEN = (0.25, 0.5, 0.75)  # of each outline segment: measured points beside its ends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Short:
-    """A handle that its track wants where it cannot come, from one frame to another."""
+    """A run of frames in which a handle does not reach its track's target."""
 
     handle: str
     first: int
     last: int
-    lag: float  # pixels, the most
+    lag: float  # largest target error, in pixels
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,22 +44,22 @@ class CorrectedReport:
     Parameters
     ----------
     frames : int
-        How many, of those that were looked at and their repeats.
+        Number of examined corrected frames, with repeats.
     proven : int
-        How many of them are proven, over all of the domain; the others are measured.
+        Number of frames proven over all of the domain; the others are measured.
     points : int
-        On the outline, at which frames are measured.
+        Number of measured points on the outline.
     reached : DistortionRange
-        Of all of them: what is proven of those that are, what is measured of the others.
+        Proven values of proven frames, measured values of the others.
     between : DistortionRange
-        What is measured halfway between frames.
+        Measured halfway between frames.
     limits : DistortionRange
-        What they are to keep: the layer's bounds, or what its keys have beyond them.
+        The layer's limits, or larger values of its keys.
     short : tuple of Short
-        What is out of reach.
+        The unreachable targets.
     looked_at, left_out : int
-        Frames at which tracks and springs act, with repeats once: those that were looked at, at
-        equal steps, and those that were not.
+        Frames at which tracks and springs act, repeats counted once: examined ones at equal steps,
+        and the rest.
     """
 
     frames: int
@@ -74,7 +74,7 @@ class CorrectedReport:
 
     @property
     def excess(self) -> DistortionRange:
-        """By how much they, or what is between them, are beyond the limits."""
+        """Values beyond the limits, at frames or between them."""
         return self.reached.joined(self.between).beyond(self.limits)
 
 
@@ -85,19 +85,18 @@ def report_corrected(
     variant: Variant | None = None,
     carried: ParentMotion | None = None,
 ) -> CorrectedReport | None:
-    """Prove or measure the whole frames of a clip that are corrected; None where none is.
+    """Prove or measure the corrected whole frames of a clip; None if there are none.
 
     Parameters
     ----------
-    clip : Clip
     boundary : Boundary
         Of the layer's domain.
     limits : DistortionRange
-        Of the keys and the bounds.
+        Of the keys and the layer.
     variant : Variant, optional
         The layer's own by default.
     carried : callable, optional
-        Where the layer hangs, at a frame.
+        Motion of the layer's parent, by frame.
     """
     ends = boundary.points[boundary.next_samples]
     points = np.concatenate(
@@ -112,7 +111,7 @@ def report_corrected(
     corrections = {frame: animation.corrections.correction_at(frame) for frame in looked_at}
     found = {frame: each for frame, each in corrections.items() if each is not None}
     repeats = dict(zip(looked_at, counts[::step].tolist(), strict=True))
-    # Those that come to the very same are looked at once.
+    # Equal frames are examined once.
     same = {frame: (id(found[frame]), segment_time_at(clip, frame)) for frame in found}
     once = {each: frame for frame, each in reversed(same.items())}
     proofs = {at: _proven(animation, frame) for at, frame in once.items()}
@@ -136,15 +135,15 @@ def report_corrected(
 
 
 def _step(count: int, run_up: int) -> int:
-    """Return by how many of a number of frames to go on, so that there is time to look at them."""
+    """Return the step between examined frames that keeps the time of computation bounded."""
     if count <= MOST_LOOKED_AT:
         return 1
-    # Each takes as many more as springs need before it.
+    # Springs need `run_up` further frames before each examined frame.
     return -(-count // max(min(SPREAD, MOST_DRIVEN // (run_up + 1)), 1))
 
 
 def _proven(animation: Animation, frame: int) -> DistortionRange | None:
-    """Return the proof of a corrected frame; None if nothing is proven of it."""
+    """Return the proof of a corrected frame; None if there is no proof against folding."""
     corrections = animation.corrections
     correction = None if corrections is None else corrections.correction_at(frame)
     if correction is None:
@@ -164,7 +163,7 @@ def _measured(animation: Animation, at: float) -> DistortionRange:
 
 
 def _short(clip: Clip, step: int, misses: Mapping[int, Mapping[int, float]]) -> tuple[Short, ...]:
-    """Return the runs of frames, looked at by steps, in which handles fall short."""
+    """Return the runs of examined frames, `step` apart, in which handles miss their targets."""
     found = []
     for handle in clip.layer.handles:
         lags = {
@@ -172,7 +171,7 @@ def _short(clip: Clip, step: int, misses: Mapping[int, Mapping[int, float]]) -> 
             for frame, miss in misses.items()
             if handle.id in miss and misses_target(clip.layer, miss[handle.id])
         }
-        # Frames of one run are as many steps ahead of their number in it.
+        # In one run, frame minus step times index is constant.
         for _, run in groupby(enumerate(lags), key=lambda each: each[1] - step * each[0]):
             frames = [frame for _, frame in run]
             lag = max(lags[frame] for frame in frames)

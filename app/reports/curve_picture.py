@@ -1,4 +1,4 @@
-"""The curves of the distortion as a picture."""
+"""A plot of the distortion curves."""
 
 import io
 
@@ -9,7 +9,7 @@ from app.reports.curves import Curves
 from engine.arrays import Floats
 
 SIZE = (1400, 560)
-FINER = 2  # times as large it is drawn, so that lines come out smooth
+FINER = 2  # drawn at this scale and reduced, for smooth lines
 MARGIN, GAP, TYPE = FINER * 70, FINER * 60, FINER * 18
 PAPER, INK, GRID = (255, 255, 255), (60, 64, 74), (224, 226, 232)
 LINE, BOUND = (74, 91, 224), (207, 63, 60)
@@ -19,7 +19,7 @@ TITLES = ("k, relative to the larger key", "tau - 1, relative to the larger key"
 
 
 def draw_curves(curves: Curves) -> bytes:
-    """Return a PNG of both plots, k on the left and τ on the right; the bound is red."""
+    """Return a PNG of both plots, k on the left and τ on the right; the limit is red."""
     picture = Image.new("RGB", (FINER * SIZE[0], FINER * SIZE[1]), PAPER)
     width = (picture.width - 2 * MARGIN - GAP) // 2
     for index, (title, shares) in enumerate(
@@ -59,7 +59,7 @@ def _draw_plot(
 
 
 def _overlap(x: Floats, y: Floats, size: tuple[int, int]) -> Image.Image:
-    """Return how opaque curves y (t, p) over x (t,) are together: more so where many agree."""
+    """Return the opacity of all curves y (t, p) over x (t,) together: more where many agree."""
     count = np.zeros((size[1], size[0]), np.float32)
     for column in y.T:
         layer = Image.new("L", size)

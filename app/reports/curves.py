@@ -16,7 +16,7 @@ from engine.interpolation import Frame, Inbetweens, SpanBasis
 from engine.maps import distortion
 
 POINTS = 100
-TIMES = 24  # in each interval
+TIMES = 24  # samples per segment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -25,17 +25,17 @@ class Curves:
 
     clip: Clip
     frames: Floats  # float64 (t,)
-    # float64 (t, p): At the points where each is the largest over all time.
+    # float64 (t, p), at the points with the largest value over all time.
     k: Floats
     tau: Floats
-    # float64 (t, p): The same, at each point as a share of the larger one of the two keys around:
-    # bounded in-betweens never exceed 1. τ counts from 1, where nothing is distorted.
+    # float64 (t, p): the same as a share of the larger of the two adjacent keys. Bounded
+    # in-betweens never exceed 1. τ is counted from 1, its undistorted value.
     k_share: Floats
     tau_share: Floats
-    extremes: Floats  # float64 (t, 3): Of all points: the largest k and σ_a, and the smallest σ_b
+    extremes: Floats  # float64 (t, 3) over all points: largest k and σ_a, smallest σ_b
 
     def extremes_at(self, frame: float) -> DistortionRange:
-        """Return the extremes at a frame, between those that were measured around it."""
+        """Return the extremes at a frame, interpolated between the measured frames."""
         cycle = self.clip.layer.cycle_at(frame)
         if cycle is not None and frame >= cycle.last:
             frame = cycle.source_frame(frame)
@@ -47,14 +47,9 @@ class Curves:
 
 
 class CorrectedSample(NamedTuple):
-    """The corrections of frames at some points, where handles have tracks and springs.
+    """Corrections of whole frames at some points, for handles with tracks and springs.
 
-    Parameters
-    ----------
-    frames : CorrectedFrames
-        Whole.
-    basis : SpanBasis
-        At the nodes of the in-betweens.
+    `basis` is at the nodes of the in-betweens.
     """
 
     frames: CorrectedFrames
@@ -63,7 +58,7 @@ class CorrectedSample(NamedTuple):
     def frame(
         self, clip: Clip, frame: int, between: AnyInbetweens, time: float
     ) -> Frame | MeshFrame:
-        """Return an in-between as it is shown at a whole frame."""
+        """Return the shown in-between at a whole frame, with its correction."""
         correction = self.frames.at(clip, frame)
         if correction is None or not isinstance(between, Inbetweens):
             return between.frame(time)
@@ -73,16 +68,10 @@ class CorrectedSample(NamedTuple):
 def measure_curves(
     clip: Clip, inbetweens: Sequence[AnyInbetweens], corrected: CorrectedSample | None = None
 ) -> Curves:
-    """Measure a clip.
+    """Measure the distortion of a clip with at least two keys.
 
-    Parameters
-    ----------
-    clip : Clip
-        With at least two keys.
-    inbetweens : sequence of AnyInbetweens
-        Those of its intervals, at the points that are measured.
-    corrected : CorrectedSample, optional
-        Whole frames alone are measured with it: it is known of them.
+    `inbetweens` are those of its segments, at the measured points. With `corrected`, only whole
+    frames are measured.
     """
     frames, ks, taus, extremes = [], [], [], []
     for span, transit, between in zip(
@@ -145,10 +134,10 @@ def worst_points(values: Floats) -> Floats:
 
 
 def divide_by_keys(values: Floats) -> Floats:
-    """Return values (t, p) from key to key relative to the larger of both, 0 where that is 0.
+    """Return values (t, p) of a segment relative to the larger key value, 0 if that is 0.
 
-    The linear scaling of Section 8, with which the curves of a point whose first key is undistorted
-    go from 0 to 1.
+    The linear scaling of Section 8: the curve of a point with an undistorted first key goes from 0
+    to 1.
     """
     largest = np.maximum(values[0], values[-1])
     relative = np.zeros_like(values)
@@ -157,6 +146,6 @@ def divide_by_keys(values: Floats) -> Floats:
 
 
 def _shares(values: Floats) -> Floats:
-    """Return values (t, p) of all intervals, each relative to its own keys."""
+    """Return values (t, p) of all segments, each relative to its own keys."""
     blocks = values.reshape(-1, TIMES, values.shape[1])
     return np.concatenate([divide_by_keys(block) for block in blocks])

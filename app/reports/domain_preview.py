@@ -18,10 +18,7 @@ MESH_COLOUR, OUTLINE_COLOUR, CAGE_COLOUR = (30, 40, 60, 70), (0, 120, 215, 255),
 def draw_preview(picture: Picture, domain: MeshedDomain) -> bytes:
     """Return a PNG of the picture on a checkerboard, its mesh, outlines (blue) and cages (orange).
 
-    Parameters
-    ----------
-    domain : MeshedDomain
-        Its points are in the pixels of `picture`, y up.
+    The domain is in the pixels of the picture, y up.
     """
     everything = np.concatenate([domain.cage, [0, complex(*picture.size)]])
     left, top = everything.real.min(), everything.imag.max()

@@ -1,6 +1,6 @@
-"""What is told of a problem of the program itself: nothing that is the person's own.
+"""Reports of errors of the program itself, without the person's own names and paths.
 
-Nothing is sent anywhere: a report is a text that the person reads, and passes on or not.
+Lissom sends nothing: a report is a text that the person reads, and may pass on.
 """
 
 import getpass
@@ -23,12 +23,12 @@ LIBRARIES: Final = (
 )
 LEFT_OUT: Final = "…"
 WIDTH: Final = 90  # letters of a line
-LONGEST: Final = 40_000  # characters of a trace
-SHORTEST_NAME: Final = 3  # letters of a person's name that are looked for
+LONGEST: Final = 40_000  # characters of a traceback
+SHORTEST_NAME: Final = 3  # letters of a person's name to remove
 ENDINGS: Final = (
     "lissom|png|jpe?g|gif|webp|bmp|tiff?|ppm|tga|ico|avif|ora|psd|json|npz|mp4|webm|mov"
 )
-# What points at a part of the line above, which letters of different widths do not.
+# Carets under a part of the line above; they do not align with proportional fonts.
 _CARETS = re.compile(r"^\s+[~^]+\n", re.MULTILINE)
 _FRAME = re.compile(r'^(\s*)File "([^"\n]*)"', re.MULTILINE)
 _QUOTED = re.compile(r"""(?P<mark>['"])[^'"\n]*[/\\][^'"\n]*(?P=mark)""")
@@ -37,7 +37,7 @@ _FILE = re.compile(rf"""[^\s'"/\\:(]+\.({ENDINGS})\b""", re.IGNORECASE)
 
 
 def library_version(name: str) -> str:
-    """Return the version of a library that is installed, or that it is missing."""
+    """Return the version of an installed library, or "missing"."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -52,16 +52,16 @@ def describe_machine() -> str:
 
 
 def format_problem_report(*, graphics: str, actions: Sequence[str], trace: str) -> str:
-    """Return a text about a problem that somebody else may read.
+    """Return a report of a problem that another person may read.
 
     Parameters
     ----------
     graphics : str
-        What draws the window; empty where nothing does.
+        The window's renderer; empty without a window.
     actions : sequence of str
-        What was done last, by names of the program, the newest one last.
+        The last actions, by names of the program, the newest one last.
     trace : str
-        What went wrong, as `trace_in_words` or `without_names` returns it; empty where nothing did.
+        Result of `format_trace` or `redact_names`; empty without an error.
     """
     parts = [
         "Report of a problem with Lissom",
@@ -77,20 +77,15 @@ def format_problem_report(*, graphics: str, actions: Sequence[str], trace: str) 
 
 
 def format_trace(error: BaseException, hidden: Iterable[Path] = ()) -> str:
-    """Return the traceback of an exception without paths and names of files of the person's."""
+    """Return the traceback of an exception without the person's paths and file names."""
     trace = _CARETS.sub("", "".join(traceback.format_exception(error)))
     return redact_names(trace, hidden)
 
 
 def redact_names(text: str, hidden: Iterable[Path] = ()) -> str:
-    """Return a text with places in the program shortened, and all other paths and names left out.
+    """Return a text with program paths shortened and all other paths and names removed.
 
-    Parameters
-    ----------
-    text : str
-        Such as a traceback.
-    hidden : iterable of Path
-        Files whose names are left out, too, whatever they consist of.
+    The names of `hidden` files are removed in any form.
     """
     text = text if len(text) <= LONGEST else f"{text[: LONGEST // 2]}\n…\n{text[-LONGEST // 2 :]}"
     pieces = _FRAME.split(text)
@@ -101,7 +96,7 @@ def redact_names(text: str, hidden: Iterable[Path] = ()) -> str:
 
 
 def _place(path: str) -> str:
-    """Return where a source file is in the program or in a library; its name alone elsewhere."""
+    """Return a source file's path within the program or a library; elsewhere its bare name."""
     for root in sorted(filter(None, sys.path), key=len, reverse=True):
         with suppress(ValueError):
             return Path(path).relative_to(root).as_posix()
@@ -121,9 +116,9 @@ def _redact_paths(text: str, hidden: Iterable[Path]) -> str:
 
 
 def _names_of_person() -> set[str]:
-    """Return how the system calls who runs this, where that is more than a letter or two."""
+    """Return the system's names of the current person, without very short ones."""
     names = set()
-    # Without a home or a name, as in containers, there is nothing to hide.
+    # Without a home or a name, as in containers, nothing needs to be hidden.
     with suppress(RuntimeError):
         names.add(Path.home().name)
     with suppress(OSError, KeyError, ImportError):

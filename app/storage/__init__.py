@@ -1,8 +1,8 @@
-"""Files: pictures, projects, preferences, unsaved work, and what ships with Lissom.
+"""Files: pictures, projects, preferences, unsaved work, and the files that ship with Lissom.
 
 In: paths, and the bytes behind them.
-Out: documents, decoded pictures and settings; files that are whole or absent. What cannot be read
-or written is a `LissomError`, also where a docstring does not say so.
+Out: documents, decoded pictures and settings; files that are whole or absent. A file that cannot be
+read or written raises `LissomError`, also where a docstring does not list it.
 Imports: `app.document`.
 """
 

@@ -1,4 +1,4 @@
-"""The files that ship with Lissom, found from a checkout and from an installed wheel alike."""
+"""The files that ship with Lissom, found in a checkout and in an installed wheel."""
 
 from pathlib import Path
 
@@ -8,7 +8,6 @@ _APP = Path(__file__).resolve().parents[1]
 
 
 def sample_images() -> Path:
-    """Return the folder of the sample pictures and projects."""
     return _folder("sample_images")
 
 
@@ -23,7 +22,7 @@ def app_icon() -> bytes:
 
 
 def manual_page(name: str = "index") -> Path:
-    """Return a page of the manual; its pictures, and all other pages, lie beside it."""
+    """Return a page of the manual. Its pictures and all other pages are in the same folder."""
     page = _APP / "manual" / "site" / f"{name}.html"
     if not page.is_file():
         raise LissomError(f"the page {page} of the manual is missing; {REINSTALL}")
@@ -38,7 +37,7 @@ def _read(path: Path) -> bytes:
 
 
 def _folder(name: str) -> Path:
-    # The wheel carries the folders inside the package; in a checkout they lie beside it.
+    # The wheel has the folders inside the package; a checkout has them beside the package.
     for path in (_APP / "shipped" / name, _APP.parent / name):
         if path.is_dir():
             return path

@@ -1,7 +1,7 @@
-"""Unsaved work that survives a crash: one file for each running window, removed when it is safe.
+"""Unsaved work that survives a crash: one file per running window, removed after a save.
 
-Beside each file lies one that its window holds a lock on. The system lets go of a lock however a
-process ends, whereas a process's number is soon given to another one and proves nothing.
+The window holds a lock on a second file beside it. The system releases a lock however a process
+ends. A process number proves nothing, because the system soon reuses the number.
 """
 
 import json
@@ -21,16 +21,16 @@ from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 
 SECONDS = 20.0  # between a change and its autosave, at least
-# The member of the file that tells where the work came from; projects that are saved have none.
+# Member with the source of unsaved work. Saved projects do not have it.
 SOURCE_INFO = "origin.json"
 LARGEST_SOURCE_INFO = 100_000  # bytes
-# Of what ended the program, before and after the person was told of it; what Python tells of it.
+# Crash reports, before and after the person was notified, and Python's own crash log.
 REPORT, SEEN_REPORT, FAULT_LOG = "report.txt", "report-told.txt", "faults.txt"
 LARGEST_REPORT = 1_000_000  # bytes
 
 
 class SourceInfo(NamedTuple):
-    """What unsaved work is called, and the project file that it belongs to, if there is one."""
+    """The name of unsaved work, and its project file, if there is one."""
 
     name: str
     path: Path | None
@@ -40,13 +40,7 @@ UNKNOWN_SOURCE = SourceInfo("recovered", None)
 
 
 class Autosave:
-    """The unsaved work of one window.
-
-    Parameters
-    ----------
-    folder : Path
-        Where it is kept; made when there is something to keep.
-    """
+    """The unsaved work of one window; the first write makes its folder."""
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / f"unsaved-{secrets.token_hex(8)}.lissom"
@@ -54,19 +48,18 @@ class Autosave:
         self._writing = threading.Lock()
 
     def write(self, document: Document, origin: SourceInfo) -> None:
-        """Keep a document and where it came from, in place of an earlier one.
+        """Write a document and its source, in place of an earlier autosave.
 
-        What another thread still writes is waited for, so that the last one asked for stays.
+        Waits for a write of another thread, so that the last request wins.
         """
         told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
-        # One file with both, so that they are of one time however this ends.
+        # One file holds both, so that a crash cannot separate them.
         members = MappingProxyType({**document.unknown_members, SOURCE_INFO: told})
         with self._writing:
             self._prepare()
             save_project(self._path, replace(document, unknown_members=members), is_private=True)
 
     def remove(self) -> None:
-        """Remove what was kept."""
         self._path.unlink(missing_ok=True)
         if self._lock is not None:
             os.close(self._lock)
@@ -74,30 +67,29 @@ class Autosave:
             _lock_of(self._path).unlink(missing_ok=True)
 
     def _prepare(self) -> None:
-        """Make the folder, and take the lock."""
         make_settings_folder(self._path.parent)
         if self._lock is None:
             # Without locks other windows offer this work while it is still in use, which loses
-            # nothing; hidden after a crash, it would be lost.
+            # nothing. Hidden after a crash, the work would be lost.
             with suppress(OSError):
                 self._lock = os.open(_lock_of(self._path), os.O_RDWR | os.O_CREAT, 0o600)
-                # Another window that looks for what is left holds it for a moment.
+                # Another window that searches for unsaved work holds the lock for a moment.
                 while not lock(self._lock):
                     pass
 
 
 def find_recoverable_files(folder: Path) -> list[Path]:
-    """Return the files of unsaved work whose windows are gone, the newest first."""
+    """Return the autosave files of windows that no longer run, the newest first."""
     found = {}
     for path in folder.glob("unsaved-*.lissom"):
         if not is_locked(_lock_of(path)):
-            with suppress(OSError):  # its window has just forgotten it
+            with suppress(OSError):  # another window has just removed it
                 found[path] = path.stat().st_mtime
     return sorted(found, key=lambda path: found[path], reverse=True)
 
 
 def load_recoverable_file(path: Path) -> tuple[Document, SourceInfo]:
-    """Read unsaved work, and where it came from."""
+    """Read unsaved work and its source."""
     document = load_project(path)
     attachments = dict(document.unknown_members)
     origin = _parse_source_info(attachments.pop(SOURCE_INFO, b""))
@@ -105,24 +97,24 @@ def load_recoverable_file(path: Path) -> tuple[Document, SourceInfo]:
 
 
 def read_source_info(path: Path) -> SourceInfo:
-    """Return where unsaved work came from, without reading the work itself."""
+    """Return the source of unsaved work, without reading the work itself."""
     return _parse_source_info(load_member(path, SOURCE_INFO, LARGEST_SOURCE_INFO) or b"")
 
 
 def remove_recoverable_file(path: Path) -> None:
-    """Remove unsaved work of a window that is gone."""
+    """Remove the autosave of a window that no longer runs."""
     path.unlink(missing_ok=True)
     _lock_of(path).unlink(missing_ok=True)
 
 
 def write_report(folder: Path, text: str) -> None:
-    """Keep the report of a problem that ended the program, in place of an earlier one."""
+    """Write the report of a problem that ended the program, in place of an earlier report."""
     make_settings_folder(folder)
     write_atomically(folder / REPORT, lambda file: file.write(text.encode()), is_private=True)
 
 
 def load_report(folder: Path) -> str:
-    """Return the report that was kept last; empty where there is none that can be read."""
+    """Return the last report; empty if no report can be read."""
     for name in (REPORT, SEEN_REPORT):
         with suppress(LissomError):
             content = read_file(folder / name, largest=LARGEST_REPORT)
@@ -131,7 +123,7 @@ def load_report(folder: Path) -> str:
 
 
 def mark_report_seen(folder: Path) -> bool:
-    """Tell whether a report was kept that nobody was told of; from now on, somebody was."""
+    """Return whether there was an unseen report, and mark the report as seen."""
     try:
         (folder / REPORT).replace(folder / SEEN_REPORT)
     except OSError:
@@ -140,27 +132,23 @@ def mark_report_seen(folder: Path) -> bool:
 
 
 def remove_report(folder: Path) -> None:
-    """Remove the reports that were kept."""
     for name in (REPORT, SEEN_REPORT):
         (folder / name).unlink(missing_ok=True)
 
 
 def open_fault_log(folder: Path) -> int:
-    """Return a descriptor of the file in which Python tells where it was when it crashed.
+    """Return a descriptor of the file into which Python writes its traceback at a crash.
 
-    Raises
-    ------
-    OSError
-        If there cannot be one.
+    Raises `OSError` if the file cannot be opened.
     """
     return os.open(folder / FAULT_LOG, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)
 
 
 def read_fault_log(folder: Path) -> str:
-    """Return what Python told when it crashed, and forget it; empty where it did not."""
+    """Return Python's traceback of a crash and empty the log; empty if there was no crash."""
     try:
         told = read_file(folder / FAULT_LOG, largest=LARGEST_REPORT).decode(errors="replace")
-        # Other windows may have it open.
+        # Other windows may have the file open.
         os.truncate(folder / FAULT_LOG, 0)
     except (LissomError, OSError):
         return ""
@@ -168,7 +156,7 @@ def read_fault_log(folder: Path) -> str:
 
 
 def _parse_source_info(told: bytes) -> SourceInfo:
-    """Understand where work came from; nonsense must not hide the work itself."""
+    """Parse the source of unsaved work. An unreadable source must not hide the work itself."""
     try:
         match json.loads(told):
             case {"name": str(name), "path": str(path)} if Path(path).is_absolute():

@@ -1,4 +1,4 @@
-"""Decoded JSON, read and written by kind; errors name the field, what it must be and what it is."""
+"""Codecs of decoded JSON. Errors name the field, the required kind and the actual content."""
 
 import json
 import math
@@ -15,7 +15,7 @@ from app.storage.files import read_file
 
 Parsed = TypeVar("Parsed")
 
-MISSING: Any = object()  # in place of a value that there is not
+MISSING: Any = object()  # marks an absent value
 NOT_TRUE_OR_FALSE = "{where} must be true or false, not {content}"
 NOT_WHOLE = "{where} must be a whole number, not {content}"
 NOT_NUMBER = "{where} must be a number, not {content}"
@@ -30,7 +30,7 @@ LACKS_FIELD = "{where} lacks the field {name!r}"
 
 
 class JsonObject(dict[str, Any]):
-    """An object of a JSON text; asking for a field that it lacks is a `LissomError`."""
+    """A JSON object. A missing field raises `LissomError`."""
 
     def __init__(self, content: dict[str, Any], where: str) -> None:
         super().__init__(content)
@@ -41,42 +41,37 @@ class JsonObject(dict[str, Any]):
 
 
 def as_object(content: object, where: str) -> JsonObject:
-    """Return an object."""
     if not isinstance(content, dict):
         raise LissomError(NOT_OBJECT.format(where=where, content=repr_for_error(content)))
     return JsonObject(content, where)
 
 
 def as_list(content: object, where: str) -> list[Any]:
-    """Return a list."""
     if not isinstance(content, list):
         raise LissomError(NOT_LIST.format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_text(content: object, where: str) -> str:
-    """Return a text."""
     if not isinstance(content, str):
         raise LissomError(NOT_TEXT.format(where=where, content=repr_for_error(content)))
     return display_name(content)
 
 
 def as_flag(content: object, where: str) -> bool:
-    """Return true or false."""
     if not isinstance(content, bool):
         raise LissomError(NOT_TRUE_OR_FALSE.format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_whole(content: object, where: str) -> int:
-    """Return a whole number."""
     if not isinstance(content, int) or isinstance(content, bool):
         raise LissomError(NOT_WHOLE.format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_number(content: object, where: str) -> float:
-    """Return a finite number."""
+    """Return a finite float."""
     if isinstance(content, bool) or not isinstance(content, (int, float)):
         raise LissomError(NOT_NUMBER.format(where=where, content=repr_for_error(content)))
     try:
@@ -96,27 +91,16 @@ def as_point(content: object, where: str) -> complex:
 
 
 def repr_for_error(content: object) -> str:
-    """Return JSON for an error message, shortened where it is long."""
+    """Return the content as JSON of at most 60 characters."""
     text = json.dumps(content)
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) -> Parsed:
-    """Read a JSON text that a person wrote, and turn what it says into a value.
+    """Read a JSON file that a person wrote, and parse its decoded content.
 
-    Parameters
-    ----------
-    path : Path
-    parse : callable
-        Gets the decoded JSON.
-    largest : int
-        How many bytes there may be.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, too large, no text or not JSON, or cannot be parsed; it names the
-        file.
+    Raises `LissomError` if the file is missing, too large, not text, not JSON, or cannot be parsed.
+    The message names the file.
     """
     try:
         text = read_file(path, largest=largest).decode("utf-8-sig")
@@ -145,17 +129,15 @@ def check_repeated_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class Codec:
-    """How the values of one kind are written as JSON, and read.
+    """Conversion between the values of one kind and JSON.
 
     Parameters
     ----------
-    write : callable
-        Returns the JSON of a value.
     read : callable
-        Returns the value of some JSON; the second argument tells where that stands.
-    known : mapping
-        For an object, the fields in it by their names, and those in them likewise: what else there
-        is in it is kept by the object that it is in. Empty for one that keeps that itself.
+        Receives the decoded JSON and its place in the file, for errors.
+    known_fields : mapping
+        Known field names of an object, nested. Unknown fields are stored in the parent object.
+        Empty if the value stores its own unknown fields.
     """
 
     write: Callable[[Any], Any]
@@ -164,7 +146,7 @@ class Codec:
 
 
 def verbatim(value: Any, _: str = "") -> Any:
-    """Return a value that is its own JSON."""
+    """Return a value unchanged: it is its own JSON."""
     return value
 
 
@@ -186,7 +168,7 @@ def optional(codec: Codec) -> Codec:
 
 
 def list_of(codec: Codec) -> Codec:
-    """Return a codec of tuples of so many values as there are."""
+    """Return a codec of tuples of any length."""
     return Codec(
         lambda values: [codec.write(value) for value in values],
         lambda content, where: tuple(
@@ -203,7 +185,7 @@ def pair(
     make: Callable[[Any, Any], Any] = lambda one, other: (one, other),
     of: Callable[[Any], tuple[Any, Any]] = verbatim,
 ) -> Codec:
-    """Return a codec of what is made of two values, which errors call by the words `what`."""
+    """Return a codec of a value made of two parts; errors describe the pair by `what`."""
 
     def write(value: Any) -> list[Any]:
         one, other = of(value)
@@ -224,15 +206,14 @@ class Field:
 
     Parameters
     ----------
-    name : str
-    of : callable, optional
-        Returns what it is of an object; by default, that is the attribute of its name.
-    usual : object, optional
-        What it is where it is not written, and where it is, it is not written.
-    earlier : object, optional
-        What it was in files of before it was written, as it always is now.
-    was : str, optional
-        Its name in earlier files, which is read as well.
+    get : callable, optional
+        Returns the field's value of an object; by default the attribute `name`.
+    default : object, optional
+        Default value. A field equal to its default is not written.
+    legacy_default : object, optional
+        Value in earlier files, which lack the field. The field is always written.
+    legacy_name : str, optional
+        Name in earlier files, which is read as well.
     """
 
     name: str
@@ -243,11 +224,9 @@ class Field:
     legacy_name: str = ""
 
     def value_of(self, value: Any) -> Any:
-        """Return what the field is of an object."""
         return getattr(value, self.name) if self.get is None else self.get(value)
 
     def read(self, content: JsonObject, where: str) -> Any:
-        """Return what the field of some JSON is."""
         absent = self.legacy_default if self.default is MISSING else self.default
         name = (
             self.legacy_name
@@ -266,13 +245,8 @@ def record(
 ) -> Codec:
     """Return a codec of objects.
 
-    Parameters
-    ----------
-    make : callable
-        Makes one of its fields, by their names, and of what else there is in it as `unknown`.
-    *fields : Field
-    unknown : callable, optional
-        Returns what else there was in an object.
+    `make` receives the fields by their names, and the unknown fields as `unknown`. The function
+    `unknown` returns the unknown fields of an object.
     """
     known = {field.name: field.codec.known_fields for field in fields}
     known |= {field.legacy_name: field.codec.known_fields for field in fields if field.legacy_name}
@@ -293,12 +267,12 @@ def record(
 
 
 def nested_record(make: Callable[..., Any], *fields: Field) -> Codec:
-    """Return a codec of objects whose unknown fields are kept by the object that they are in."""
+    """Return a codec of objects whose parent object stores their unknown fields."""
     return record(make, *fields, unknown=None)
 
 
 def find_unknown_fields(content: Mapping[str, Any], known: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the fields that are not known, those of inner objects among them."""
+    """Return the unknown fields, also those of inner objects."""
     unknown = {}
     for name, value in content.items():
         if name not in known:
@@ -313,7 +287,7 @@ def find_unknown_fields(content: Mapping[str, Any], known: Mapping[str, Any]) ->
 def with_unknown_fields(
     written: dict[str, Any], unknown: Mapping[str, Any], known: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return an object with the unknown fields, which never take a known one's place."""
+    """Return an object with the unknown fields added. A known field always wins."""
     for name, value in unknown.items():
         if name not in known:
             written[name] = value

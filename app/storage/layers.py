@@ -1,4 +1,4 @@
-"""From a drawing on layers, or several pictures, to layers of one scene."""
+"""Layers of one scene, from a layered drawing or from several pictures."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -38,19 +38,18 @@ from engine.domain import CutOut, build_domain, rectangle_domain
 from engine.errors import EngineError
 
 READERS = {".ora": read_openraster, ".psd": read_photoshop}
-# However many layers share the triangles, each gets so many.
+# Minimum per layer, however many layers share the triangles.
 FEWEST_TRIANGLES = 4_000
-LARGEST_FLAT = 1_024  # pixels: from twice as many on layers are made smaller before they are laid
-WHOLE = CutOut(background="none")  # only what is transparent is left out
+LARGEST_FLAT = 1_024  # pixels: layers on a canvas of twice this size are reduced
+WHOLE = CutOut(background="none")  # removes only transparent pixels
 
 
 def is_layered(path: Path) -> bool:
-    """Tell whether a file's name is that of a drawing on layers."""
+    """Return whether a file's name ends as that of a layered drawing."""
     return path.suffix.lower() in READERS
 
 
 def read_layered(path: Path) -> LayeredPicture:
-    """Read a drawing on layers."""
     data = read_file(path)
     try:
         return READERS[path.suffix.lower()](data)
@@ -59,16 +58,16 @@ def read_layered(path: Path) -> LayeredPicture:
 
 
 def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
-    """Read a drawing on layers, and make each of them a layer.
+    """Read a layered drawing, and make a layer of each of its layers.
 
-    A layer that is opaque all over, or on which no shape is found, becomes a still picture. All
-    layers together have the triangles that one picture would have.
+    A layer that is fully opaque, or without a shape, becomes a still picture. All layers together
+    have as many triangles as one picture.
     """
     return _scene(read_layered(path), meshing, is_cut_out=True)
 
 
 def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
-    """Read a drawing on layers, as one picture of all that is seen of them."""
+    """Read a layered drawing, merged into one picture of its visible layers."""
     scene = open_layered(path, Meshing(detail="coarse", triangles=FEWEST_TRIANGLES))
     textures = {
         layer.id: cut_picture(scene.pictures[layer.id], layer.cut_out).texture
@@ -83,9 +82,9 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
-    """Read several pictures, and make each of them a layer, the first one behind all others.
+    """Read several pictures, and make a layer of each, the first one at the back.
 
-    The canvas is as large as the largest of them; the others stand in its middle.
+    The canvas has the size of the largest picture; the others are centred.
     """
     all_imported: list[ImportedLayer] = []
     names, told = UniqueNames(), NoticeCollector()
@@ -106,17 +105,17 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
 
 
 def flatten_layers(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
-    """Return all layers that are seen at first as one picture, as drawn; a large one is reduced.
+    """Return the initially visible layers as one picture, as drawn; a large one is reduced.
 
     Parameters
     ----------
     textures : mapping of int to uint8, shape (h, w, 4)
-        What is cut out of the layers' pictures, by their ids.
+        The cut-out pictures by layer id.
 
     Returns
     -------
     uint8, shape (h, w, 4)
-        With straight alpha.
+        Straight alpha.
     """
     factor = max(1, max(document.canvas) // LARGEST_FLAT)
     if len(document.layers) == 1:
@@ -149,15 +148,15 @@ def flatten_layers(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
 
 
 def _blended(below: Image.Image, above: Image.Image, how: CompositeGroup[Layer]) -> Image.Image:
-    """Return a layer over what lies below it ("Compositing and Blending Level 1", Section 10)."""
+    """Return a layer over its backdrop ("Compositing and Blending Level 1", Section 10)."""
     alpha = above.getchannel("A").point(lambda a: round(how.opacity * a))
     covered = below.getchannel("A")
-    # What is clipped meets all below as if that were opaque.
+    # A clipped layer meets its backdrop as if the backdrop were opaque.
     solid = below.convert("RGB").convert("RGBA") if how.clipped else below
     if how.blend != "normal":
         mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
         own, lower = above.convert("RGB"), below.convert("RGB")
-        # Where there is nothing below, it keeps its colours.
+        # Over an empty backdrop the layer keeps its colours.
         above = Image.composite(mix(lower, own), own, solid.getchannel("A")).convert("RGBA")
     above.putalpha(alpha)
     flat = Image.alpha_composite(solid, above)
@@ -167,8 +166,8 @@ def _blended(below: Image.Image, above: Image.Image, how: CompositeGroup[Layer])
 
 
 def _reduced(rgba: Bytes, factor: int) -> Image.Image:
-    """Return a picture with so many of its pixels each way in one."""
-    # Some rows at a time: all of it would be there twice.
+    """Return a picture in which one pixel stands for `factor` × `factor` pixels."""
+    # Process a few rows at a time: a whole copy would double the memory.
     rows = (rgba[top : top + factor] for top in range(0, len(rgba), factor))
     return Image.fromarray(np.concatenate([Image.fromarray(row).reduce(factor) for row in rows]))
 
@@ -176,15 +175,10 @@ def _reduced(rgba: Bytes, factor: int) -> Image.Image:
 def make_posable_layer(
     imported: ImportedLayer, identity: int, meshing: Meshing, *, is_cut_out: bool
 ) -> tuple[Layer, tuple[str, ...]]:
-    """Return the layer of a layer, as it was drawn, and what was done, in words.
+    """Return a posable layer of an imported layer, in its drawn place, with notices.
 
-    Parameters
-    ----------
-    identity : int
-        The layer's id.
-    is_cut_out : bool
-        Whether its transparency alone tells what is drawn. Then a layer that is opaque all over
-        becomes a still picture; else a plain background is taken off first.
+    With `is_cut_out`, transparency alone separates the subject, and a fully opaque layer becomes a
+    still picture. Otherwise a plain background is removed first.
     """
     picture = imported.picture
     file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
@@ -218,16 +212,16 @@ def make_posable_layer(
 
 
 def make_still_picture(data: bytes, picture: Picture) -> Layer:
-    """Return the layer of a picture that stands still, its lower left corner at 0."""
+    """Return the layer of a still picture, with its lower left corner at 0."""
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     made = new_layer(file, rectangle_domain(*picture.size), Meshing(), WHOLE)
     return replace(made, still=True)
 
 
 def make_still_layer(layer: Layer) -> Layer:
-    """Return the layer as a picture that stands still where it was drawn, cut out as it is.
+    """Return the layer as a still picture in its drawn place, with the same cut-out.
 
-    What it is as a layer it stays, in time, too: it hangs, moves, fades and repeats as before.
+    All channels but the poses stay, such as parent, transform and opacity, and the cycles.
     """
     domain = rectangle_domain(*layer.picture.size).moved(layer.corner)
     rest = new_layer(layer.picture, domain, layer.meshing, layer.cut_out)
@@ -235,7 +229,7 @@ def make_still_layer(layer: Layer) -> Layer:
 
 
 def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
-    """Return a layer as it is drawn in the place of a layer, be that a still picture or not."""
+    """Return a layer, posable or still, as drawn, in the place of another layer."""
     anchor = replaced.anchor
     if anchor is not None:
         anchor = complex(layer.domain.nearest(np.array([anchor]))[0])
@@ -271,7 +265,7 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         enumerate(drawing.layers),
         (imported.picture.size for imported in drawing.layers),
     )
-    # Layers that share a picture share its file.
+    # Layers with the same picture share its file.
     files: dict[int, PictureFile] = {}
     layers = tuple(
         replace(layer, picture=files.setdefault(id(imported.picture), layer.picture))
@@ -284,7 +278,7 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     for layer, notices in made:
         for notice in notices:
             told.add_note(layer.name, notice)
-    # A drawing with a background has a frame of its own.
+    # A drawing with a background defines its own frame.
     framing: Framing = "canvas" if layers[0].still else "fit"
     document = Document(
         layers=layers,

@@ -1,4 +1,4 @@
-"""From a picture file to a new document, and from a picture to what is painted on its mesh."""
+"""New documents from picture files, and mesh textures from pictures."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -16,9 +16,9 @@ from engine.errors import EngineError
 
 
 class OpenedScene(NamedTuple):
-    """A new document, its decoded pictures by the ids of layers, and what was done, in words.
+    """A new document, its decoded pictures by layer id, and notices.
 
-    What was told of several layers is in the document.
+    Notices about several layers are in the document.
     """
 
     document: Document
@@ -28,20 +28,16 @@ class OpenedScene(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutOutResult:
-    """What is left of a picture that was cut out.
+    """The result of cutting the subject out of a picture.
 
     Parameters
     ----------
-    mask : Mask
-        The pixels of the subject.
     texture : uint8, shape (h, w, 4)
-        What is painted on the mesh; straight alpha.
+        The picture on the mesh; straight alpha.
     is_all : bool
         Whether every pixel is kept.
-    leftover : bool, shape (h, w), optional
-        Those of the subject that look like the removed background; None where there are none.
-    find_holes : callable
-        Returns where its holes are.
+    background_like : bool, shape (h, w), optional
+        Pixels of the subject that look like the removed background; None if there are none.
     """
 
     mask: Mask
@@ -58,7 +54,7 @@ class CutOutResult:
         enclosed: Booleans | None = None,
         find_holes: Callable[[], HoleMap | None] = lambda: None,
     ) -> Self:
-        """Return a cut, with what is asked of it often found once: pictures are large."""
+        """Return a result with the often used values computed once: pictures are large."""
         leftover = None if enclosed is None or not (enclosed & kept).any() else enclosed & kept
         return cls(Mask.of(kept), texture, bool(kept.all()), leftover, find_holes)
 
@@ -69,23 +65,21 @@ class CutOutResult:
 
     @property
     def holes(self) -> HoleMap | None:
-        """Where holes are; None where the subject has too many parts."""
+        """Holes of the subject; None if the subject has too many parts."""
         return self.find_holes()
 
 
 def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
-    """Read a picture, find its outline, and return the document that shows it as it was drawn.
+    """Read a picture, find its outline, and return a document that shows it as drawn.
 
-    Raises
-    ------
-    LissomError, EngineError
-        If the file is no picture, or has no subject that can be outlined.
+    Raises `LissomError` or `EngineError` if the file is no picture, or has no subject with an
+    outline.
     """
     return build_scene(read_file(path), path, meshing, cut_out)
 
 
 def build_scene(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
-    """Return the scene of one picture, of the contents of a file with this name."""
+    """Return the scene of one picture from the bytes of its file."""
     picture = decode_picture(data, str(path))
     domain, remedies = build_domain(
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
@@ -98,14 +92,14 @@ def build_scene(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> O
 
 
 def cut_picture(picture: Picture, cut_out: CutOut, *, is_alone: bool = True) -> CutOutResult:
-    """Cut the subject out of a picture; where there is none, all of it stays.
+    """Cut the subject out of a picture; without a subject the whole picture stays.
 
-    Its holes take time and memory: unless it is alone, they are found when they are asked for.
+    Finding holes takes time and memory. Unless `is_alone`, holes are found on first use.
     """
     try:
         subject = subject_mask(picture.rgba, cut_out)
     except EngineError:
-        # Of a project that was saved before a cut-out that cannot be was changed again.
+        # The project was saved before an impossible cut-out was changed again.
         return CutOutResult.of(freeze(picture.rgba[..., 3] > 0), picture.rgba)
 
     packed, enclosed, opens = Mask.of(subject.mask), subject.enclosed, subject.opens

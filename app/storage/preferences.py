@@ -1,4 +1,4 @@
-"""What a person chose for all projects, and where that and unsaved work are kept."""
+"""The person's preferences for all projects, and the folders for settings and unsaved work."""
 
 import json
 import os
@@ -25,34 +25,31 @@ _COLOUR = re.compile("#[0-9a-f]{6}")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Preferences:
-    """What the person chose for all projects.
+    """The person's preferences for all projects.
 
     Parameters
     ----------
-    theme : str
     scale : float
         Of the whole interface.
     auto_key : bool
-        Whether posing makes and changes keys by itself.
+        Whether posing makes and changes keys.
     backdrop : str
-        What lies behind the drawing: "checker" or "#rrggbb".
+        Behind the drawing: "checker" or "#rrggbb".
     easing : Easing
-        How time runs on the ways from new keys.
+        Of new keys.
     ghosts_before, ghosts_after, ghost_step : int
-        How many ghosts the onion skin shows, and how many frames apart.
-    ghosts_in_front : bool
-        Whether they are in front of the drawing, and not behind it.
+        Numbers of onion skin ghosts, and the frames between two of them.
     path_reach : int
-        Of how many frames before the playhead, and after it, motion paths are drawn; 0 stands for
-        all that play.
+        Motion paths show this many frames before and after the playhead; 0 stands for the whole
+        preview range.
     recent : tuple of Path
-        Files opened or saved last, the newest first.
+        Recently opened or saved files, the newest first.
     folder : Path, optional
-        Where a file was chosen last.
+        Last folder of a file dialog.
     exported : Path, optional
-        The folder that was exported into last.
+        Last export folder.
     memory : int, optional
-        Megabytes that the pictures of a file may take, decoded; None for a share of the machine's.
+        Megabytes for the decoded pictures of a file; None for a share of the machine's memory.
     """
 
     theme: ThemeName = "dark"
@@ -72,22 +69,20 @@ class Preferences:
 
     @property
     def written(self) -> frozenset[Path]:
-        """The folders in which something was written last."""
+        """Folders of recent saves and exports."""
         chosen = (self.folder, self.exported, *(path.parent for path in self.recent))
         return frozenset(folder for folder in chosen if folder is not None)
 
     def with_recent(self, path: Path) -> "Preferences":
-        """Return the preferences with a file as the most recent one."""
         others = (other for other in self.recent if other != path)
         return replace(self, recent=(path, *others)[:MOST_RECENT], folder=path.parent)
 
     def without_recent(self, path: Path) -> "Preferences":
-        """Return the preferences with a file taken off the recent ones."""
         return replace(self, recent=tuple(other for other in self.recent if other != path))
 
 
 def home_folder() -> Path:
-    """Return the person's own folder; the topmost one for somebody who has none, as in containers.
+    """Return the person's home folder, or the root for a person without one, as in containers.
 
     It may not exist.
     """
@@ -98,23 +93,23 @@ def home_folder() -> Path:
 
 
 def settings_folder() -> Path:
-    """Return the folder for settings and unsaved work of this person; it may not exist yet."""
-    # By hand, since platformdirs heeds XDG_CONFIG_HOME on macOS too: it would lose settings there.
+    """Return the person's folder for settings and unsaved work; it may not exist yet."""
+    # Not platformdirs: it heeds XDG_CONFIG_HOME on macOS too, and would lose settings there.
     home = home_folder()
     if sys.platform == "win32":
         return Path(os.environ.get("APPDATA") or home / "AppData" / "Roaming") / "Lissom"
     if sys.platform == "darwin":
         return home / "Library" / "Application Support" / "Lissom"
-    # A path that is not absolute is to be ignored, says the standard.
+    # The standard says to ignore a relative path.
     chosen = Path(os.environ.get("XDG_CONFIG_HOME", ""))
     return (chosen if chosen.is_absolute() else home / ".config") / "lissom"
 
 
 def make_settings_folder(folder: Path) -> None:
-    """Make the folder for settings and unsaved work, which nobody else may look into."""
+    """Make the folder for settings and unsaved work, private to the person."""
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        with suppress(OSError):  # it may be somebody else's
+        with suppress(OSError):  # it may belong to another person
             folder.chmod(0o700)
     except OSError as error:
         raise LissomError(
@@ -125,7 +120,7 @@ def make_settings_folder(folder: Path) -> None:
 
 
 def load_preferences(folder: Path) -> Preferences:
-    """Read the preferences; what is missing or makes no sense is as it is at first."""
+    """Read the preferences. Missing or invalid entries get their defaults."""
     try:
         content = json.loads(read_file(folder / "preferences.json", largest=LARGEST))
     except (LissomError, ValueError, RecursionError):
@@ -134,8 +129,8 @@ def load_preferences(folder: Path) -> Preferences:
 
 
 def save_preferences(folder: Path, preferences: Preferences) -> None:
-    """Write the preferences; where that fails, they are as before next time."""
-    # Paths, alone or in a list, are what JSON does not know.
+    """Write the preferences. If this fails, the old preferences stay."""
+    # JSON has no paths; this converts paths and lists of paths.
     content = {**asdict(preferences), "easing": preferences.easing.to_json()}
     text = json.dumps(content, indent=1, default=str).encode()
     make_settings_folder(folder)
@@ -143,8 +138,6 @@ def save_preferences(folder: Path, preferences: Preferences) -> None:
 
 
 def _understood(content: dict[str, Any]) -> Preferences:
-    """Take from each entry what makes sense."""
-
     def number(name: str, low: float, high: float) -> Any:
         value = content.get(name)
         if isinstance(value, (int, float)) and not isinstance(value, bool) and low <= value <= high:

@@ -1,14 +1,13 @@
 """Saving and opening projects.
 
-A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and for
-each layer, under `layers/` and its id, the picture, the arrays of the domain, and the maps of its
-poses. The maps are stored, not solved again, so that another solver never changes an animation.
-Fields and members that this version does not know are handed on.
+A project is a zip file: `mimetype` (first, not packed), `project.json`, `thumbnail.png`, and a
+folder for each layer under `layers/`, named by its id. This folder holds the picture, the arrays of
+the domain, and the maps of the poses. The maps are stored, so that another solver never changes an
+animation. Unknown fields and members are kept and written again.
 
-A file is input like any other, whoever wrote it. What it would unpack to is known, and limited,
-before anything is; pictures and domains are checked; and what holds of a map is not written but
-proven anew. However damaged it is, reading takes no more memory than half a gigabyte and some ten
-times its size.
+A project file is untrusted input. Unpacked sizes are limited before anything is unpacked. Pictures
+and domains are checked. Certificates are not stored: the maps are certified again. For any damaged
+file, reading takes at most half a gigabyte plus some ten times the file's size.
 """
 
 import json
@@ -44,17 +43,17 @@ from app.storage.project import (
 )
 
 LARGEST_JSON = 32 * MEBIBYTE
-# In project.json; a thousand keys of a hundred handles have as many.
+# In project.json. A thousand keys of a hundred handles have this many.
 MOST_VALUES = 1_000_000
 LARGEST_THUMBNAIL = 2 * MEBIBYTE
 PROJECT_JSON, THUMBNAIL = "project.json", "thumbnail.png"
-# Of lists and objects in each other; fields that are not known are kept, and must be writable.
+# Nesting of lists and objects. Unknown fields are kept, and must be writable.
 DEEPEST = 40
 NEWER_LISSOM = (
     "it was saved by a newer Lissom ({version}, schema {schema}); this version reads schema {own}. "
     "Update Lissom to open it"
 )
-_readable: Final = WeakSet[Layer]()  # layers that were read of a file as they are
+_readable: Final = WeakSet[Layer]()  # layers unchanged since they were read from a file
 
 
 def save_project(
@@ -69,12 +68,12 @@ def save_project(
     thumbnail : bytes, optional
         A small PNG picture of the animation.
     is_private : bool
-        Whether nobody else may read it.
+        Whether only the person may read the file.
 
     Returns
     -------
     str
-        What `project_digest` returns as long as nobody else writes there.
+        The file's `project_digest`, until another process writes there.
     """
     content = write_document(document)
     members = {
@@ -84,7 +83,7 @@ def save_project(
         members |= layer_members(layer)
     if thumbnail is not None:
         members[THUMBNAIL] = thumbnail
-    # Later versions may know better, but never what this one writes.
+    # Members of later versions stay, but never replace this version's members.
     members = {**document.unknown_members, **members}
 
     def write(file: IO[bytes]) -> str:
@@ -98,7 +97,7 @@ def save_project(
 
 
 def project_digest(path: Path) -> str | None:
-    """Return what tells the contents of a project file from others; None where there is none."""
+    """Return a digest that identifies the contents of a project file; None if there is no file."""
     try:
         with open_file(path) as (file, _):
             return tail_digest(file)
@@ -111,11 +110,8 @@ def project_digest(path: Path) -> str | None:
 def load_project(path: Path) -> Document:
     """Read a project file.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, is no project, was written by a newer version, or is damaged; the
-        message says which.
+    Raises `LissomError` if the file is missing, is no project, was written by a newer version, or
+    is damaged. The message names the reason.
     """
     try:
         with open_file(path) as (file, size), open_zip(file) as members:
@@ -131,12 +127,12 @@ def load_project(path: Path) -> Document:
 
 
 def load_thumbnail(path: Path) -> bytes | None:
-    """Read only the small PNG picture of a project; None where it has none, or is no project."""
+    """Read only the thumbnail of a project, a PNG file; None without thumbnail or project."""
     return load_member(path, THUMBNAIL, LARGEST_THUMBNAIL)
 
 
 def load_member(path: Path, name: str, largest: int) -> bytes | None:
-    """Read only one member of a project; None where it has none such, or is no project."""
+    """Read only one member of a project; None if it is missing or the file is no project."""
     try:
         with open_file(path) as (file, size), open_zip(file) as members:
             return Archive(members, size).read(name, largest=largest)
@@ -147,11 +143,10 @@ def load_member(path: Path, name: str, largest: int) -> bytes | None:
 def _require_readable(
     path: Path, file: IO[bytes], members: Mapping[str, bytes], document: Document
 ) -> None:
-    """Refuse a file that was just written unless it can be opened again.
+    """Refuse a just written file unless it can be opened again.
 
-    Its values and sizes are read; arrays are those in memory, and their maps are proven already.
-    Layers that were read before, as nearly all are when a project is saved again, are as readable
-    now.
+    Reads values and sizes; arrays and certified maps are taken from memory. Unchanged layers of an
+    earlier reading are skipped: nearly all, if a project is saved again.
     """
     known = {layer.id: layer for layer in document.layers if layer in _readable}
     arrays = {name: content for name, content in members.items() if name != PROJECT_JSON}
@@ -185,7 +180,7 @@ def _read(archive: Archive, known: Mapping[int, Layer] = MappingProxyType({})) -
 
 def _read_json(archive: Archive) -> JsonObject:
     text = archive.read(PROJECT_JSON, largest=LARGEST_JSON)
-    # Each value but the first stands behind one of these; decoded, it takes some hundred bytes.
+    # Each value but the first follows one of these marks. A decoded value takes some hundred bytes.
     if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
         raise LissomError(
             f"its project.json holds more values than any project, which has {MOST_VALUES:,}"
@@ -214,7 +209,7 @@ def _finite(text: str) -> float:
 
 
 def _is_deeper(content: object) -> bool:
-    """Tell whether lists and objects lie deeper in each other than any project's."""
+    """Return whether lists and objects are nested too deeply for a project."""
     inside = [content] if isinstance(content, (dict, list)) else []
     for _ in range(DEEPEST + 1):
         inside = [

@@ -1,4 +1,4 @@
-"""Small pictures of files, by which a person knows them again."""
+"""Thumbnails of files."""
 
 import io
 from pathlib import Path
@@ -14,15 +14,15 @@ from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
 
 SIDE = 320  # pixels
-# Larger pictures take so long to decode (0.3 s) that the window would stand still. JPEG files are
-# decoded at a fraction of their size.
+# Decoding a larger picture takes so long (0.3 s) that the window would freeze. JPEG files are
+# decoded at a reduced size.
 MOST_PIXELS = 8_000_000
 PROJECT = ".lissom"
 BOMBS = (Image.DecompressionBombError, Image.DecompressionBombWarning)
 
 
 def draw_thumbnail(rgba: Bytes, side: int = SIDE) -> bytes:
-    """Return a PNG file of a picture, uint8 (h, w, 4), made small: its sides are at most `side`."""
+    """Return a PNG file of a picture, uint8 (h, w, 4), reduced to at most `side` pixels a side."""
     small = Image.fromarray(rgba)
     small.thumbnail((side, side))
     file = io.BytesIO()
@@ -31,7 +31,7 @@ def draw_thumbnail(rgba: Bytes, side: int = SIDE) -> bytes:
 
 
 def shrink_picture(rgba: Bytes, side: int) -> Bytes:
-    """Return what is drawn on a picture, uint8 (h, w, 4), made small: its sides at most `side`."""
+    """Return a picture's opaque part, uint8 (h, w, 4), reduced to at most `side` pixels a side."""
     image = Image.fromarray(rgba)
     drawn = image.crop(image.getchannel("A").getbbox())
     drawn.thumbnail((side, side))
@@ -40,9 +40,9 @@ def shrink_picture(rgba: Bytes, side: int) -> Bytes:
 
 
 def read_thumbnail(path: Path) -> Bytes | None:
-    """Return a picture or project made small, uint8 (h, w, 4) with sides of at most `SIDE`.
+    """Return a picture or project, uint8 (h, w, 4), reduced to at most `SIDE` pixels a side.
 
-    None where it cannot be read or takes long to read, and where a project holds no small picture.
+    None if the file is unreadable or slow to read, or if a project has no thumbnail.
     """
     try:
         if path.suffix.lower() == PROJECT:
@@ -55,7 +55,7 @@ def read_thumbnail(path: Path) -> Bytes | None:
 
 
 def read_animation_frames(path: Path) -> list[Bytes]:
-    """Return the pictures of a small animation, uint8 (h, w, 4); none where it cannot be read."""
+    """Return the frames of a small animation, uint8 (h, w, 4); empty if it is unreadable."""
     try:
         with open_file(path) as (file, _), Image.open(file, formats=("WEBP",)) as moving:
             frames = ImageSequence.Iterator(moving)

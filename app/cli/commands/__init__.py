@@ -1,4 +1,4 @@
-"""What each command does, one command a module with `run(arguments)`.
+"""The commands, one module each with `run(arguments)`.
 
 In: parsed arguments.
 Out: an exit status.

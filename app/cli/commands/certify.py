@@ -1,4 +1,4 @@
-"""`lissom certify`: how far an animation distorts its drawing."""
+"""`lissom certify`: the distortion of an animation."""
 
 import argparse
 import math
@@ -16,7 +16,7 @@ from engine.maps import Certificate
 
 NAMES = ("k", "sigma_a", "sigma_b")
 EXITS = {Verdict.PROVEN: 0, Verdict.MEASURED: 3, Verdict.OVER: 1}
-# As the table calls them.
+# Words of the table.
 WORDS = {Verdict.PROVEN: "proven", Verdict.MEASURED: "MEASURED ONLY", Verdict.OVER: "OVER"}
 
 
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_line(_as_json(reports))
     else:
-        # Of one layer the table is all that there is to say.
+        # For a single layer the table suffices.
         parts = [_overview(reports)] if len(reports) != 1 else []
         print_line(
             "\n\n".join([*parts, *(_tables(reports) if arguments.details or not parts else [])])
@@ -63,7 +63,7 @@ def _tables(reports: Mapping[str, Report]) -> list[str]:
 
 
 def _overview(reports: Mapping[str, Report]) -> str:
-    """Return the verdict of a scene, and a line for each layer: its worst, and where it is."""
+    """Return the verdict of a scene, and a line for each layer: its worst values, and where."""
     if not reports:
         return "All in all: proven: all that is there stands still."
     verdict, count = _verdict(reports), len(reports)
@@ -87,7 +87,7 @@ def _overview(reports: Mapping[str, Report]) -> str:
 
 
 def _where(report: Report) -> list[str]:
-    """Return what has the verdict of a whole layer, if that is not the best one."""
+    """Return the places with the layer's verdict; none if it is proven."""
     if report.verdict is Verdict.PROVEN:
         return []
     is_over = report.verdict is Verdict.OVER
@@ -155,7 +155,7 @@ def _interval_block(interval: SegmentReport) -> dict[str, Any]:
 
 
 def _named(values: Certificate | DistortionRange | Proof) -> dict[str, float | None]:
-    """Return each number by its name, None (JSON null) where nothing is proven: JSON has no ∞."""
+    """Return each number by its name; unproven values are None, because JSON has no ∞."""
     return {
         name: value if math.isfinite(value) else None
         for name, value in zip(NAMES, _numbers(values), strict=True)
@@ -198,7 +198,7 @@ def _as_table(report: Report) -> str:
 
 
 def _corrected_lines(report: Report) -> list[str]:
-    """Return what is known of frames in which tracks and springs move handles."""
+    """Return the report of frames in which tracks and springs move handles."""
     corrected = report.corrected
     if corrected is None or not (corrected.frames or corrected.left_out):
         return []
@@ -226,7 +226,7 @@ def _corrected_lines(report: Report) -> list[str]:
 
 
 def _interval_lines(interval: SegmentReport) -> list[str]:
-    """Return what is reached in an interval, what is proven of it, and where it is not."""
+    """Return the reached values of a segment, the proven values, and unproven frames."""
     reached = zip(_numbers(interval.reached), interval.keys, strict=True)
     proven = zip(_numbers(interval.proof), ("+", "+", "-"), interval.excess, strict=True)
     lines = [

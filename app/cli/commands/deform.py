@@ -83,7 +83,7 @@ def _scalar(case: Mapping[str, npt.NDArray[Any]], name: str) -> float:
 
 
 def _is_local(case: Mapping[str, npt.NDArray[Any]]) -> bool:
-    """Tell whether limits are tighter where the shape is stiff."""
+    """Return whether limits are tighter in stiff parts of the shape."""
     value = _scalar(case, "local_limits") if "local_limits" in case else 0.0
     if value not in (0.0, 1.0):
         raise LissomError(f"local_limits must be 0 or 1, not {value:g}")
@@ -99,9 +99,9 @@ def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[
 
 
 def _hands(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[BoundedPull]:
-    """Return the hands that pull, each at one handle, where the case asks for bounded force.
+    """Return bounded drag forces, each at one handle, if the case asks for them.
 
-    One force for all is of those that are wanted elsewhere than where they are at rest.
+    A single given force is used for all handles whose target differs from their rest position.
     """
     if "pull" not in case:
         return []

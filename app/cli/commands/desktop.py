@@ -1,8 +1,8 @@
-"""`lissom desktop`: Lissom in the menu of applications, and .lissom files that open with it.
+"""`lissom desktop`: Lissom in the application menu, and .lissom files that open with it.
 
-Everything is written for one person, as freedesktop.org has it: the specifications of base
-directories, desktop entries, icon themes and shared MIME information; thumbnailer entries are as
-the desktops that read them agree.
+Everything is installed for one person, by freedesktop.org's specifications of base directories,
+desktop entries, icon themes and shared MIME information. Thumbnailer entries follow the common
+practice of the desktops.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from app.errors import REINSTALL, LissomError
 from app.storage import app_icon, decode_picture, draw_thumbnail, home_folder, write_atomically
 
 PROGRAM = "lissom"
-# Below the person's own folder of data.
+# Below the person's data folder.
 ENTRY_AT = "applications/lissom.desktop"
 THUMBNAILER_AT = "thumbnailers/lissom.thumbnailer"
 MIME_TYPE_AT = "mime/packages/lissom.xml"
@@ -29,9 +29,9 @@ ICONS_AT = {
     for side in (16, 24, 32, 48, 64, 128, 256, 512)
 }
 INSTALLED_PATHS = (ENTRY_AT, THUMBNAILER_AT, MIME_TYPE_AT, *ICONS_AT.values())
-# What makes the desktop look again, and the folder that it reads.
+# Programs that refresh the desktop, and the folders that they read.
 REFRESHERS = {"update-desktop-database": "applications", "update-mime-database": "mime"}
-# What the second of them makes of the packages; of none, it makes files that say nothing.
+# Output of `update-mime-database`. Without packages it writes empty files.
 MIME_DATABASE = (
     *("XMLnamespaces", "aliases", "generic-icons", "globs", "globs2", "icons", "magic"),
     *("mime.cache", "subclasses", "treemagic", "types", "version"),
@@ -58,7 +58,7 @@ TryExec={program}
 Exec={quoted} thumbnail %i --out %o --size %s
 MimeType=application/x-lissom;
 """
-# A project is a zip file whose first member, not packed, tells what it is.
+# A project is a zip file whose first member, not packed, identifies it.
 MIME_TYPE = """\
 <?xml version="1.0" encoding="UTF-8"?>
 <mime-info xmlns="http://www.freedesktop.org/standards/shared-mime-info">
@@ -78,7 +78,7 @@ MIME_TYPE = """\
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Enter Lissom into the desktop, or take it out of it."""
+    """Install Lissom in the desktop, or remove it."""
     if sys.platform in {"win32", "darwin"}:
         raise LissomError(
             "'lissom desktop' is for Linux and its kin; here, choose Lissom for .lissom files in "
@@ -100,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _data_home() -> Path:
-    """Return the person's own folder of data; a path that is not absolute is to be ignored."""
+    """Return the person's data folder; a relative path in the variable is ignored."""
     chosen = Path(os.environ.get("XDG_DATA_HOME", ""))
     return chosen if chosen.is_absolute() else home_folder() / ".local" / "share"
 
@@ -122,12 +122,12 @@ def _remove(home: Path) -> None:
         (home / "applications" / "mimeinfo.cache").unlink(missing_ok=True)
     folders = {parent for place in INSTALLED_PATHS for parent in Path(place).parents} - {Path()}
     for folder in sorted({*folders, Path("mime/application")}, reverse=True):
-        with suppress(OSError):  # others keep something there, or it is gone
+        with suppress(OSError):  # it holds other files, or it is gone
             (home / folder).rmdir()
 
 
 def build_desktop_files(program: str) -> dict[str, bytes]:
-    """Return what enters the program of this path into a desktop, by its place in a data folder."""
+    """Return the desktop files for the program at this path, by their places in a data folder."""
     icon = decode_picture(app_icon(), "the icon of Lissom").rgba
     said = {"program": _escaped(program), "quoted": _quoted(program)}
     return {
@@ -139,7 +139,7 @@ def build_desktop_files(program: str) -> dict[str, bytes]:
 
 
 def _program() -> str:
-    """Return the path of this very program; that of another installation may come first on PATH."""
+    """Return the path of the running program; PATH may name another installation first."""
     if getattr(sys, "frozen", False):
         return sys.executable  # a bundle, which has no Python beside it
     own = Path(sysconfig.get_path("scripts")) / PROGRAM
@@ -150,32 +150,32 @@ def _program() -> str:
 
 
 def _quoted(program: str) -> str:
-    """Return a program as an Exec line has it: quoted as an argument, then escaped as a text."""
+    """Return a program for an Exec line: quoted as an argument, then escaped as a text."""
     argument = re.sub(r'(["`$\\])', r"\\\1", program).replace("%", "%%")
     return f'"{_escaped(argument)}"'
 
 
 def _escaped(text: str) -> str:
-    """Return a text as the values of entries have it: each on one line."""
+    """Return a text for the value of an entry, on one line."""
     for plain, escaped in (("\\", r"\\"), ("\n", r"\n"), ("\r", r"\r"), ("\t", r"\t")):
         text = text.replace(plain, escaped)
     return text
 
 
 def _refresh(home: Path) -> None:
-    """Let the desktop look again; where that does not work, it looks by itself sooner or later."""
+    """Refresh the desktop; after a failure the desktop refreshes itself later."""
     for name, folder in REFRESHERS.items():
         refresher = shutil.which(name)
         if refresher is not None and (home / folder).is_dir():
             with suppress(OSError, subprocess.SubprocessError):
-                subprocess.run(  # noqa: S603 - no shell, and nothing that anybody typed
+                subprocess.run(  # noqa: S603 - no shell, and no typed input
                     [refresher, home / folder],
                     stdout=subprocess.DEVNULL,
                     stderr=subprocess.DEVNULL,
                     timeout=PATIENCE,
                     check=False,
                 )
-    # The sign to look for icons again, says the specification of icon themes.
+    # The specification of icon themes: a new folder time makes desktops reload icons.
     with suppress(FileNotFoundError):
         os.utime(home / "icons" / "hicolor")
 

@@ -1,4 +1,4 @@
-"""`lissom doctor`: what works on this machine."""
+"""`lissom doctor`: the working features of this machine."""
 
 import argparse
 import os
@@ -35,7 +35,7 @@ USES: Final[dict[Extra, str]] = {
 
 
 class CheckResult(NamedTuple):
-    """Whether something works, and which one it is or what to do about it."""
+    """Whether a feature works, and its version or remedy."""
 
     name: str
     text: str
@@ -43,7 +43,6 @@ class CheckResult(NamedTuple):
 
 
 def run(_: argparse.Namespace) -> int:
-    """Print what works here."""
     print_line(describe_machine())
     rendering = [_rendering(backend) for backend in AUTOMATIC]
     for finding in (*rendering, _display(), _dialogs(), *map(_extra, LIBRARIES)):
@@ -88,7 +87,7 @@ def _draws_exactly(backend: Backend) -> bool:
         renderer.draw(target, canvas_view((16, 12)), Scene(meshes=(PosedMesh(mesh, vertices),)))
         return np.array_equal(target.read_straight_rgba(), picture)
     finally:
-        # Everything that was made in it goes with it.
+        # Releases also all objects of the context.
         context.release()
 
 
@@ -112,7 +111,7 @@ def _dialogs() -> CheckResult:
 
 
 def _extra(extra: Extra) -> CheckResult:
-    """Return how it stands about something that needs more than Lissom always has."""
+    """Return the state of an optional extra."""
     name, library = USES[extra], LIBRARIES[extra]
     if remedy := install_hint(extra):
         return CheckResult(name, f"{library} is not installed: {remedy}", works=False)

@@ -25,13 +25,12 @@ from engine.domain import CutLine, build_domain, texture_coordinates
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Build the domain of a picture and write it."""
     written, read = (arguments.out, arguments.preview), (arguments.picture, arguments.mask)
     check_writable(*filter(None, written), sources=filter(None, read))
     picture, corner = _read(arguments.picture, arguments.layer)
     cut_out = parse_cut_out(arguments)
     if is_layered(arguments.picture) and cut_out.background == "auto":
-        # What is drawn on a layer is all that it shows, as in a scene.
+        # A layer shows exactly its opaque pixels, as in a scene.
         cut_out = replace(cut_out, background="none")
     height = picture.size[1]
     slits = (np.array([complex(z.real, height - z.imag) for z in line]) for line in arguments.knife)
@@ -69,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _read(path: Path, layer: str | None) -> tuple[Picture, complex]:
-    """Return a picture, or that of a layer, and where its lower left corner is on the canvas."""
+    """Return a picture or a layer's picture, and its lower left corner on the canvas."""
     if not is_layered(path):
         if layer is not None:
             raise LissomError(f"{path} has no layers; leave --layer out")

@@ -40,7 +40,6 @@ NO_USE = "{name} has no use for --{flag}; leave it out"
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Export a project."""
     document = load_project(arguments.project)
     print_notices(motion_notices(document))
     if arguments.layer is not None:
@@ -73,7 +72,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _alone(document: Document, name: str) -> Document:
-    """Return a document of which only one layer is seen; it hangs where it hung."""
+    """Return a document with only one visible layer; its parent stays."""
     names = [layer.name for layer in document.layers]
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {join_names(names)}")
@@ -91,7 +90,7 @@ def _make(
     request: ExportRequest,
     arguments: argparse.Namespace,
 ) -> str:
-    """Make what was asked for; return what it came to."""
+    """Run the export; return a summary."""
     maker: FrameRenderer | MeshExport
     with ExitStack() as ending:
         context = None
@@ -122,7 +121,7 @@ def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, Cache
 
 
 def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:
-    """Return the project's settings with those that were given in their place."""
+    """Return the project's settings, replaced by the given options."""
     one = arguments.frame
     frames = arguments.frames if one is None else (one, one)
     name = arguments.format or _format_of(out, own, is_one=one is not None)
@@ -144,13 +143,7 @@ def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> 
 
 
 def _check_options(name: str, arguments: argparse.Namespace) -> None:
-    """Refuse options that a format has no use for.
-
-    Raises
-    ------
-    LissomError
-        If there is one.
-    """
+    """Raise `LissomError` for options that the format does not use."""
     format_ = EXPORT_FORMATS[name]
     framing = () if format_.has_frame else ("size", "background", "framing")
     useless = {option: option for option in (*framing, *(("names",) if format_.suffixes else ()))}
@@ -167,14 +160,11 @@ def _known(given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
-    """Return the one format that a name stands for, or None where that is as the project has it.
+    """Return the only format for a file name, or None if the project's format fits.
 
-    Of one frame, a name of several formats is that of a picture.
+    For a single frame, pictures come first among several formats.
 
-    Raises
-    ------
-    LissomError
-        If no format has names that end so, or several have.
+    Raises `LissomError` if no format or several formats have this suffix.
     """
     suffix = out.suffix.lower()
     if out.is_dir() or not suffix:

@@ -1,4 +1,4 @@
-"""`lissom figures`: the figures of the paper, made anew."""
+"""`lissom figures`: the figures of the paper, computed anew."""
 
 import argparse
 from pathlib import Path
@@ -16,7 +16,7 @@ from app.storage import make_folder, write_atomically
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Make the figures and print what was measured."""
+    """Make the figures and print their measurements."""
     require_matplotlib()
     out: Path = arguments.out.path
     make_folder(out)
@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _as_table(plate: PaperFigure) -> str:
-    """Return the numbers beside a figure in columns."""
+    """Return the numbers of a figure in columns."""
     table = [plate.column_names, *plate.rows]
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     lines = []

@@ -16,7 +16,7 @@ from engine.geometry import Domain
 from engine.interpolation import Variant, prepare
 from engine.maps import Boundary, Bounds
 
-UNFINISHED = 1e-8  # angle defect, in radians, that is worth a word
+UNFINISHED = 1e-8  # angle defect, in radians, from which on a notice is printed
 NO_PRINCIPAL = "--principal is for arap and mesh-eta; leave it out"
 
 
@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.NDArray[Any]]:
-    """Interpolate by a variant of the paper's own."""
+    """Interpolate by one of the paper's variants."""
     if arguments.bounds and not arguments.through:
         raise LissomError("--bounds is what --through keeps; say --through as well")
     if arguments.principal:
@@ -74,7 +74,7 @@ def _harmonic(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.
 
 
 def _compared(arguments: argparse.Namespace, given: Keyframes) -> dict[str, npt.NDArray[Any]]:
-    """Interpolate by a method that the paper compares with."""
+    """Interpolate by one of the paper's compared methods."""
     baseline = Baseline(arguments.variant)
     if given.triangles is None:
         raise LissomError(f"{baseline} needs the array 'triangles', of the points")

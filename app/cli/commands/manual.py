@@ -1,4 +1,4 @@
-"""`lissom manual`: the pages that F1 opens, in a folder of one's own."""
+"""`lissom manual`: a copy of the manual's pages in a folder."""
 
 import argparse
 from pathlib import Path
@@ -8,7 +8,6 @@ from app.storage import check_writable, make_folder, manual_page, write_atomical
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Copy the manual into a folder."""
     out: Path = arguments.out.path
     first = manual_page()
     sources = sorted(path for path in first.parent.rglob("*") if path.is_file())

@@ -1,4 +1,4 @@
-"""`lissom move`: picture + ready motion → project."""
+"""`lissom move`: picture + motion preset → project."""
 
 import argparse
 from typing import NamedTuple
@@ -28,19 +28,17 @@ from app.storage import (
 from engine.domain import guess_kind, suggest_joints
 from engine.geometry.motions import MOTIONS, Motion, Parameters, find_kind, find_motion
 
-WHOLE = "anything"  # what moves as a whole may be anything
+WHOLE = "anything"  # motions of the whole drawing suit any kind
 NO_JOINTS = JointsFile(kind=None, joints={})
 
 
 class _LayerJoints(NamedTuple):
-    """The kind and the joints of a drawing."""
-
     kind: str
     joints: dict[str, complex]
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Give a drawing a motion and write the project, or name the motions."""
+    """Apply a motion preset to a drawing and write the project, or list the presets."""
     if arguments.list:
         _list_motions()
         return 0
@@ -74,7 +72,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _list_motions() -> None:
-    """Print the motions."""
     longest = max(map(len, MOTIONS))
     for name, motion in MOTIONS.items():
         travels = "; it may travel" if motion.can_travel else ""
@@ -82,7 +79,7 @@ def _list_motions() -> None:
 
 
 def _parameters(arguments: argparse.Namespace) -> Parameters:
-    """Return how the motion is given; refuse it before anything is read."""
+    """Return the motion's parameters; refuse wrong ones before anything is read."""
     return Parameters(
         speed=arguments.speed,
         size=arguments.size,
@@ -103,7 +100,7 @@ def _open_picture(arguments: argparse.Namespace) -> OpenedScene:
 
 
 def _find_joints(layer: Layer, motion: Motion, kind: str | None, told: JointsFile) -> _LayerJoints:
-    """Return the kind of a drawing and its joints, guessed where they are not told."""
+    """Return the kind and the joints of a drawing, guessed if not given."""
     loops = layer.domain.loops
     if kind is None:
         if told.joints:
@@ -122,7 +119,7 @@ def _find_joints(layer: Layer, motion: Motion, kind: str | None, told: JointsFil
 
 
 def _apply_motion(document: Document, order: MotionRequest) -> Document:
-    """Return the document with the motion; tell what of it is out of reach."""
+    """Return the document with the motion; print notices about unreachable targets."""
     with StatusLine() as status:
         giving = start_motion_solve(document, document.layers[0].id, order)
         if order.facing is None and order.kind in {"biped-side", "four-legs"}:
@@ -136,7 +133,7 @@ def _apply_motion(document: Document, order: MotionRequest) -> Document:
 
 
 def _save(arguments: argparse.Namespace, opened: OpenedScene, document: Document) -> None:
-    """Write the project, and tell what is in it."""
+    """Write the project, and print a summary."""
     (layer,) = document.layers
     texture = cut_picture(opened.pictures[layer.id], layer.cut_out).texture
     save_project(arguments.out, document, thumbnail=draw_thumbnail(texture))

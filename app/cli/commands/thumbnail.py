@@ -1,4 +1,4 @@
-"""`lissom thumbnail`: the small picture of a project, as file managers ask for it."""
+"""`lissom thumbnail`: the thumbnail of a project, for file managers."""
 
 import argparse
 
@@ -9,7 +9,6 @@ NO_SMALL_PICTURE = "{project} holds no small picture; open it in the window and 
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the small picture of a project."""
     check_writable(arguments.out, sources=[arguments.project])
     rgba = read_thumbnail(arguments.project)
     if rgba is None:

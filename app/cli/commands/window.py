@@ -36,12 +36,12 @@ EXIT_FAILED = 1
 DISPLAY_GONE = "the display is gone"
 WORK_KEPT = "your unsaved work was kept; it is offered when Lissom starts again"
 START_ERRORS = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
-# Seconds that workers have to end: when the person has closed the window, when something else has.
+# Seconds for workers to end: after the person has closed the window, and after other ends.
 LEISURE, HURRY = 6.0, 2.0
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Open the window, and close it when the person does."""
+    """Open the window, and close it on the person's request."""
     if not has_display():
         exit_with_error(
             "there is no display for the window; the command line works without one, for example "
@@ -72,11 +72,11 @@ def run(arguments: argparse.Namespace) -> int:
         del heard
         have_ended = session.jobs.close(LEISURE if session.is_quitting else HURRY)
         if session.is_quitting:
-            # One that was being written when the person left.
+            # Also an autosave that was being written when the person left.
             session.autosave.remove()
     if status == EXIT_FAILED or not have_ended or has_running_threads():
-        # What a worker that never ends uses must not be taken down under it, and after an exception
-        # nobody knows what may be.
+        # Do not take down libraries under a worker that never ends. After an exception their state
+        # is unknown.
         sys.stderr.flush()
         os._exit(status)
     return status
@@ -101,7 +101,7 @@ def _show(window: Window, endings: SignalHandler) -> int:
     try:
         window.run(is_over=lambda: endings.is_signalled, farewell=farewell)
     except Exception as error:
-        # What hinders a start has words of its own.
+        # Errors at the start have messages of their own.
         if not was_open and isinstance(error, START_ERRORS):
             raise
         _report(session, error)
@@ -110,7 +110,7 @@ def _show(window: Window, endings: SignalHandler) -> int:
 
 
 def _report(session: Session, error: Exception) -> None:
-    """Tell what ended the window, and keep a report of it."""
+    """Print the error that ended the window, and keep a report of it."""
     kept = "a report was kept"
     try:
         text = error_reports.keep_crash_report(session, error)
@@ -124,7 +124,7 @@ def _report(session: Session, error: Exception) -> None:
 
 
 def _noting_faults(folder: Path) -> AbstractContextManager[None]:
-    """Let Python note where it crashes; where there is no file for that, it does not."""
+    """Write Python's traceback of a crash to the fault log, if the log can be opened."""
     try:
         return redirect_faulthandler(open_fault_log(folder))
     except OSError:
@@ -132,7 +132,7 @@ def _noting_faults(folder: Path) -> AbstractContextManager[None]:
 
 
 def _make(folder: Path, session: Session) -> None:
-    """Make the folder for settings and unsaved work; without one, the window opens all the same."""
+    """Make the folder for settings and unsaved work; after a failure the window still opens."""
     try:
         make_settings_folder(folder)
     except EXPECTED_ERRORS as error:
@@ -143,7 +143,7 @@ def _make(folder: Path, session: Session) -> None:
 
 
 def _keep_at_lost_display(session: Session) -> None:
-    """Keep unsaved work, and tell why the window ends."""
+    """Autosave unsaved work, and print why the window ends."""
     exit_within(PATIENCE, EXIT_FAILED)
     print_notice(DISPLAY_GONE)
     if not session.is_quitting:
@@ -152,7 +152,7 @@ def _keep_at_lost_display(session: Session) -> None:
 
 
 def _keep(session: Session) -> None:
-    """Keep unsaved work when something else than the person has ended the window."""
+    """Autosave unsaved work after an end that the person did not request."""
     try:
         saving.autosave_now(session)
     except EXPECTED_ERRORS as error:

@@ -1,7 +1,7 @@
-"""The paper's figures, made anew with this project's own drawings.
+"""The paper's figures, made with this project's own drawings.
 
-In: numbers of figures, and a studio.
-Out: pictures, and one page with captions and what was measured.
+In: numbers of figures, and a `FigureContext`.
+Out: pictures, and one page with captions and measurements.
 Imports: `app.render`, `app.reports`, `app.storage`, `engine`.
 """
 

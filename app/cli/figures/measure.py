@@ -1,4 +1,4 @@
-"""What a method does to a pair: frames, and how far they distort the shape (Section 8)."""
+"""Measurements of a method on a pair of keyframes: frames and distortion (Section 8)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,20 +14,13 @@ from engine.domain.meshing import Mesh
 from engine.maps import distortion
 
 TIMES = 41  # of the curves
-FOLDED = np.inf  # τ where a map is not injective
+FOLDED = np.inf  # τ of a map that is not injective
 
 
 class MeasuredMotion:
-    """The in-betweens of a pair by one method.
+    """The in-betweens of a pair by one method, at `times` even times from 0 to 1.
 
-    Parameters
-    ----------
-    pair : ShapePair
-    method : ComparedMethod
-    times : int
-        At how many times, even from 0 to 1, the distortion is looked at.
-
-    Its `frame` returns the in-between at a time in [0, 1].
+    `frame` returns the in-between at a time in [0, 1].
     """
 
     def __init__(self, pair: ShapePair, method: ComparedMethod, times: int = TIMES) -> None:
@@ -38,7 +31,6 @@ class MeasuredMotion:
 
     @cached_property
     def frames(self) -> tuple[Inbetween, ...]:
-        """The in-betweens at all times."""
         return tuple(self.frame(float(time)) for time in self.times)
 
     @cached_property
@@ -48,7 +40,7 @@ class MeasuredMotion:
 
     @cached_property
     def tau(self) -> Floats:
-        """Isometric distortion (t, p), infinite where a map folds."""
+        """Isometric distortion (t, p), infinite if a map folds."""
         values = []
         for frame in self.frames:
             least = distortion.sigma_b(frame.fz, frame.fzbar)
@@ -64,11 +56,11 @@ class MeasuredMotion:
 
     @cached_property
     def tau_shares(self) -> Floats:
-        """Likewise τ − 1, (t, 100)."""
+        """τ − 1 of the 100 worst points, relative to their larger keys, (t, 100)."""
         return divide_by_keys(worst_points(self.tau - 1.0))
 
     def summarize(self) -> "DistortionSummary":
-        """Return the numbers that stand beside the pictures."""
+        """Return the numbers printed beside the pictures."""
         mesh = self.pair.shape.domain.mesh
         areas = np.array([area_of(mesh, frame.positions) for frame in self.frames])
         ends = np.minimum(areas[0], areas[-1])
@@ -85,12 +77,13 @@ class MeasuredMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DistortionSummary:
-    """How far a method's in-betweens are from the keyframes'.
+    """Distortion of a method's in-betweens relative to the keyframes.
 
     `k` and `tau` are the largest k and τ − 1 of the 100 worst points, each relative to the larger
-    key of its point: at most 1 where distortion is bounded point by point. `k_of_all` and
-    `tau_of_all` are those of all points relative to the largest of both keys: at most 1 where it is
-    bounded as a whole. `area` is the least over time, relative to the smaller key.
+    key of its point. They are at most 1 if distortion is bounded point by point. `k_of_all` and
+    `tau_of_all` are the largest values of all points relative to the largest values of both keys.
+    They are at most 1 if distortion is bounded as a whole. `area` is the smallest area over time,
+    relative to the smaller key.
     """
 
     k: float
@@ -103,7 +96,7 @@ class DistortionSummary:
 def measure_motions(
     pair: ShapePair, methods: Sequence[ComparedMethod], times: int = TIMES
 ) -> dict[str, MeasuredMotion]:
-    """Return the in-betweens of a pair by several methods, by their names."""
+    """Return the measured in-betweens of a pair by method name."""
     return {method.name: MeasuredMotion(pair, method, times) for method in methods}
 
 

@@ -1,4 +1,4 @@
-"""The methods that are compared, each from two keyframes to in-betweens at any time."""
+"""The compared methods, each from two keyframes to in-betweens at any time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,19 +8,20 @@ from engine.baselines import Baseline, MeshFrame, prepare_baseline
 from engine.interpolation import Frame, Prepared, Variant, prepare
 from engine.maps import Boundary
 
-# With the positions of the vertices; fz and fzbar at vertices or in triangles, always the same.
+# With positions of the vertices. The type of a method's frames never changes: fz and fzbar are at
+# vertices or in triangles.
 Inbetween = Frame | MeshFrame
 FrameAt = Callable[[float], Inbetween]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ComparedMethod:
-    """A way to in-betweens.
+    """A method of interpolation.
 
     Parameters
     ----------
     name : str
-        As it stands beside its pictures.
+        Printed beside its pictures.
     colour : str
         Of its curves.
     prepare : callable
@@ -51,7 +52,7 @@ def variant_preparer(variant: Variant) -> Callable[[ShapePair], FrameAt]:
 
 
 def baseline_preparer(baseline: Baseline) -> Callable[[ShapePair], FrameAt]:
-    """Return the preparation of one of the methods that ours are compared with."""
+    """Return the preparation of a compared method."""
 
     def prepare_pair(pair: ShapePair) -> FrameAt:
         domain = pair.shape.domain
@@ -87,5 +88,5 @@ HANDLES = ComparedMethod(
 MESH_ETA = ComparedMethod(
     name="mesh η", colour="#a04a8c", prepare=baseline_preparer(Baseline.MESH_ETA)
 )
-# All that are timed.
+# All timed methods.
 METHODS = (LINEAR, NU, ETA, SCALED_ETA, METRIC, ARAP, FFMP, MESH_ETA, HANDLES, SIG13)

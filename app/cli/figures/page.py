@@ -1,4 +1,4 @@
-"""One page with all figures, that needs no other file."""
+"""A self-contained page with all figures."""
 
 import base64
 from collections.abc import Mapping
@@ -27,7 +27,6 @@ INTRODUCTION = (
 
 
 def render_page(plates: Mapping[int, PaperFigure]) -> str:
-    """Return the page as HTML."""
     figures = "\n".join(_figure(number, plate) for number, plate in plates.items())
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">\n'

@@ -1,4 +1,4 @@
-"""Pictures of posed shapes, by the renderer that the window draws with."""
+"""Pictures of posed shapes, by the window's renderer."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -15,12 +15,9 @@ MARGIN = 0.03  # of the larger side, around a box
 
 
 class ShapeRenderer:
-    """Owner of what shapes are drawn with; use it in a `with`.
+    """Owner of the renderer of shapes; a context manager.
 
-    Raises
-    ------
-    LissomError
-        If this machine cannot draw.
+    Raises `LissomError` if this machine cannot draw.
     """
 
     def __init__(self) -> None:
@@ -38,14 +35,9 @@ class ShapeRenderer:
         self._owned.close()
 
     def draw(self, shape: Shape, positions: Complexes, box: BoundingBox, *, pixels: int) -> Bytes:
-        """Return a picture, uint8 (h, w, 4) with straight alpha, of what is in a box of the plane.
+        """Return a picture, uint8 (h, w, 4) with straight alpha, of a box of the plane.
 
-        Parameters
-        ----------
-        positions : complex128, shape (v,)
-            Of the vertices of the shape's mesh.
-        pixels : int
-            Of the longer side.
+        `positions` (v,) are those of the mesh's vertices; `pixels` is the longer side.
         """
         extent = box.upper - box.lower
         scale = pixels / max(extent.real, extent.imag)
@@ -73,7 +65,7 @@ class ShapeRenderer:
 
 
 def same_scale(boxes: Sequence[BoundingBox]) -> list[BoundingBox]:
-    """Return boxes about the same middles, all as large as the largest each way."""
+    """Return boxes about the same middles, all as large as the largest in each direction."""
     extents = [box.upper - box.lower for box in boxes]
     half = complex(max(e.real for e in extents), max(e.imag for e in extents)) / 2
     middles = [(box.upper + box.lower) / 2 for box in boxes]
@@ -81,7 +73,7 @@ def same_scale(boxes: Sequence[BoundingBox]) -> list[BoundingBox]:
 
 
 def bounds_of(*positions: Complexes) -> BoundingBox:
-    """Return a box around all points of some arrays, with a little room."""
+    """Return a box around all given points, with a small margin."""
     box = bounding_box(positions[0])
     for more in positions[1:]:
         box = box.joined(bounding_box(more))

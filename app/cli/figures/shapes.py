@@ -1,6 +1,6 @@
-"""Shapes of this project, and two keyframes for each: what the figures are drawn from.
+"""The shapes of the figures, with two keyframes each.
 
-Places are in pixels, y up, as everywhere.
+Positions are in pixels, y up, as everywhere.
 """
 
 from collections.abc import Sequence
@@ -16,18 +16,18 @@ from engine.domain import Domain, MeshedDomain, build_domain
 from engine.geometry import edge_vectors
 from engine.maps import Boundary, Bounds, HarmonicMap
 
-# The middle of the letter S in its picture; handles are laid on both sides of it.
+# The middle line of the letter S in its picture; handles are on both sides of it.
 S_MIDDLE = (
     *(586 + 798j, 493 + 893j, 343 + 918j, 183 + 863j, 123 + 728j, 203 + 598j, 343 + 523j),
     *(483 + 448j, 563 + 318j, 503 + 183j, 343 + 128j, 193 + 153j, 93 + 248j),
 )
-S_RAIL = 50.0  # pixels from the middle to the handles
+S_RAIL = 50.0  # pixels from the middle line to the handles
 S_GROWTH = 1.2  # of the logarithm of the size, from end to end
 S_BOUNDS = Bounds(k=0.08, sigma_a=5.0, sigma_b=0.2)
-PLACES = 11  # of handles along the middle
+PLACES = 11  # positions of handles along the middle line
 ENDS = 0.05  # of its length, left free of handles
-LEG = 2  # places along each leg of the U that do not turn
-STEPS = 8  # of the way on which the deformer is led
+LEG = 2  # straight positions along each leg of the U
+STEPS = 8  # steps of the deformer to the targets
 SOFTNESS = 0.1  # of handles
 RING_TURN, RING_GROWTH, RING_NU = 4.9, 0.8, 0.1
 
@@ -36,10 +36,7 @@ RING_TURN, RING_GROWTH, RING_NU = 4.9, 0.8, 0.1
 class Shape:
     """A drawing on a mesh.
 
-    Parameters
-    ----------
-    picture : uint8, shape (h, w, 4)
-        Straight alpha; its lower left corner is the origin of the plane.
+    The picture, uint8 (h, w, 4), has straight alpha. Its lower left corner is the plane's origin.
     """
 
     picture: Bytes
@@ -50,8 +47,8 @@ class Shape:
 class ShapePair:
     """A shape and two keyframes of it.
 
-    Its `anchor` is what in-betweens are tied to; None leaves it to each method. `handles` are the
-    places by which a deformer made the keyframes within `bounds`, where it did.
+    `anchor` is the fixed point of in-betweens; with None each method chooses its own. `handles` are
+    the handles of a deformer that made the keyframes within `bounds`, if any.
     """
 
     shape: Shape
@@ -63,7 +60,7 @@ class ShapePair:
 
 
 def square(triangles: int) -> Shape:
-    """Return the square [−1, 1]² of Figure 3, 100 pixels a unit, with a checker on it."""
+    """Return the square [−1, 1]² of Figure 3, 100 pixels per unit, with a checker on it."""
     return _block(200, 200, cells=8, triangles=triangles)
 
 
@@ -73,11 +70,11 @@ def beam(triangles: int) -> Shape:
 
 
 def letter_s(triangles: int) -> ShapePair:
-    """Return the letter S and what the deformer makes of it on the way to a U.
+    """Return the letter S and the deformer's result on the way to a U.
 
-    The U is larger at one end: where a shape turns and grows, the blended Jacobians of ARAP belong
-    to no map. Its bound on k is tight, so that all of it is sheared nearly as far as its worst
-    point, and what other methods add to it shows.
+    The U is larger at one end. If a shape turns and grows, the blended Jacobians of ARAP belong to
+    no map. The limit on k is tight, so that all of the shape is sheared nearly as far as its worst
+    point. Additional shear by other methods is then visible.
     """
     shape = _sample_picture("s", triangles)
     domain = shape.domain
@@ -121,7 +118,7 @@ def bar_to_ring(triangles: int) -> ShapePair:
 
 
 def make_sample_pair(name: str, first: int, second: int, triangles: int) -> ShapePair:
-    """Return two keys of a sample project, by their numbers, with as many triangles.
+    """Return two keys of a sample project, by their numbers, on a mesh of `triangles` triangles.
 
     Its poses are the deformer's, and certified.
     """
@@ -143,14 +140,14 @@ def make_sample_pair(name: str, first: int, second: int, triangles: int) -> Shap
 
 
 def spiral_map(shape: Shape, *, turn: float, growth: float, nu: float) -> HarmonicMap:
-    """Return a map that winds a shape up along x and lets it grow on the way, with ν everywhere.
+    """Return a map that winds a shape up along x and lets it grow, with constant ν.
 
     Parameters
     ----------
     turn : float
         In radians, over the whole length.
     growth : float
-        Of ln |f_z|, over the whole length; it is 0 at the left end.
+        Of ln |f_z|, over the whole length; 0 at the left end.
     nu : float
         conj(f_z̄) / f_z; k is its modulus.
     """
@@ -160,9 +157,9 @@ def spiral_map(shape: Shape, *, turn: float, growth: float, nu: float) -> Harmon
 
 
 def bend_points(offset: Complexes, *, turn: float, growth: float = 0.0) -> Complexes:
-    """Return places about the origin bent so that what is across stays straight.
+    """Return points about the origin bent so that lines across stay straight.
 
-    By `turn` radians over their extent along x, on which they also grow by exp(`growth`).
+    They bend by `turn` radians over their extent along x, and grow by exp(`growth`) along it.
     """
     along, across = offset.real, offset.imag
     rate = complex(growth, turn) / float(np.ptp(along))
@@ -171,7 +168,7 @@ def bend_points(offset: Complexes, *, turn: float, growth: float = 0.0) -> Compl
 
 
 def _wound(shape: Shape, start: complex, *, turn: float, growth: float, nu: float) -> HarmonicMap:
-    """Return `spiral`, with a place that goes to the origin and neither turns nor grows there."""
+    """Return `spiral_map` with `start` mapped to the origin, without rotation or growth there."""
     cage = shape.domain.cage
     rate = complex(growth, turn) / float(np.ptp(shape.domain.outline.real))
     phi = (np.exp(rate * (cage - start)) - 1) / rate
@@ -179,7 +176,7 @@ def _wound(shape: Shape, start: complex, *, turn: float, growth: float, nu: floa
 
 
 def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:
-    """Return a rectangle about the origin with so many squares of a checker along it."""
+    """Return a rectangle about the origin with `cells` squares of a checker along it."""
     side = width / cells
     rows, columns = np.indices((height, width)) // side
     share = columns / (cells - 1)
@@ -190,7 +187,7 @@ def _block(width: int, height: int, *, cells: int, triangles: int) -> Shape:
     picture = np.dstack([rgb, np.full((height, width), 255)]).astype(np.uint8)
     corners: Complexes = np.array([0, width, width + 1j * height, 1j * height])
     outline = _subdivided(corners, height / 5)
-    # A third of a side's length off.
+    # Offset by a third of a side's length.
     grown = corners + height / 16 * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j])
     cage = _subdivided(grown, height / 5)
     domain = MeshedDomain.of(Domain(outline, cage), triangles)
@@ -212,14 +209,14 @@ def _sample_picture(name: str, triangles: int) -> Shape:
 
 
 def _rails(middle: Complexes, widths: Floats) -> Complexes:
-    """Return places on both sides of a curve, (2 PLACES,)."""
+    """Return points on both sides of a curve, (2 PLACES,)."""
     along = np.gradient(middle)
     across = 1j * along / np.abs(along) * widths
     return np.concatenate([middle + across, middle - across])
 
 
 def _along(middle: Sequence[complex]) -> Complexes:
-    """Return evenly spaced places along a smooth curve, but for its ends."""
+    """Return evenly spaced points along a smooth curve, without its ends."""
     through = np.array(middle)
     knots = np.concatenate([[0.0], np.cumsum(np.sqrt(np.abs(np.diff(through))))])
     curve = CubicSpline(knots, through)(np.linspace(0, knots[-1], 2001))
@@ -232,7 +229,7 @@ def _along(middle: Sequence[complex]) -> Complexes:
 
 
 def _turned(middle: Complexes, turns: Floats, sizes: Floats, share: float) -> Complexes:
-    """Return the chain (PLACES,) whose turns are a share of the way to others; its middle stays."""
+    """Return the chain (PLACES,) with a share of the given turns and sizes; its middle stays."""
     steps = np.diff(middle)
     own = np.angle(steps[1:] / steps[:-1])
     angles = np.concatenate([[0.0], np.cumsum(own + share * (turns - own))])

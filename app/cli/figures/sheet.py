@@ -17,32 +17,26 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, GRID, LIMIT = "#3c404a", "#e0e2e8", "#cf3f3c"
-DOTS = 110  # an inch
+DOTS = 110  # dots per inch
 PICTURE = 520  # pixels of a drawing's longer side
-SHOWN = 1.9  # of relative distortion: curves beyond are cut off
+SHOWN = 1.9  # relative distortion above which curves are cut off
 
 
 def require_matplotlib() -> None:
-    """Refuse to begin without it.
-
-    Raises
-    ------
-    LissomError
-        If matplotlib is not installed.
-    """
+    """Raise `LissomError` if matplotlib is not installed, before any computation."""
     if remedy := install_hint("figures"):
         raise LissomError(f"the figures need matplotlib, which is not installed: {remedy}")
 
 
 def new_sheet(width: float, height: float) -> "Figure":
-    """Return an empty sheet of so many inches."""
+    """Return an empty sheet; width and height are in inches."""
     from matplotlib.figure import Figure  # noqa: PLC0415 - it is an extra
 
     return Figure(figsize=(width, height), dpi=DOTS, layout="constrained")
 
 
 def as_png(sheet: "Figure") -> bytes:
-    """Return a sheet as a PNG file, the same bytes for the same sheet."""
+    """Return a sheet as a PNG file; the same sheet always gives the same bytes."""
     file = io.BytesIO()
     sheet.savefig(file, format="png", metadata={"Software": None})
     return file.getvalue()
@@ -56,7 +50,7 @@ def draw_frame(
     *,
     box: BoundingBox | None = None,
 ) -> None:
-    """Draw an in-between, by default whole."""
+    """Draw an in-between, uncropped by default."""
     positions = track.frame(time).positions
     box = box or bounds_of(positions)
     picture = easel.draw(track.pair.shape, positions, box, pixels=PICTURE)
@@ -69,7 +63,7 @@ def draw_panels(
     panels: Sequence[tuple[str, MeasuredMotion, float]],
     size: tuple[float, float],
 ) -> "Figure":
-    """Return a sheet, of a size in inches, with titled in-betweens side by side at one scale."""
+    """Return a sheet with titled in-betweens side by side at one scale; the size is in inches."""
     sheet = new_sheet(*size)
     boxes = same_scale([bounds_of(track.frame(time).positions) for _, track, time in panels])
     columns = sheet.subplots(1, len(panels))
@@ -122,7 +116,7 @@ def label_row(axes: "Axes", text: str) -> None:
 
 
 def plot_shares(axes: "Axes", times: Floats, shares: Floats, title: str, colour: str) -> None:
-    """Draw the relative distortion of the worst points over time, and the limit."""
+    """Plot the relative distortion of the worst points over time, and the limit."""
     axes.plot(times, np.minimum(shares, 2 * SHOWN), color=colour, alpha=0.25, linewidth=0.8)
     axes.axhline(1.0, color=LIMIT, linewidth=1.2)
     axes.set_xlim(0, 1)
@@ -132,7 +126,7 @@ def plot_shares(axes: "Axes", times: Floats, shares: Floats, title: str, colour:
 
 
 def style_axes(axes: "Axes") -> None:
-    """Give a plot the looks of all."""
+    """Apply the common style to a plot."""
     axes.tick_params(colors=INK, labelsize=8)
     axes.grid(color=GRID, linewidth=0.6)
     axes.set_axisbelow(True)
@@ -141,7 +135,7 @@ def style_axes(axes: "Axes") -> None:
 
 
 def format_number(value: float) -> str:
-    """Return a number as it is printed beside a figure."""
+    """Format a number for printing beside a figure."""
     if not np.isfinite(value):
         return "unbounded (it folds)"
     return f"{value:.4f}" if value < 10 else f"{value:,.0f}"

@@ -1,4 +1,4 @@
-"""What is said to each command, a module each: `add_arguments(parser)`, and an `EPILOG` of help.
+"""Command-line arguments, one module per command: `add_arguments(parser)` and a help `EPILOG`.
 
 In: words of a command line.
 Out: parsed arguments, or an error of usage.

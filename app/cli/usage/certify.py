@@ -1,4 +1,4 @@
-"""What is said to `lissom certify`."""
+"""Arguments of `lissom certify`."""
 
 import argparse
 
@@ -36,7 +36,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom certify`."""
     add_project(parser)
     add_variant_option(parser)
     parser.add_argument(

@@ -1,4 +1,4 @@
-"""What is said to `lissom deform`."""
+"""Arguments of `lissom deform`."""
 
 import argparse
 
@@ -44,7 +44,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom deform`."""
     parser.add_argument(
         "case", metavar="CASE.npz", type=input_file, help="shape, handles and targets"
     )

@@ -1,4 +1,4 @@
-"""What is said to `lissom desktop`."""
+"""Arguments of `lissom desktop`."""
 
 import argparse
 
@@ -15,7 +15,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom desktop`."""
     either = parser.add_mutually_exclusive_group(required=True)
     either.add_argument("--install", action="store_true", help="enter Lissom into the desktop")
     either.add_argument("--remove", action="store_true", help="take all of that away again")

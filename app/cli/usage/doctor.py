@@ -1,4 +1,4 @@
-"""What is said to `lissom doctor`."""
+"""Arguments of `lissom doctor`."""
 
 import argparse
 

@@ -1,4 +1,4 @@
-"""What is said to `lissom domain`."""
+"""Arguments of `lissom domain`."""
 
 import argparse
 from math import isfinite
@@ -50,7 +50,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom domain`."""
     parser.add_argument("picture", metavar="PICTURE", type=input_file, help="the drawing")
     add_out(parser, "DOMAIN.npz")
     parser.add_argument(
@@ -78,7 +77,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _line(text: str) -> tuple[complex, ...]:
-    """Return the places of a polyline, as they are said: x to the right and y down, in turn."""
+    """Return the points of a polyline, given as x to the right and y down in turn."""
     try:
         numbers = [float(number) for number in text.split(",")]
     except ValueError:

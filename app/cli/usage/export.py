@@ -1,4 +1,4 @@
-"""What is said to `lissom export`."""
+"""Arguments of `lissom export`."""
 
 import argparse
 import re
@@ -19,7 +19,7 @@ FORMATS = "\n".join(
     )
     for name, format_ in EXPORT_FORMATS.items()
 )
-*OTHERS, LAST = format_by_suffix()  # ends of names
+*OTHERS, LAST = format_by_suffix()  # suffixes
 EPILOG = f"""\
 What is not given is as the project's own export settings have it.
 
@@ -40,7 +40,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom export`."""
     add_project(parser)
     add_out(
         parser,

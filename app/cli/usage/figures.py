@@ -1,4 +1,4 @@
-"""What is said to `lissom figures`."""
+"""Arguments of `lissom figures`."""
 
 import argparse
 
@@ -21,7 +21,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom figures`."""
     add_out(parser, "DIR", place=output)
     parser.add_argument(
         "--only",

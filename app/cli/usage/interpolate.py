@@ -1,4 +1,4 @@
-"""What is said to `lissom interpolate`."""
+"""Arguments of `lissom interpolate`."""
 
 import argparse
 
@@ -69,7 +69,6 @@ NOT_NUMBERS = "{text!r} is not a list of numbers separated by commas"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom interpolate`."""
     parser.add_argument(
         "keyframes",
         metavar="KEYFRAMES",

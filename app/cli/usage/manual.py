@@ -1,4 +1,4 @@
-"""What is said to `lissom manual`."""
+"""Arguments of `lissom manual`."""
 
 import argparse
 
@@ -15,5 +15,4 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom manual`."""
     add_out(parser, "DIR", place=output)

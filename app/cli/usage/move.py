@@ -1,4 +1,4 @@
-"""What is said to `lissom move`."""
+"""Arguments of `lissom move`."""
 
 import argparse
 
@@ -43,7 +43,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom move`."""
     parser.add_argument(
         "picture", metavar="DRAWING", type=input_file, nargs="?", help="the drawing"
     )

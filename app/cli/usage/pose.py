@@ -1,4 +1,4 @@
-"""What is said to `lissom pose`."""
+"""Arguments of `lissom pose`."""
 
 import argparse
 
@@ -143,7 +143,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom pose`."""
     parser.add_argument("picture", metavar="DRAWING", type=input_file, help="the drawing")
     parser.add_argument("script", metavar="SCRIPT.json", type=input_file, help="handles and keys")
     add_out(parser, "PROJECT.lissom")

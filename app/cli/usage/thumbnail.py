@@ -1,4 +1,4 @@
-"""What is said to `lissom thumbnail`."""
+"""Arguments of `lissom thumbnail`."""
 
 import argparse
 
@@ -15,7 +15,6 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom thumbnail`."""
     add_project(parser)
     add_out(parser, "OUT.png")
     parser.add_argument(

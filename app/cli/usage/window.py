@@ -1,4 +1,4 @@
-"""What is said to `lissom window`."""
+"""Arguments of `lissom window`."""
 
 import argparse
 from pathlib import Path
@@ -16,14 +16,13 @@ examples:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the options of `lissom window`."""
     parser.add_argument(
         "file", metavar="FILE", nargs="?", type=_existing, help="a picture or a .lissom project"
     )
 
 
 def _existing(text: str) -> Path:
-    """Return the path of a file; whatever is no command is taken for one."""
+    """Return the path of an existing file; a word that is no command is taken for a file."""
     path = Path(text)
     if not path.is_file():
         raise LissomError(f"{text} is neither a command nor a file (see 'lissom --help')")

@@ -11,9 +11,9 @@ from typing import IO, Final
 from app.export.plan import ExportPlan
 from app.export.writers.png import SIGNATURE, PngFrames, png_chunk
 
-# A frame lasts a fraction of two numbers of 16 bits, in seconds; with some room for rounding.
+# A frame's duration is a fraction of two 16-bit numbers, in seconds. This leaves room for rounding.
 _LARGEST: Final = 65_000
-# Every frame replaces all of the one before it, transparent parts included.
+# Every frame replaces the previous frame, also its transparent parts.
 _DISPOSE_NONE, _BLEND_SOURCE = 0, 0
 
 
@@ -22,11 +22,11 @@ class ApngWriter(PngFrames):
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
         super().__init__(file, plan)
-        self._chunks = 0  # of those that are numbered
+        self._chunks = 0  # count of numbered chunks
         self._started = False
 
     def add(self, encoded: bytes) -> None:
-        """Take the picture data out of a PNG file and into the animation."""
+        """Copy the picture data of a PNG file into the animation."""
         chunks = list(_chunks(encoded))
         is_first = not self._started
         if is_first:
@@ -34,11 +34,10 @@ class ApngWriter(PngFrames):
         self._write(b"fcTL", self._frame_control())
         for kind, data in chunks:
             if kind == b"IDAT":
-                # Readers that know no animation show what stands in ordinary data chunks.
+                # Readers without animation support show the ordinary data chunks.
                 self._write(*((b"IDAT", data) if is_first else (b"fdAT", self._number() + data)))
 
     def finish(self) -> None:
-        """Write the closing chunk."""
         self._write(b"IEND", b"")
 
     def _start(self, chunks: list[tuple[bytes, bytes]]) -> None:
@@ -46,7 +45,7 @@ class ApngWriter(PngFrames):
         self._file.write(SIGNATURE)
         for each in chunks:
             self._write(*each)
-        plays = 0 if self._plan.loop else 1  # 0 goes on for ever
+        plays = 0 if self._plan.loop else 1  # 0 loops forever
         self._write(b"acTL", struct.pack(">II", len(self._plan.times), plays))
 
     def _frame_control(self) -> bytes:

@@ -15,8 +15,8 @@ from app.export.writers.frame_writer import FrameWriter, frame_duration
 from engine.arrays import Bytes
 
 OPAQUE_FROM: Final = 128  # levels of alpha; half of a pixel on a soft edge
-_LONGEST: Final = 65_535  # hundredths of a second of a frame
-_CLEAR: Final = 255  # the palette's index of the transparent pixels
+_LONGEST: Final = 65_535  # largest duration of a frame, in hundredths of a second
+_CLEAR: Final = 255  # palette index of the transparent pixels
 _DESCRIPTOR, _EXTENSION = 0x2C, 0x21
 _CLEARED_AFTERWARDS, _HAS_CLEAR = 2 << 2, 1
 _PALETTE_OF_256: Final = 0x80 | 7
@@ -25,9 +25,9 @@ _PALETTE_OF_256: Final = 0x80 | 7
 class GifWriter(FrameWriter):
     """Writes an animated GIF file frame by frame.
 
-    GIF knows no soft edges: a pixel is opaque, in its own colour, where its alpha is at least
-    `OPAQUE_FROM`, and transparent elsewhere. Each frame has the 255 colours that suit it best,
-    without dithering, whose grain would crawl.
+    GIF has no soft edges. A pixel is opaque, in its own colour, from alpha `OPAQUE_FROM` on, and
+    transparent below. Each frame has its own best 255 colours. Dithering is off, because its grain
+    would crawl.
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
@@ -41,13 +41,13 @@ class GifWriter(FrameWriter):
             )
 
     def encode(self, frame: Bytes) -> bytes:
-        """Return the palette and the compressed pixels of the frame, as a GIF holds them."""
+        """Return the palette and the compressed pixels of the frame in GIF's encoding."""
         stream = io.BytesIO()
         _indexed(frame).save(stream, "GIF", optimize=False, interlace=False)
         return _palette_and_pixels(stream.getvalue())
 
     def add(self, encoded: bytes) -> None:
-        """Write a frame with its duration and place."""
+        """Write a frame with its duration and offset."""
         lasts = min(frame_duration(self._count, self._plan.fps, per_second=100), _LONGEST)
         self._count += 1
         flags = _CLEARED_AFTERWARDS | _HAS_CLEAR
@@ -57,17 +57,16 @@ class GifWriter(FrameWriter):
         self._file.write(encoded)
 
     def finish(self) -> None:
-        """Write the closing byte."""
         self._file.write(b"\x3b")
 
 
 def _indexed(frame: Bytes) -> Image.Image:
-    """Return the frame in 255 colours and the transparent one."""
+    """Return the frame in 255 colours and a transparent one."""
     opaque = frame[..., 3] >= OPAQUE_FROM
     colours = frame[..., :3][opaque]
     if not len(colours):
         colours = np.zeros((1, 3), dtype=np.uint8)
-    # The colours of transparent pixels must not use up the palette.
+    # Exclude transparent pixels: their colours must not use up the palette.
     strip = Image.fromarray(colours[None]).quantize(_CLEAR, Image.Quantize.MEDIANCUT)
     palette = (strip.getpalette() or [])[: 3 * _CLEAR]
     indices = np.full(opaque.shape, _CLEAR, dtype=np.uint8)
@@ -88,7 +87,7 @@ def _palette_and_pixels(gif: bytes) -> bytes:
 
 
 def _after_blocks(gif: bytes, start: int) -> int:
-    """Return where the run of blocks that begins at `start` ends; each tells its length first."""
+    """Return the end of the run of blocks that begins at `start`; each begins with its length."""
     while gif[start]:
         start += 1 + gif[start]
     return start + 1

@@ -17,19 +17,19 @@ from app.export.writers.png import encode_png
 from app.storage import strict_json
 from engine.arrays import Complexes, Floats
 
-PIXELS_PER_METRE: Final = 100  # as engines take sprites
-_LAYER: Final = 0.01  # metres from a layer to the one in front of it
+PIXELS_PER_METRE: Final = 100  # the usual scale of sprites in game engines
+_LAYER: Final = 0.01  # metres between two adjacent layers
 _UNLIT: Final = "KHR_materials_unlit"
-# As glTF numbers them.
+# Component types of glTF.
 _UINT16, _UINT32, _FLOAT = 5123, 5125, 5126
 _VERTICES, _INDICES = 34962, 34963
 _LINEAR, _LINEAR_MIPMAPS, _CLAMP = 9729, 9987, 33071
-_MOST_UINT16: Final = 65_534  # the last number ends strips
+_MOST_UINT16: Final = 65_534  # the largest number ends strips
 _COMPONENTS: Final = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
 def build_glb(scene: MorphScene, plan: ExportPlan) -> bytes:
-    """Return a glTF file of layers, the one behind all others first."""
+    """Return a glTF file of layers, back to front."""
     asset = _Asset(plan)
     for shape in scene.meshes:
         asset.add(shape)
@@ -37,7 +37,7 @@ def build_glb(scene: MorphScene, plan: ExportPlan) -> bytes:
 
 
 class _Asset:
-    """A glTF file in the making: its JSON, and the one buffer that it describes."""
+    """A glTF file under construction: its JSON and its only buffer."""
 
     def __init__(self, plan: ExportPlan) -> None:
         width, _ = plan.canvas
@@ -63,7 +63,7 @@ class _Asset:
         mesh: dict[str, Any] = {"name": shape.name, "primitives": [primitive]}
         if len(targets):
             primitive["targets"] = [{"POSITION": self._places(target)} for target in targets]
-            # Where nothing plays, the drawing is as it was drawn; a still shows its pose.
+            # Viewers without animation show the drawing at rest; a single frame shows its pose.
             is_still = len(weights) == 1
             mesh["weights"] = weights[0].tolist() if is_still else [0.0] * len(targets)
             names = [f"shape {number}" for number in range(1, len(targets) + 1)]
@@ -81,12 +81,11 @@ class _Asset:
                 np.array(column, dtype=np.float64)
                 for column in zip(*shape.visibility_changes, strict=True)
             )
-            # What has no size is not seen.
+            # Scale 0 hides a layer.
             values = self._numbers(np.repeat(seen, 3), "VEC3")
             self._animate(number, "scale", moments, (values, "STEP"))
 
     def file(self) -> bytes:
-        """Return the whole file."""
         name = display_name(self._plan.out.stem)
         content: dict[str, Any] = {
             "asset": {
@@ -127,7 +126,7 @@ class _Asset:
         self._channels.append({"sampler": len(self._samplers) - 1, "target": target})
 
     def _list(self, kind: str, entry: dict[str, Any]) -> int:
-        """Add an entry to one of the lists of the file; return its number."""
+        """Add an entry to one of the lists of the file; return its index."""
         entries = self._lists.setdefault(kind, [])
         entries.append(entry)
         return len(entries) - 1
@@ -165,7 +164,7 @@ class _Asset:
 
     def _indices(self, shape: MorphMesh) -> int:
         is_small = len(shape.uv) <= _MOST_UINT16
-        # There is one order for all times.
+        # glTF has one triangle order for all times.
         _, triangles = shape.triangle_orders[0]
         indices = triangles.astype("<u2" if is_small else "<u4")
         entry = {
@@ -186,7 +185,7 @@ class _Asset:
         material = {
             "name": shape.name,
             "pbrMetallicRoughness": {
-                # A faint layer shines through itself where it lies over itself.
+                # A transparent layer shows through itself where it overlaps itself.
                 "baseColorFactor": [1.0, 1.0, 1.0, shape.opacity],
                 "baseColorTexture": {"index": texture},
                 "metallicFactor": 0.0,

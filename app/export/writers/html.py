@@ -1,4 +1,4 @@
-"""A page that plays layers by WebGL 2, with all that it needs in one file."""
+"""A self-contained page that plays layers by WebGL 2."""
 
 import base64
 import html
@@ -20,11 +20,11 @@ from app.storage import shader_source, strict_json
 from engine.arrays import Complexes, Floats
 
 _PAGE: Final = Path(__file__).with_name("player.html")
-# What GLSL leaves open in browsers and settles elsewhere.
+# Declarations that GLSL requires in browsers only.
 _HEADER: Final = (
     "#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
 )
-# The files of the renderer itself, for a drawing as it is and for one that is laid over others.
+# The renderer's own shader files, for opaque and for composited layers.
 _SHADERS: Final = (
     ("vertex", ("mesh.vert", "positions.glsl", "placed.glsl")),
     ("fragment", ("picture.frag", "sample.glsl")),
@@ -34,7 +34,7 @@ _SHADERS: Final = (
 
 
 def build_html_page(scene: MorphScene, plan: ExportPlan) -> bytes:
-    """Return a page of layers, the one behind all others first."""
+    """Return a page of layers, back to front."""
     box = find_shown_box(plan.view)
     (first, last), colour = plan.span, plan.background
     film = {
@@ -51,14 +51,14 @@ def build_html_page(scene: MorphScene, plan: ExportPlan) -> bytes:
         title=html.escape(display_name(plan.out.stem)),
         generator=f"Lissom {version('lissom')}",
         background="transparent" if colour is None else f"rgb{colour}",
-        # Nothing in it may end the element that holds it.
+        # No text may close the element around it.
         film=strict_json(film).replace("<", "\\u003c"),
     )
     return page.encode()
 
 
 def _packed(shape: MorphMesh) -> dict[str, Any]:
-    """Return a layer as the page unpacks it: numbers one after the other, and a picture."""
+    """Return a layer in the page's format: numbers one after the other, and a picture."""
     motion = shape.motion
     numbers = [
         _pairs(motion.base),
@@ -82,7 +82,7 @@ def _packed(shape: MorphMesh) -> dict[str, Any]:
 
 
 def _parts(parts: Sequence[int | CompositeGroup[int]]) -> list[Any]:
-    """Return how layers are composited: their numbers, and objects of such."""
+    """Return the compositing tree: layer indices and nested objects."""
     return [
         part
         if isinstance(part, int)

@@ -16,22 +16,22 @@ from app.storage import Cancellation, write_atomically
 from engine.arrays import Bytes
 
 SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
-# Nothing but runs of one byte. In differences of rows hardly anything else repeats, and to look for
-# it takes longer and makes drawings larger, by a tenth and more.
+# Only runs of one byte. Row differences hold few other repeats; the search for them takes longer
+# and makes drawings larger by a tenth and more.
 _STRATEGY: Final = zlib_ng.Z_RLE
-_LEVEL: Final = 1  # runs are found at any level, and at this one soonest
+_LEVEL: Final = 1  # every level finds runs, this one is the fastest
 _DEPTH, _RGBA = 8, 6
-# Each row as its difference from the one above. To choose among five filters for each row takes
+# Each row as its difference from the row above. Choosing among five filters for each row takes
 # longer than all else, and makes drawings no smaller.
 _UP = 2
-_PIECE: Final = 2**20  # bytes that are compressed at a time
-# Perceptual intent, the usual one. Programs that manage colours leave a file that does not say what
-# its numbers mean as it is, whatever the screen.
+_PIECE: Final = 2**20  # bytes compressed at a time
+# Perceptual intent, the usual one. Without this chunk, colour-managed programs do not convert the
+# picture to the screen's profile.
 _PERCEPTUAL: Final = b"\0"
 
 
 def save_png(frame: Bytes, file: IO[bytes]) -> None:
-    """Write a frame, uint8 (h, w, 4), as a PNG file in the colours of sRGB."""
+    """Write a frame, uint8 (h, w, 4), as a PNG file in sRGB."""
     height, width, _ = frame.shape
     file.write(SIGNATURE)
     file.write(png_chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, _DEPTH, _RGBA, 0, 0, 0)))
@@ -53,49 +53,37 @@ def save_png(frame: Bytes, file: IO[bytes]) -> None:
 
 
 def png_chunk(kind: bytes, data: bytes) -> bytes:
-    """Return a chunk of a PNG file."""
     check = zlib_ng.crc32(data, zlib_ng.crc32(kind))
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
 
 
 def encode_png(frame: Bytes) -> bytes:
-    """Return the bytes of a PNG file with a frame, uint8 (h, w, 4)."""
+    """Return a PNG file of a frame, uint8 (h, w, 4)."""
     stream = io.BytesIO()
     save_png(frame, stream)
     return stream.getvalue()
 
 
 class PngFrames(FrameWriter):
-    """The base of those whose frames are PNG files."""
+    """Base of the writers whose frames are PNG files."""
 
     def encode(self, frame: Bytes) -> bytes:
-        """Return the frame's file."""
         return encode_png(frame)
 
 
 class PngSequence(PngFrames):
-    """Writes each frame to a file of its own, as soon as it is drawn.
-
-    Parameters
-    ----------
-    plan : ExportPlan
-        Its folder exists.
-    cancellation : Cancellation
-        By which no more of them take their places.
-    """
+    """Writes each frame to a file of its own, as soon as it is drawn; the folder must exist."""
 
     def __init__(self, plan: ExportPlan, cancellation: Cancellation) -> None:
         self._paths = iter([plan.out / name for name in plan.names])
         self._cancellation = cancellation
 
     def add(self, encoded: bytes) -> None:
-        """Write a frame's file."""
         write_atomically(next(self._paths), lambda file: file.write(encoded), self._cancellation)
 
 
 class PngPicture(PngFrames):
-    """Writes the one frame to a file."""
+    """Writes a single frame to a file."""
 
     def add(self, encoded: bytes) -> None:
-        """Write it."""
         self._file.write(encoded)

@@ -1,6 +1,6 @@
-"""All frames side by side in one PNG, row by row, and where each of them is in a JSON beside it.
+"""All frames in one PNG, row by row, with their positions in a JSON file beside it.
 
-The JSON is that of TexturePacker ("hash"), with the durations and tags of Aseprite:
+The JSON has TexturePacker's format ("hash"), with the durations and tags of Aseprite:
 https://www.aseprite.org/docs/cli/#sheet
 """
 
@@ -18,12 +18,12 @@ from app.export.writers.png import save_png
 from app.storage import strict_json
 from engine.arrays import Bytes
 
-LARGEST: Final = 16_384  # pixels each way: what graphics cards hold, and a gigabyte at most
-_WIDTHS: Final = np.geomspace(0.7, 2.5, 24)  # of the side of a square of the frames' area
+LARGEST: Final = 16_384  # pixels each way: limit of graphics cards; at most a gigabyte
+_WIDTHS: Final = np.geomspace(0.7, 2.5, 24)  # shares of the side of a square of the frames' area
 
 
 class _Cell(NamedTuple):
-    """What is kept of a frame, and the place of its upper left corner in the frame."""
+    """The visible part of a frame, and its upper left corner in the frame."""
 
     pixels: Bytes
     left: int
@@ -35,24 +35,16 @@ class _Cell(NamedTuple):
 
 
 class _SheetLayout(NamedTuple):
-    """The size of a sheet, and the upper left corners of what lies on it."""
+    """The size of a sheet, and the upper left corners of its cells."""
 
     size: tuple[int, int]
     corners: tuple[tuple[int, int], ...]
 
 
 class SpritesheetWriter(FrameWriter):
-    """Collects the frames, and writes the sheet and its data in the end.
+    """Collects the frames; writes the sheet and its data at the end.
 
-    Parameters
-    ----------
-    file, data : binary file
-        For the PNG and for the JSON.
-
-    Raises
-    ------
-    LissomError
-        If the sheet would be too large.
+    Raises `LissomError` if the sheet would be too large.
     """
 
     def __init__(self, file: IO[bytes], data: IO[bytes], plan: ExportPlan) -> None:
@@ -63,17 +55,15 @@ class SpritesheetWriter(FrameWriter):
         self._cells: list[_Cell] = []
 
     def encode(self, frame: Bytes) -> _Cell:
-        """Return what is seen of the frame."""
+        """Return the visible part of the frame."""
         return _trimmed(frame) if self._plan.sheet.trimmed else _Cell(frame, 0, 0)
 
     def add(self, encoded: _Cell) -> None:
-        """Keep it."""
         self._cells.append(encoded)
         if sum(cell.pixels.size for cell in self._cells) > 4 * LARGEST**2:
             raise _too_large(self._plan)
 
     def finish(self) -> None:
-        """Write the sheet and its data."""
         plan, layout, cells = self._plan, self._plan.sheet, self._cells
         if layout.trimmed:
             kept, places = _different(cells)
@@ -94,12 +84,9 @@ class SpritesheetWriter(FrameWriter):
 
 
 def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
-    """Return the columns and rows of a sheet of equal cells that is nearly a square.
+    """Return the columns and rows of a nearly square sheet of equal cells.
 
-    Raises
-    ------
-    LissomError
-        If it would be too large.
+    Raises `LissomError` if the sheet would be too large.
     """
     count, padding = len(plan.times), plan.sheet.padding
     width, height = (side + padding for side in plan.view.size)
@@ -109,7 +96,7 @@ def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
     rows = math.ceil(count / columns)
     if max(columns * width, rows * height) > room:
         raise _too_large(plan)
-    return math.ceil(count / rows), rows  # without columns that stay empty
+    return math.ceil(count / rows), rows  # no empty columns
 
 
 def _too_large(plan: ExportPlan) -> LissomError:
@@ -121,7 +108,7 @@ def _too_large(plan: ExportPlan) -> LissomError:
 
 
 def _trimmed(frame: Bytes) -> _Cell:
-    """Return what is seen of a frame; one pixel where nothing is."""
+    """Return the visible part of a frame; one pixel if nothing is visible."""
     seen = frame[..., 3] > 0
     if not seen.any():
         return _Cell(frame[:1, :1].copy(), 0, 0)
@@ -131,7 +118,7 @@ def _trimmed(frame: Bytes) -> _Cell:
 
 
 def _different(cells: Sequence[_Cell]) -> tuple[list[_Cell], list[int]]:
-    """Return the cells without repeats, and which of them stands for each."""
+    """Return the distinct cells, and the index of each frame's cell."""
     numbers: dict[tuple[tuple[int, int], bytes], int] = {}
     kept: list[_Cell] = []
     places = []
@@ -144,7 +131,7 @@ def _different(cells: Sequence[_Cell]) -> tuple[list[_Cell], list[int]]:
 
 
 def _packed(sizes: Sequence[tuple[int, int]], plan: ExportPlan) -> _SheetLayout:
-    """Return the smallest of some sheets of rows."""
+    """Return the smallest of several layouts in rows."""
     padding = plan.sheet.padding
     widest = max(width for width, _ in sizes) + 2 * padding
     if plan.sheet.power_of_two:
@@ -160,7 +147,7 @@ def _packed(sizes: Sequence[tuple[int, int]], plan: ExportPlan) -> _SheetLayout:
 
 
 def _rows(sizes: Sequence[tuple[int, int]], most: int, plan: ExportPlan) -> _SheetLayout:
-    """Lay cells side by side in rows of at most so many pixels, in their order."""
+    """Place cells in order in rows of at most `most` pixels."""
     padding = plan.sheet.padding
     left = top = padding
     row_height = right = 0

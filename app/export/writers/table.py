@@ -1,4 +1,4 @@
-"""The writer of each format: one entry of a table each."""
+"""The table of each format's writer."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
@@ -25,8 +25,8 @@ def _video(file: IO[bytes], plan: ExportPlan) -> FrameWriter:
     return VideoWriter(file, plan)
 
 
-# By the names of `EXPORT_FORMATS`: those of frames in a folder, those of frames in one file, and
-# those of shapes, which return the contents of their file.
+# By the names of `EXPORT_FORMATS`: formats of a folder of frames, formats of one file of frames,
+# and mesh formats, whose functions return the contents of their file.
 FOLDER_WRITERS: Final[Mapping[str, Callable[[ExportPlan, Cancellation], FrameWriter]]] = (
     MappingProxyType({"png": PngSequence})
 )
@@ -43,7 +43,7 @@ FILE_WRITERS: Final[Mapping[str, Callable[[IO[bytes], ExportPlan], FrameWriter]]
         }
     )
 )
-# Those of frames in one file with another one of data beside it.
+# Formats of one file of frames with a data file beside it.
 DATA_WRITERS: Final[Mapping[str, Callable[[IO[bytes], IO[bytes], ExportPlan], FrameWriter]]] = (
     MappingProxyType({"spritesheet": SpritesheetWriter})
 )
@@ -54,14 +54,12 @@ SHAPE_WRITERS: Final[Mapping[str, Callable[[MorphScene, ExportPlan], bytes]]] = 
 
 @contextmanager
 def open_writer(plan: ExportPlan, cancellation: Cancellation) -> Iterator[FrameWriter]:
-    """Lend the writer of a plan's format for as long as a `with` block lasts.
+    """Yield the writer of a plan's format for the duration of the `with` block.
 
-    A file takes its place when the block ends, and is absent if that is with an error.
+    The file takes its place at the end of the block; after an error there is no file.
 
-    Raises
-    ------
-    LissomError
-        If the folder or the file cannot be made, or the format cannot hold such frames.
+    Raises `LissomError` if the folder or the file cannot be made, or the format cannot hold such
+    frames.
     """
     if plan.format in FOLDER_WRITERS:
         make_folder(plan.out)

@@ -1,4 +1,4 @@
-"""Video, by way of PyAV, which is an extra: this module is loaded only for it."""
+"""Video, encoded by PyAV. PyAV is an extra: this module is loaded only for a video."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,20 +16,12 @@ from app.export.writers.frame_writer import FrameWriter
 from app.export_formats import EXPORT_FORMATS
 from engine.arrays import Bytes
 
-_BT709: Final = 1  # as FFmpeg numbers colour spaces, primaries and transfer curves
+_BT709: Final = 1  # FFmpeg's number of the colour space, primaries and transfer curve
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Codec:
-    """How a format is encoded, in FFmpeg's words.
-
-    Parameters
-    ----------
-    container, name : str
-    opaque, transparent : str
-        The formats of pixels; the latter is empty where there is no alpha.
-    options : mapping of str to str
-    """
+    """FFmpeg's settings of a format; `transparent` is empty if the format has no alpha."""
 
     container: str
     name: str
@@ -46,8 +38,7 @@ _CODECS: Final[Mapping[str, _Codec]] = MappingProxyType(
             opaque="yuv420p",
             transparent="",
             # Nearly lossless to the eye; a short look-ahead bounds the memory. Without the last
-            # option one file in three hundred came out with a byte more or less, though with the
-            # same pictures.
+            # option one file in three hundred was a byte longer or shorter, with the same pictures.
             options={"crf": "15", "rc-lookahead": "10", "x264-params": "cpu-independent=1"},
         ),
         "webm": _Codec(
@@ -55,7 +46,7 @@ _CODECS: Final[Mapping[str, _Codec]] = MappingProxyType(
             name="libvpx-vp9",
             opaque="yuv420p",
             transparent="yuva420p",
-            # As good as the above; without the third the codec is ten times slower.
+            # The same quality; without `cpu-used` the codec is ten times slower.
             options={"crf": "12", "b": "0", "cpu-used": "4", "lag-in-frames": "10"},
         ),
         "mov": _Codec(
@@ -70,12 +61,7 @@ _CODECS: Final[Mapping[str, _Codec]] = MappingProxyType(
 
 
 class _Sink:
-    """A file for PyAV, which drops some errors of what it calls, and takes others for its own.
-
-    Parameters
-    ----------
-    file : binary file
-    """
+    """A file for PyAV that keeps its errors: PyAV drops or replaces errors of its callbacks."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
@@ -83,7 +69,7 @@ class _Sink:
         self.tell = file.tell
 
     def write(self, data: bytes) -> int:
-        """Write something; where that fails, `check` tells it."""
+        """Write data; `check` raises the error of a failure."""
         try:
             return self._file.write(data)
         except OSError as error:
@@ -91,7 +77,7 @@ class _Sink:
             return len(data)
 
     def seek(self, offset: int, whence: int = 0) -> int:
-        """Go elsewhere, before which all is written that was to be."""
+        """Move to a position, after all buffered data is written."""
         try:
             return self._file.seek(offset, whence)
         except OSError as error:
@@ -99,7 +85,7 @@ class _Sink:
             return offset
 
     def check(self) -> None:
-        """Raise the error that writing ended with, if it did."""
+        """Raise the error of an earlier write, if any."""
         if self._error is not None:
             raise self._error
 
@@ -107,13 +93,10 @@ class _Sink:
 class VideoWriter(FrameWriter):
     """Writes a video frame by frame.
 
-    A side that is odd gets one more row or column of the background in MP4, since H.264 keeps
-    colours in blocks of 2 × 2 pixels.
+    In MP4 an odd side gets one more row or column of the background: H.264 stores colours in blocks
+    of 2 × 2 pixels.
 
-    Raises
-    ------
-    LissomError
-        If the codec is not there, or does not take frames of this size.
+    Raises `LissomError` if the codec is missing, or does not take frames of this size.
     """
 
     def __init__(self, file: IO[bytes], plan: ExportPlan) -> None:
@@ -133,8 +116,8 @@ class VideoWriter(FrameWriter):
             self._stream.width, self._stream.height = self._size
             self._stream.pix_fmt = self._pixels
             context = self._stream.codec_context
-            # What players take a video for that says nothing; this one says so, too. (Its frames
-            # tell their range themselves.)
+            # Players assume this for an unmarked video; the file states it. (The frames state their
+            # range themselves.)
             context.colorspace = context.color_primaries = context.color_trc = _BT709
             self._container.start_encoding()
         except (av.FFmpegError, ValueError) as error:
@@ -143,7 +126,7 @@ class VideoWriter(FrameWriter):
             ) from error
 
     def encode(self, frame: Bytes) -> Bytes:
-        """Return the frame's pixels, of four bytes where they are transparent, else of three."""
+        """Return the frame's pixels: four bytes with transparency, otherwise three."""
         if self._plan.background is None:
             return bleed_edges(frame)
         height, width, _ = frame.shape
@@ -152,10 +135,9 @@ class VideoWriter(FrameWriter):
         return even
 
     def add(self, encoded: Bytes) -> None:
-        """Compress a frame."""
         kind = "rgba" if self._plan.background is None else "rgb24"
-        # With one thread: of two, the upper one overwrites the beginning of the lower one's first
-        # row where the width is odd, and now and then does so last.
+        # With one thread: with two, the upper one overwrites the beginning of the lower one's first
+        # row if the width is odd, and sometimes does so last.
         frame = av.VideoFrame.from_ndarray(encoded, format=kind).reformat(
             format=self._pixels, dst_colorspace="ITU709", dst_color_range="MPEG", threads=1
         )
@@ -171,5 +153,5 @@ class VideoWriter(FrameWriter):
         self._sink.check()
 
     def close(self) -> None:
-        """Let the encoder go; it must not outlive its file."""
+        """Close the encoder, which must not outlive its file."""
         self._container.close()

@@ -15,9 +15,9 @@ from app.export.writers.frame_writer import FrameWriter, frame_duration
 from engine.arrays import Bytes
 
 _ANIMATED, _ALPHA = 0x02, 0x10
-# Every frame replaces all of the one before it, transparent parts included.
+# Every frame replaces the previous frame, also its transparent parts.
 _NO_BLENDING: Final = 0x02
-_LONGEST: Final = 2**24 - 1  # milliseconds of a frame
+_LONGEST: Final = 2**24 - 1  # largest duration of a frame, in milliseconds
 # A third smaller than the fastest setting, in a quarter of the time of the default.
 _METHOD, _EFFORT = 1, 20
 
@@ -29,10 +29,10 @@ class WebpWriter(FrameWriter):
         super().__init__(file, plan)
         self._size = plan.view.size
         self._count = 0
-        file.write(b"RIFF\0\0\0\0WEBP")  # the length is written in the end
+        file.write(b"RIFF\0\0\0\0WEBP")  # the length is written at the end
         extended = struct.pack("<B3x", _ANIMATED | _ALPHA)
         self._write(b"VP8X", extended + b"".join(_int24(side - 1) for side in self._size))
-        transparent, plays = 0, 0 if plan.loop else 1  # 0 goes on for ever
+        transparent, plays = 0, 0 if plan.loop else 1  # 0 loops forever
         self._write(b"ANIM", struct.pack("<IH", transparent, plays))
 
     def encode(self, frame: Bytes) -> bytes:
@@ -42,7 +42,7 @@ class WebpWriter(FrameWriter):
         return stream.getvalue()
 
     def add(self, encoded: bytes) -> None:
-        """Take the picture data out of a WebP file and into the animation."""
+        """Copy the picture data of a WebP file into the animation."""
         lasts = min(frame_duration(self._count, self._plan.fps, per_second=1000), _LONGEST)
         self._count += 1
         numbers = (0, 0, *(side - 1 for side in self._size), lasts)
@@ -56,7 +56,7 @@ class WebpWriter(FrameWriter):
         )
 
     def finish(self) -> None:
-        """Write how long the file became."""
+        """Write the length of the file."""
         length = self._file.tell() - 8
         self._file.seek(4)
         self._file.write(struct.pack("<I", length))

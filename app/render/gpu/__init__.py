@@ -1,4 +1,4 @@
-"""What lies on the graphics card: contexts, programs, textures, buffers.
+"""Objects on the graphics card: contexts, programs, textures, buffers.
 
 In: arrays of pixels and vertices.
 Out: textures, vertex buffers and targets, released by their owners.

@@ -1,4 +1,4 @@
-"""OpenGL contexts without a window, and what of them works on this machine."""
+"""OpenGL contexts without a window, and their support on this machine."""
 
 import ctypes
 import subprocess
@@ -15,7 +15,7 @@ from app.errors import LissomError
 if sys.platform != "win32":
     import resource
 
-# What others need to name; only this package imports ModernGL.
+# Exported, because only this package imports ModernGL.
 Context = moderngl.Context
 GlError = moderngl.Error
 
@@ -25,9 +25,9 @@ AUTOMATIC: Final[tuple[Backend, ...]] = (
     ("native",) if sys.platform in {"win32", "darwin"} else ("egl", "osmesa")
 )
 LIBGL: Final = "libGL.so.1"
-# Bytes of addresses. With less, software OpenGL ends the process in the midst of its work.
+# Bytes of address space. With less, software OpenGL ends the process in the midst of its work.
 LEAST_MEMORY: Final = 1_500_000_000
-OPENGL: Final = 330  # the version that every shader is written for
+OPENGL: Final = 330  # the version of every shader
 REMEDIES: Final[dict[Backend, str]] = {
     "egl": "install EGL: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
     "osmesa": "install OSMesa, where Mesa still has it: sudo apt install libosmesa6",
@@ -37,11 +37,11 @@ REMEDIES: Final[dict[Backend, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackendReport:
-    """What one way of drawing without a window offers on this machine."""
+    """Support of one offscreen backend on this machine."""
 
     backend: Backend
-    # Why it does not work and what to install; empty where it works, as are the fields below where
-    # it does not.
+    # The failure and the package to install; empty if the backend works. After a failure the fields
+    # below are empty.
     problem: str = ""
     # GL_RENDERER and GL_VERSION.
     renderer: str = ""
@@ -55,12 +55,12 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
     Parameters
     ----------
     backend : Backend, optional
-        The only one to try; by default the first that works of EGL and OSMesa.
+        The only backend to try; by default the first working one of EGL and OSMesa.
 
     Raises
     ------
     LissomError
-        If none works; the message says what to install.
+        If no backend works. The message names the package to install.
     """
     _require_memory()
     wanted = (backend,) if backend else AUTOMATIC
@@ -74,12 +74,10 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
 
 
 def window_context() -> moderngl.Context:
-    """Return the OpenGL context of the window that is current.
+    """Return the OpenGL context of the current window.
 
-    Raises
-    ------
-    LissomError
-        If it cannot draw what Lissom draws; the message says what to install.
+    Raises `LissomError` if the context lacks required features. The message names the package to
+    install.
     """
     _require_memory()
     try:
@@ -97,18 +95,18 @@ def _require_memory() -> None:
 
 
 def is_software(context: moderngl.Context) -> bool:
-    """Tell whether the processor draws, because there is no graphics card or no driver for it."""
+    """Return whether the processor draws, because there is no graphics card or no driver."""
     renderer = context.info["GL_RENDERER"].lower()
     return any(name in renderer for name in ("llvmpipe", "softpipe", "swiftshader", "swr"))
 
 
 def describe_graphics(context: moderngl.Context) -> str:
-    """Return what draws, by its own name, and the version of OpenGL."""
+    """Return the renderer's own name, and the version of OpenGL."""
     return f"{context.info['GL_RENDERER']}, OpenGL {context.info['GL_VERSION']}"
 
 
 def finish_drawing(context: moderngl.Context) -> None:
-    """Wait until everything is drawn in the current context, while other threads go on.
+    """Wait until the current context has drawn everything, while other threads run.
 
     ModernGL itself waits with Python's lock held.
     """
@@ -118,7 +116,7 @@ def finish_drawing(context: moderngl.Context) -> None:
 
 
 def probe_backend(backend: Backend) -> BackendReport:
-    """Find out what a backend offers by making a context and letting it go again."""
+    """Test a backend by creating and releasing a context."""
     try:
         context = _create(backend)
     except LissomError as error:
@@ -135,7 +133,7 @@ def probe_backend(backend: Backend) -> BackendReport:
 
 
 def largest_size(context: moderngl.Context) -> int:
-    """Return the longest side, in pixels, of a texture or frame that the context can hold."""
+    """Return the largest side, in pixels, of a texture or frame in the context."""
     info = context.info
     return int(
         min(
@@ -159,7 +157,7 @@ def _create(backend: Backend) -> moderngl.Context:
         raise LissomError(f"{backend}: {error} ({REMEDIES[backend]})") from error
 
 
-# Makes a context of a library with attributes, and nothing else.
+# Only creates a context of a library with attributes.
 _TRIAL: Final = """
 import ctypes, sys
 library, *pairs = sys.argv[1:]
@@ -171,9 +169,9 @@ make((ctypes.c_int * (len(pairs) + 1))(*map(int, pairs), 0), None)
 
 @cache
 def _survives(library: str, pairs: tuple[int, ...]) -> bool:
-    """Tell whether OSMesa lives on when it makes a context: without a driver it crashes in it.
+    """Return whether OSMesa can create a context; without a driver it crashes.
 
-    Another process tries, since that would be the end of this one.
+    The attempt runs in another process, because a crash would end this one.
     """
     command = [sys.executable, "-I", "-S", "-c", _TRIAL, library, *map(str, pairs)]
     done = subprocess.run(command, capture_output=True, check=False)  # noqa: S603 - Python itself
@@ -181,7 +179,7 @@ def _survives(library: str, pairs: tuple[int, ...]) -> bool:
 
 
 class _OSMesa:
-    """Mesa's off-screen context, in the form in which moderngl takes a context of our own."""
+    """Mesa's offscreen context with the interface that moderngl requires of custom contexts."""
 
     _NAMES = ("libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.8.dylib", "osmesa.dll")
     _FORMAT, _RGBA = 0x22, 0x1908
@@ -204,7 +202,7 @@ class _OSMesa:
         self._context = self._library.OSMesaCreateContextAttribs(attributes, None)
         if not self._context:
             raise LissomError("no context with OpenGL 3.3")
-        # Everything is drawn to framebuffers of our own; OSMesa insists on one pixel of its own.
+        # All drawing goes to our own framebuffers, but OSMesa requires a buffer of one pixel.
         self._pixel = (ctypes.c_ubyte * 4)()
         if not self._make_current():
             raise LissomError("its context cannot be made current")
@@ -231,7 +229,7 @@ class _OSMesa:
         raise LissomError(f"{self._NAMES[0]} not loaded")
 
     def load_opengl_function(self, name: str) -> int:
-        """Return the address of an OpenGL function, 0 where there is none."""
+        """Return the address of an OpenGL function, or 0."""
         return self._library.OSMesaGetProcAddress(name.encode()) or 0
 
     load = load_opengl_function
@@ -243,7 +241,7 @@ class _OSMesa:
         pass
 
     def release(self) -> None:
-        """Let the context go; nothing of it may be used any more."""
+        """Destroy the context; none of its objects may be used any more."""
         if self._context:
             self._library.OSMesaMakeCurrent(None, None, 0, 0, 0)
             self._library.OSMesaDestroyContext(self._context)

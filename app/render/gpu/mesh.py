@@ -1,4 +1,4 @@
-"""The drawing's mesh in vertex buffers, and its poses."""
+"""The mesh of a drawing in vertex buffers, and its poses."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,12 +17,12 @@ Attribute = tuple[moderngl.Buffer, str, str]
 
 
 def to_float32_points(points: Complexes) -> Singles:
-    """Return points (v,) as the float32 (v, 2) that are uploaded."""
+    """Return points (v,) as float32 (v, 2) for the upload."""
     return points.astype(np.complex64).view(np.float32).reshape(-1, 2)
 
 
 def border_edges(triangles: Integers) -> Integers:
-    """Return the edges (e, 2) that only one triangle has, the triangle on their left."""
+    """Return the edges (e, 2) of only one triangle, the triangle on their left."""
     edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)]).astype(np.int64)
     keys = edges.min(axis=1) << 32 | edges.max(axis=1)
     _, first, count = np.unique(keys, return_index=True, return_counts=True)
@@ -31,16 +31,16 @@ def border_edges(triangles: Integers) -> Integers:
 
 
 class VertexSource:
-    """Owner of the buffer that vertices come from; the base of both kinds.
+    """Owner of the buffer of vertices; base of both kinds of sources.
 
     Parameters
     ----------
     shader : str
         The file in shaders/ that defines `vec2 vertex_position()`.
     attribute : Attribute
-        What feeds it, one entry a vertex.
+        The shader's input, one entry per vertex.
     constants : tuple of (name, value)
-        What it is compiled with.
+        Constants of the compiled shader.
     """
 
     def __init__(
@@ -53,16 +53,15 @@ class VertexSource:
 
     @property
     def uniforms(self) -> Mapping[str, object]:
-        """What the shader is drawn with in this frame."""
+        """The shader's uniforms in this frame."""
         return {}
 
     def release(self) -> None:
-        """Let the buffer go."""
         self._buffer.release()
 
 
 class PositionBuffer(VertexSource):
-    """Owner of positions, of `count` vertices, that the program writes anew for every frame."""
+    """Owner of the positions of `count` vertices, written anew for every frame."""
 
     def __init__(self, context: moderngl.Context, count: int) -> None:
         buffer = context.buffer(reserve=8 * count, dynamic=True)
@@ -72,33 +71,30 @@ class PositionBuffer(VertexSource):
     def write(self, positions: Singles) -> None:
         """Upload the positions, float32 (v, 2), of a frame.
 
-        Raises
-        ------
-        LissomError
-            If the shape is another mesh's or a position is not finite: such a frame would come
-            out empty without a word.
+        Raises `LissomError` if the shape does not fit the mesh or a position is not finite. Such a
+        frame would be empty without an error.
         """
         if positions.shape != self._shape:
             raise LissomError(f"a frame needs {self._shape} positions, not {positions.shape}")
-        # One infinite or undefined entry makes the sum so; this is far cheaper than a look at each.
+        # Any infinite or undefined entry makes the sum so; far cheaper than testing each entry.
         if not np.isfinite(positions.sum()):
             raise LissomError("the frame has vertices that are not finite; it cannot be drawn")
         self._buffer.write(np.ascontiguousarray(positions, dtype=np.float32).data)
 
 
 class GpuMesh:
-    """Owner of what all poses of a drawing share: its places in the picture, and its border.
+    """Owner of the data shared by all poses of a drawing: texture coordinates and border.
 
     Parameters
     ----------
     picture : GpuPicture
-        What is painted on the triangles; released by its owner, after the mesh.
+        Texture of the triangles; released by its owner, after the mesh.
     rest : complex128, shape (v,)
-        The undeformed vertices in pixels of the picture, y up from its lower left corner.
+        Undeformed vertices in pixels of the picture, y up from its lower left corner.
     triangles : int32, shape (m, 3)
-        In the order in which a pose paints them as long as it is told no other.
+        In the default painting order of a pose.
     seam : ClosedCuts, optional
-        How slits are closed.
+        How cuts are closed.
     """
 
     def __init__(
@@ -132,21 +128,15 @@ class GpuMesh:
         return self._border
 
     def release(self) -> None:
-        """Let the buffers go."""
         self.uv.release()
         if self._border is not None:
             self._border.release()
 
 
 class PosedMesh:
-    """A mesh with a vertex source, ready to be drawn; owner of the source and of its draw order.
+    """A mesh with a vertex source, ready to draw; owner of the source and of its draw order.
 
-    Parameters
-    ----------
-    mesh : GpuMesh
-        Released after its poses.
-    source : VertexSource
-        For as many vertices as the mesh has.
+    The mesh must be released after its poses. The source must have the mesh's number of vertices.
     """
 
     def __init__(self, mesh: GpuMesh, source: VertexSource) -> None:
@@ -160,7 +150,7 @@ class PosedMesh:
         self._bindings: dict[ShaderFiles, moderngl.VertexArray] = {}
 
     def write_heat(self, values: Singles) -> None:
-        """Upload the quantity (v,) that a heat map shows."""
+        """Upload the quantity (v,) of the heat map."""
         if values.shape != (self._mesh.count,):
             raise LissomError(f"a heat map needs {self._mesh.count} values, not {values.shape}")
         if self._heat is None:
@@ -168,12 +158,9 @@ class PosedMesh:
         self._heat.write(np.ascontiguousarray(values, dtype=np.float32).data)
 
     def paint_in_order(self, triangles: Integers) -> None:
-        """Paint these triangles in this order: where they overlap, the last is seen.
+        """Paint these triangles (k, 3) in this order: the last overlapping triangle is visible.
 
-        Parameters
-        ----------
-        triangles : int32, shape (k, 3)
-            Of the mesh's vertices, and no more than the mesh has.
+        There may be at most as many as the mesh has.
         """
         if triangles is self._triangles:
             return
@@ -215,14 +202,14 @@ class PosedMesh:
         available = [self._source.attribute, (self._mesh.uv, "2f", "uv")]
         if self._heat is not None:
             available.append((self._heat, "1f", "heat"))
-        # A compiler drops the attributes that come to nothing in a program.
+        # A compiler drops unused attributes of a program.
         content = [attribute for attribute in available if attribute[2] in program]
         return self._mesh.programs.context.vertex_array(
             program, content, index_buffer=indices, index_element_size=4
         )
 
     def release(self) -> None:
-        """Let the bindings and the buffers go, the source's too."""
+        """Release the bindings and the buffers, also the source's."""
         for binding in self._bindings.values():
             binding.release()
         self._bindings.clear()

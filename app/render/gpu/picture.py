@@ -12,11 +12,11 @@ from app.errors import LissomError
 from app.render.gpu.context import largest_size
 from engine.arrays import Bytes
 
-# Colour times alpha for each pair [alpha, colour] of bytes. Half floats keep 11 bits of a value
-# whatever its size, so that even the faintest pixel's colour survives the product and its undoing.
+# Colour times alpha for each pair [alpha, colour] of bytes. Half floats keep 11 bits of a value at
+# any size. The faintest pixel's colour survives the multiplication and its inverse.
 _LEVELS = np.arange(256) / 255
 _PRODUCTS: Final = np.outer(_LEVELS, _LEVELS).astype(np.float16).ravel()
-# Bytes do for a screen, which has no more levels.
+# Bytes suffice for a screen, which has no more levels.
 _BYTES: Final = np.rint(255 * np.outer(_LEVELS, _LEVELS)).astype(np.uint8).ravel()
 _BLOCK = 1 << 20  # pixels premultiplied at a time
 
@@ -26,11 +26,10 @@ class GpuPicture:
 
     Parameters
     ----------
-    context : moderngl.Context
     straight : uint8, shape (h, w, 4)
         Straight alpha, first row on top.
     is_for_screen : bool
-        Whether its pixels need not come back from a frame as they are: that takes half the memory.
+        Whether frames need not reproduce its pixels exactly. This halves the memory.
 
     Raises
     ------
@@ -59,7 +58,7 @@ class GpuPicture:
         )
 
     def write(self, straight: Bytes) -> None:
-        """Upload another picture of the same size; only rows that differ are."""
+        """Upload another picture of the same size; unchanged rows are skipped."""
         if straight is self._written:
             return
         height, width, _ = straight.shape
@@ -85,17 +84,16 @@ class GpuPicture:
         try:
             yield
         finally:
-            # Left bound, it would overrule the settings of the unit's next texture.
+            # A bound sampler would override the settings of the unit's next texture.
             self._sampler.clear(unit)
 
     def release(self) -> None:
-        """Let the texture go."""
         self._sampler.release()
         self._texture.release()
 
 
 def _index(straight: Bytes) -> npt.NDArray[np.uint16]:
-    """Return where the products of pixels (h, w, 4) stand in their tables."""
+    """Return the indices of pixels (h, w, 4) in the tables of products."""
     index = straight.astype(np.uint16)
     index[..., :3] += straight[..., 3:].astype(np.uint16) << 8
     index[..., 3] += 255 << 8

@@ -1,4 +1,4 @@
-"""The GLSL programs, put together from the files in shaders/ and compiled when first used."""
+"""The GLSL programs, joined from the files in shaders/ and compiled at first use."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ class ShaderFiles:
 
     vertex: tuple[str, ...]
     fragment: tuple[str, ...]
-    geometry: str = ""  # empty where the program has no geometry stage
-    constants: tuple[tuple[str, int], ...] = ()  # known to the vertex and the fragment stage
+    geometry: str = ""  # empty without a geometry stage
+    constants: tuple[tuple[str, int], ...] = ()  # of the vertex and the fragment stage
 
 
 class Programs:
@@ -30,7 +30,7 @@ class Programs:
         self._screens: dict[ShaderFiles, moderngl.VertexArray] = {}
 
     def get(self, files: ShaderFiles) -> moderngl.Program:
-        """Return a program, compiled when it is asked for first."""
+        """Return a program, compiled at the first request."""
         if files not in self._compiled:
             self._compiled[files] = self.context.program(
                 vertex_shader=_join(*files.vertex, constants=files.constants),
@@ -48,7 +48,6 @@ class Programs:
         self._screens[files].render(moderngl.TRIANGLES, vertices=3)
 
     def release(self) -> None:
-        """Let the programs go."""
         for screen in self._screens.values():
             screen.release()
         for program in self._compiled.values():
@@ -58,13 +57,12 @@ class Programs:
 
 
 def set_uniforms(program: moderngl.Program, values: Mapping[str, object]) -> None:
-    """Set the uniforms of a program by name."""
     for name, value in values.items():
         program[name] = value
 
 
 def _join(*names: str, constants: tuple[tuple[str, int], ...] = ()) -> str:
     definitions = "".join(f"#define {name} {value}\n" for name, value in constants)
-    # The numbers make a compiler's message name the file, counted from 0, and its line.
+    # The numbers give a compiler's message the file, counted from 0, and its line.
     texts = (f"#line 1 {number}\n{shader_source(name)}" for number, name in enumerate(names))
     return HEADER + definitions + "\n".join(texts)

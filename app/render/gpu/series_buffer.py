@@ -1,4 +1,4 @@
-"""Vertices that the graphics card places by itself, from a series in time."""
+"""Vertices that the graphics card computes from a series in time."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -11,7 +11,7 @@ from app.render.gpu.mesh import VertexSource
 from engine.domain import ClosedCuts
 from engine.streaming import Series, SeriesPiece
 
-_RESERVED: Final = 2  # attributes of a mesh that are not the series'
+_RESERVED: Final = 2  # attributes of a mesh outside the series
 SERIES_PIECE = (
     "a piece of {rows} rows and {values} values does not fit {own_rows} rows of {own_values} values"
 )
@@ -24,18 +24,17 @@ class SeriesBuffer(VertexSource):
 
     Parameters
     ----------
-    context : moderngl.Context
     count : int
         Number of vertices, v.
     rows : int
-        The most rows that a piece may have.
+        Largest number of rows of a piece.
     seam : ClosedCuts, optional
-        How slits are closed.
+        How cuts are closed.
 
     Raises
     ------
     LissomError
-        If the context has not that many attributes.
+        If the context has too few attributes.
     """
 
     def __init__(
@@ -56,7 +55,7 @@ class SeriesBuffer(VertexSource):
 
     @property
     def uniforms(self) -> Mapping[str, object]:
-        """What the shader is drawn with in this frame."""
+        """The shader's uniforms in this frame."""
         weights = [tuple(pair) for pair in self._weights.tolist()]
         return {"weights": weights if len(weights) > 1 else weights[0]}
 
@@ -65,7 +64,7 @@ class SeriesBuffer(VertexSource):
         piece, weights = series.blend(time)
         if piece is not self._piece:
             self._upload(piece)
-        # The rows beyond are 0, whatever weights are left there.
+        # The further rows are 0, so their old weights have no effect.
         self._weights.ravel()[: len(weights)] = weights
 
     def _upload(self, piece: SeriesPiece) -> None:
@@ -79,7 +78,7 @@ class SeriesBuffer(VertexSource):
                     own_values=2 * count,
                 )
             )
-        # The rows of a vertex side by side: one place in memory for each.
+        # A vertex has its rows side by side: one memory access per vertex.
         interleaved = np.zeros((count, 2 * self._pairs, 2), dtype=np.float32)
         interleaved[:, :rows] = piece.rows.reshape(rows, count, 2).transpose(1, 0, 2)
         if self._seam is not None:
@@ -89,5 +88,5 @@ class SeriesBuffer(VertexSource):
 
 
 def max_series_rows(context: moderngl.Context) -> int:
-    """Return how many rows of a series a shader of this context takes."""
+    """Return the largest number of rows in a shader of this context."""
     return 2 * (int(context.info["GL_MAX_VERTEX_ATTRIBS"]) - _RESERVED)

@@ -1,4 +1,4 @@
-"""What a frame is drawn to, and how its pixels come back."""
+"""Frames to draw into, and reading back their pixels."""
 
 import moderngl
 import numpy as np
@@ -19,8 +19,8 @@ class RenderTarget:
     size : tuple of int
         Width and height in pixels.
     oversampling : int
-        Samples of each pixel along both axes. With 1, the drawing at its own size comes out exact;
-        2 is finer where it is shown smaller.
+        Samples of each pixel along both axes. With 1, a drawing at its own size is exact; 2 is
+        finer for a reduced drawing.
 
     Raises
     ------
@@ -53,17 +53,14 @@ class RenderTarget:
     def read_straight_rgba(self, part: Rectangle | None = None) -> Bytes:
         """Return the frame, uint8 (h, w, 4), with straight alpha and its first row on top.
 
-        Parameters
-        ----------
-        part : tuple of int, optional
-            Left, top, width and height, in pixels of the frame, of what is wanted of it.
+        `part` is left, top, width and height of the requested part, in pixels of the frame.
         """
         left, top, width, height = part or (0, 0, *self.size)
         context = self._programs.context
         if self._straight is None:
             self._straight = context.framebuffer([context.renderbuffer(self.size, 4)])
         self._straight.use()
-        # Its first row is the lowest one of OpenGL.
+        # The frame's first row is OpenGL's lowest row.
         self._straight.scissor = (left, top, width, height)
         context.enable_only(moderngl.NOTHING)
         self.texture.use(0)
@@ -74,9 +71,8 @@ class RenderTarget:
         return pixels
 
     def release(self) -> None:
-        """Let the frame go."""
-        # moderngl binds again what was bound when it makes the next framebuffer, which is an error
-        # of OpenGL if that is gone by then.
+        # moderngl binds the previous framebuffer again when it makes the next one. If the previous
+        # one is released by then, this is an OpenGL error.
         self._programs.context.detect_framebuffer(0).use()
         for framebuffer in filter(None, (self.framebuffer, self._straight)):
             attachments = framebuffer.color_attachments

@@ -1,6 +1,6 @@
-"""Files on the disk, whatever is in them: read within limits, written whole, held against others.
+"""Files on the disk, whatever their contents: read within limits, written whole, locked.
 
-In: paths, and what is written to them.
+In: paths, and contents to write.
 Out: bytes, arrays and JSON; files that are whole or absent; locks that end with their process.
 Imports: nothing of the project but `app.errors`.
 """

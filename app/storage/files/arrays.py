@@ -15,10 +15,10 @@ from app.storage.files.atomic import write_atomically
 from app.storage.files.reading import DAMAGED_ZIP, MOST_UNPACKED, open_file, open_zip
 
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
-TEXT = "US"  # as NumPy tells kinds of arrays by letters
+TEXT = "US"  # NumPy's letters for kinds of arrays
 NUMERIC = "biufc"
 NO_ARRAYS = "is not an NPZ file of numeric arrays, or is damaged"
-# What NumPy raises besides on damaged files.
+# Further exceptions that NumPy raises on damaged files.
 DAMAGE = (*DAMAGED_ZIP, SyntaxError, TypeError, tokenize.TokenError)
 
 
@@ -31,18 +31,10 @@ def write_arrays(path: Path, arrays: Mapping[str, npt.ArrayLike]) -> None:
 def read_arrays(
     path: Path, *, required: tuple[str, ...], optional: tuple[str, ...] = ()
 ) -> dict[str, npt.NDArray[Any]]:
-    """Read named arrays from an NPZ file.
+    """Read the required arrays and all present optional arrays from an NPZ file.
 
-    Returns
-    -------
-    dict
-        The required arrays and those of the optional ones that the file holds.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, is not an NPZ file, is damaged, would unpack to too much, or lacks a
-        required array.
+    Raises `LissomError` if the file is missing, is not an NPZ file, is damaged, would unpack to too
+    much, or lacks a required array.
     """
     try:
         with open_file(path) as (file, size), open_zip(file) as archive:
@@ -61,7 +53,7 @@ def _members(
     required: tuple[str, ...],
     optional: tuple[str, ...],
 ) -> dict[str, zipfile.ZipInfo]:
-    """Return the members that are asked for, by the names of their arrays."""
+    """Return the requested members by the names of their arrays."""
     members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()}
     missing = [name for name in required if name not in members]
     if missing:
@@ -74,7 +66,7 @@ def _members(
 
 
 def _read_array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArray[Any]:
-    # By hand: NumPy's reader would believe any shape and allocate it.
+    # Read by hand: NumPy's reader would trust any shape and allocate memory for it.
     with archive.open(member) as stream:
         shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(stream)](stream)
         if dtype.kind in TEXT:

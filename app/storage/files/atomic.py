@@ -1,7 +1,7 @@
-"""Writing files so that the person's work is never half there.
+"""Atomic writing of files: the person's work is never half written.
 
-What is written is in a hidden file beside its place first, and locked as long as it is written: one
-that nobody holds was left by a process that was killed, and is removed by the next that comes.
+Contents first go to a hidden file beside the target. The hidden file is locked while it is written.
+A hidden file without a lock was left by a killed process; the next write in its folder removes it.
 """
 
 import errno
@@ -27,22 +27,15 @@ T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
 PRIVATE = 0o600
 PART = re.compile(r"\.lissom-[0-9a-f]{16}\.part(\.png)?")
-# What the system says where there is no room: on the disk, for this person, in one file.
+# The system's error numbers for no room: on the disk, in the person's quota, in one file.
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 NOT_ALLOWED = {errno.EACCES, errno.EPERM, errno.EROFS}
 
 
 class DiskFullError(LissomError):
-    """There is no room for a file; the message tells how much it takes and how much is free.
+    """The disk has no room for a file. The message states the needed and the free bytes.
 
-    Parameters
-    ----------
-    cause : OSError
-        What the system says.
-    needed : int
-        Bytes, as far as is known.
-    is_whole : bool
-        Whether that is all that it takes.
+    `needed` is in bytes, as far as is known; `is_whole` means that it counts the whole file.
     """
 
     def __init__(self, path: Path, cause: OSError, needed: int, *, is_whole: bool = False) -> None:
@@ -50,7 +43,7 @@ class DiskFullError(LissomError):
         more, free = "" if is_whole else " or more", ""
         with suppress(OSError):
             room = shutil.disk_usage(os.path.realpath(path.parent)).free
-            # Where it is the disk that is full, and not what this person may have of it.
+            # Only if the disk is full, and not the person's quota.
             free = f", and {_size(room)} are free there" if cause.errno == errno.ENOSPC else ""
         super().__init__(
             f"cannot write {path}: {cause.strerror}: it takes {_size(needed)}{more}{free}; make "
@@ -74,18 +67,19 @@ def write_atomically(
     Parameters
     ----------
     path : Path
-        Used exactly as given; an existing file is replaced. Of a link, that is what it points to.
+        Used exactly as given; an existing file is replaced. A link stays, and its target is
+        replaced.
     write : callable
-        Writes the contents to the open binary file that it is handed, which can be read as well.
+        Writes the contents to the given binary file, which is also readable.
     cancellation : Cancellation, optional
-        By which it can be cancelled before the file takes its place; that is a `LissomError`.
+        Cancels the write before the file takes its place, with a `LissomError`.
     is_private : bool
-        Whether nobody else may read it.
+        Whether only the person may read the file.
 
     Returns
     -------
     object
-        What `write` returns.
+        The result of `write`.
 
     Raises
     ------
@@ -108,15 +102,8 @@ def write_atomically(
 def atomic_file(path: Path, cancellation: Cancellation | None = None) -> Iterator[IO[bytes]]:
     """Open a file that takes the place of `path` when the `with` block ends without an error.
 
-    Parameters
-    ----------
-    path, cancellation
-        As in `write_atomically`.
-
-    Raises
-    ------
-    LissomError
-        As `write_atomically`; an `OSError` of the block counts as the disk's refusal.
+    Raises `LissomError` as `write_atomically`. An `OSError` in the block counts as a refusal of the
+    disk.
     """
     with atomic_files(path, cancellation=cancellation) as (file,):
         yield file
@@ -128,8 +115,8 @@ def atomic_files(
 ) -> Iterator[list[IO[bytes]]]:
     """Open files that take their places together, as `atomic_file`: all of them or none.
 
-    Whoever ends the process between leaves all but the first out, so that what is there is of one
-    time.
+    If the process ends between two replacements, only the first file exists. Files of different
+    times never mix.
     """
     check_writable(*paths)
     parts, modes, files = list[Path](), list[int | None](), list[IO[bytes]]()
@@ -138,8 +125,8 @@ def atomic_files(
         with ExitStack() as opened:
             for target in targets:
                 _clear_once(target.parent)
-                # The file that is replaced hands on its permissions. Those of a new one are the
-                # system's affair: to ask for the umask would change it for all threads.
+                # A replaced file keeps its permissions. The system decides those of a new file:
+                # reading the umask would change the umask for all threads.
                 mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else None
                 mode = PRIVATE if is_private else mode
                 part, descriptor = _new_part(target.parent, 0o666 if mode is None else PRIVATE)
@@ -158,10 +145,11 @@ def atomic_files(
                 if mode is not None:
                     part.chmod(mode)
             if sys.platform != "win32":
-                # As long as they are locked: else another process may take them for abandoned.
+                # Keep the locks until the files are in place: another process would remove unlocked
+                # files.
                 _take_places(parts, targets)
         if sys.platform == "win32":
-            # What is open cannot be moved there.
+            # Windows cannot move an open file.
             _take_places(parts, targets)
     except OSError as error:
         raise _refusal(paths[0], error, parts) from error
@@ -171,9 +159,9 @@ def atomic_files(
 
 
 def remove_abandoned_files(folder: Path) -> None:
-    """Remove the files in a folder that killed processes left half written.
+    """Remove the half-written files of killed processes from a folder.
 
-    What another process still writes stays, and so does all where the disk knows no locks.
+    Files that another process still writes stay. On a disk without locks all files stay.
     """
     try:
         with os.scandir(folder) as found:
@@ -186,16 +174,16 @@ def remove_abandoned_files(folder: Path) -> None:
 
 
 def temporary_picture(folder: Path) -> Path:
-    """Return a new name for a picture in a folder that is soon removed.
+    """Return a new name for a short-lived picture in a folder.
 
-    If it is not, the next start removes it, like files half written, unless it is locked.
+    If the picture remains, the next start removes it like half-written files, unless it is locked.
     """
     return folder / f"{_part_name()}.png"
 
 
 def sync_folder(folder: Path) -> None:
-    """Let the disk note what a folder holds now, so that a new file is there if power fails."""
-    with suppress(OSError):  # not every system can
+    """Flush a folder to the disk, so that a new file survives a power failure."""
+    with suppress(OSError):  # not every system supports this
         descriptor = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(descriptor)
@@ -205,13 +193,13 @@ def sync_folder(folder: Path) -> None:
 
 @cache
 def _clear_once(folder: Path) -> None:
-    """Clear a folder when this process writes there first: an export has thousands of files."""
+    """Clear a folder at this process's first write there only: an export has thousands of files."""
     remove_abandoned_files(folder)
 
 
 def _remove_abandoned(part: Path) -> None:
     if sys.platform == "win32":
-        # What another process has open cannot be removed there.
+        # Windows cannot remove a file that another process has open.
         part.unlink()
         return
     descriptor = open_to_lock(part)
@@ -227,9 +215,9 @@ def _new_part(folder: Path, mode: int) -> tuple[Path, int]:
     while True:
         part = folder / _part_name()
         descriptor = os.open(part, NEW_FILE, mode)
-        with suppress(OSError):  # without locks nobody removes it
+        with suppress(OSError):  # a file without a lock is never removed as abandoned
             if not lock(descriptor) or not os.fstat(descriptor).st_nlink:
-                # Another process came between, and took it for abandoned.
+                # Another process took the file for abandoned and removed it.
                 os.close(descriptor)
                 continue
         return part, descriptor
@@ -240,7 +228,7 @@ def _part_name() -> str:
 
 
 def _take_places(parts: Sequence[Path], targets: Sequence[Path]) -> None:
-    """Move files to their places; what is there of all but the first gives way before it."""
+    """Move files to their places. The old files of all but the first are removed before that."""
     aside = {}
     try:
         for target in targets[1:]:
@@ -260,7 +248,7 @@ def _take_places(parts: Sequence[Path], targets: Sequence[Path]) -> None:
 
 
 def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
-    """Say in words that the system refuses to write a file, and what to do."""
+    """Return an error that states the system's refusal to write a file and the remedy."""
     reason = error.strerror or str(error)
     if error.errno in NO_ROOM:
         written = sum(part.stat().st_size for part in parts)

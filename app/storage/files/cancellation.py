@@ -1,4 +1,4 @@
-"""Files that are being written may be cancelled, by another thread than the one that writes."""
+"""Cancellation of files that another thread writes."""
 
 import threading
 from contextlib import suppress
@@ -8,9 +8,9 @@ from app.errors import CANCELLED, LissomError
 
 
 class Cancellation:
-    """Says whether files that are being written are still wanted: one decision for all of them.
+    """Whether writing is cancelled: one decision for all files of one operation.
 
-    Until a file takes its place it can be cancelled, and nothing of it stays; later it cannot.
+    A file can be cancelled until it takes its place, and then leaves no trace.
     """
 
     def __init__(self) -> None:
@@ -20,47 +20,35 @@ class Cancellation:
         self._is_committed = False
 
     def cancel(self) -> bool:
-        """Let no more files take their places; return whether none has done so yet.
+        """Forbid further files to take their places; return whether none has done so yet.
 
-        What is half written is removed at once, so that nobody need wait for whoever writes it.
+        Half-written files are removed at once, so that nobody waits for their writer.
         """
         with self._lock:
             self._is_cancelled = True
             for part in self._parts:
-                with suppress(OSError):  # Windows leaves it to whoever has it open
+                with suppress(OSError):  # Windows cannot remove an open file; its writer does
                     part.unlink(missing_ok=True)
             return not self._is_committed
 
     def add_part(self, part: Path) -> None:
-        """Note the hidden file in which a file is written until it is whole.
+        """Register the hidden file into which a file is written.
 
-        Raises
-        ------
-        LissomError
-            If it was cancelled; the hidden file is its writer's to remove.
+        Raises `LissomError` if the operation is cancelled. The writer then removes the hidden file.
         """
         with self._lock:
             self.check()
             self._parts.add(part)
 
     def check(self) -> None:
-        """Go on only if nothing was cancelled.
-
-        Raises
-        ------
-        LissomError
-            If something was.
-        """
+        """Raise `LissomError` if the operation is cancelled."""
         if self._is_cancelled:
             raise LissomError(CANCELLED)
 
     def commit(self) -> None:
-        """Let the files that were begun take their places, whatever comes.
+        """Let the begun files take their places. Later cancellation has no effect.
 
-        Raises
-        ------
-        LissomError
-            If they were cancelled.
+        Raises `LissomError` if the operation is cancelled.
         """
         with self._lock:
             if self._parts:

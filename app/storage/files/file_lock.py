@@ -1,4 +1,4 @@
-"""Telling other windows that a file is worked on: a locked file beside it, with a name in it."""
+"""A lock that shows other windows that a file is in use: a locked file beside it, with a name."""
 
 import getpass
 import hashlib
@@ -14,45 +14,44 @@ from app.errors import LissomError
 from app.storage.files.locks import lock, open_to_lock
 
 TRIES = 100
-LARGEST_LOCK_TEXT = 1000  # bytes, of what stands in the file
+LARGEST_LOCK_TEXT = 1000  # bytes in the lock file
 
 
 class FileLockedError(LissomError):
-    """Somebody else holds the file; the message tells who and since when."""
+    """Another process holds the file. The message names the holder and the time."""
 
 
 class FileLock:
-    """A lock that shows others that this process works on a file, until it is released or ends.
+    """A lock on a file for this process, until it is released or the process ends.
 
     Parameters
     ----------
     path : Path
-        It need not exist; its folder does.
+        Need not exist, but its folder must.
 
     Raises
     ------
     FileLockedError
-        If somebody else holds it.
+        If another process holds the lock.
     OSError
-        If the folder may not be written to, or its disk knows no locks.
+        If the folder is not writable, or its disk has no locks.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         target = Path(os.path.realpath(path))
-        # Of one length, however long the name is.
+        # The length is the same for every file name.
         number = hashlib.sha256(os.fsencode(target.name)).hexdigest()[:16]
         self._lock_path = target.with_name(f".lissom-{number}.lock")
         self._descriptor = self._acquire()
         told = json.dumps({"who": _name_holder(), "since": time.time()}).encode()
-        with suppress(OSError):  # it holds without its name, on a full disk too
+        with suppress(OSError):  # on a full disk the lock works without a name in it
             os.ftruncate(self._descriptor, 0)
             os.write(self._descriptor, told)
 
     def release(self) -> None:
-        """Let others work on the file."""
         if sys.platform == "win32":
-            # What is open cannot be removed there.
+            # Windows cannot remove an open file.
             os.close(self._descriptor)
         with suppress(OSError):
             self._lock_path.unlink()
@@ -64,7 +63,7 @@ class FileLock:
             descriptor = open_to_lock(self._lock_path, os.O_CREAT)
             try:
                 is_ours = lock(descriptor)
-                # Whoever held it before may have removed it by now: it is nobody's then.
+                # The previous holder may have removed the file by now; nobody would see this lock.
                 if is_ours and os.path.samestat(os.fstat(descriptor), self._lock_path.stat()):
                     return descriptor
                 told = os.read(descriptor, LARGEST_LOCK_TEXT) if not is_ours else b""
@@ -88,7 +87,7 @@ def _name_holder() -> str:
 
 
 def _parse_holder(told: bytes) -> str:
-    """Understand what stands in a lock file; nonsense is told as what is known for sure."""
+    """Parse the contents of a lock file. Unreadable contents give only certain facts."""
     try:
         match json.loads(told):
             case {"who": str(who), "since": float(since)} if who.isprintable():

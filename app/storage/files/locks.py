@@ -1,6 +1,6 @@
-"""Locks on open files, which the system lets go of however a process ends.
+"""Locks on open files. The system releases them however a process ends.
 
-A process's number is soon given to another one, and proves nothing.
+A process number proves nothing, because the system soon reuses the number.
 """
 
 import os
@@ -14,22 +14,19 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-# What the system says of a lock that is held; other errors mean that it knows no locks there.
+# The system's errors for a held lock. Other errors mean that the disk has no locks.
 LOCK_HELD_ERRORS = (BlockingIOError, PermissionError)
-# Not through a link that somebody else put there, and not until somebody writes to a pipe.
+# Follow no link, and wait for no writer of a pipe.
 PLAIN = getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-# The byte that is locked on Windows, the last one that can be: nobody else may read it there, and
-# what stands in a file is to be read.
+# The byte that is locked on Windows. Other processes cannot read a locked byte, so it is the last
+# possible byte, behind all contents.
 LOCKED_BYTE = 2**31 - 2
 
 
 def open_to_lock(path: Path, flags: int = 0) -> int:
-    """Return a file that is opened to be locked, be it only to be read.
+    """Return a descriptor of a file to lock; a read-only file is opened for reading.
 
-    Raises
-    ------
-    OSError
-        If it is not there, or may not even be read.
+    Raises `OSError` if the file is missing or unreadable.
     """
     try:
         return os.open(path, os.O_RDWR | PLAIN | flags, 0o666)
@@ -38,12 +35,9 @@ def open_to_lock(path: Path, flags: int = 0) -> int:
 
 
 def lock(descriptor: int) -> bool:
-    """Lock an open file until it is closed, unless somebody else holds it; return whether it is.
+    """Lock an open file until it is closed; return False if another process holds a lock.
 
-    Raises
-    ------
-    OSError
-        If the disk knows no locks.
+    Raises `OSError` if the disk has no locks.
     """
     try:
         if sys.platform == "win32":
@@ -58,7 +52,7 @@ def lock(descriptor: int) -> bool:
 
 @contextmanager
 def at_lock_byte(descriptor: int) -> Iterator[None]:
-    """Go to the byte of an open file that is locked, and back again after the `with` block."""
+    """Seek to the lock byte of an open file, and back after the `with` block."""
     place = os.lseek(descriptor, 0, os.SEEK_CUR)
     os.lseek(descriptor, LOCKED_BYTE, os.SEEK_SET)
     try:
@@ -68,7 +62,7 @@ def at_lock_byte(descriptor: int) -> Iterator[None]:
 
 
 def is_locked(path: Path) -> bool:
-    """Tell whether somebody holds a lock on a file; not so where there is none, or no locks."""
+    """Return whether a process holds a lock on a file; False if there is no file or no locks."""
     try:
         descriptor = open_to_lock(path)
     except OSError:

@@ -1,4 +1,4 @@
-"""Where may be written: never over what is read, nor over anything that is no plain file."""
+"""Checks of output paths: never an input file, and never anything but a plain file."""
 
 import os
 import stat
@@ -8,8 +8,8 @@ from pathlib import Path
 
 from app.errors import LissomError
 
-# What tells one file from all others, whatever it is called and whichever links lead to it; of one
-# that is not there yet, that is its folder and its name in it.
+# The identity of a file, whatever its names and links. For a file that does not exist yet: its
+# folder and its name.
 Identity = tuple[int, int, str]
 STREAMS = (0, 1, 2)  # descriptors
 NO_FOLDER = "the folder {folder} does not exist"
@@ -20,20 +20,20 @@ IS_FOLDER = "it is a folder; name a file"
 
 
 def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
-    """Refuse output paths that cannot work or would destroy something, before any long computation.
+    """Refuse impossible or destructive output paths before any long computation.
 
     Parameters
     ----------
     *outs : Path
-        All that one command writes.
+        All outputs of one command.
     sources : iterable of Path
-        What it is made from; those that are not there do not matter.
+        The inputs of the command; missing ones are ignored.
 
     Raises
     ------
     LissomError
-        If one is a folder, or no plain file, or a link that leads in a circle, or may only be read,
-        or its folder is missing; or if it is the same file as one of the sources or another one.
+        If an output is a folder, no plain file, a circular link or read-only, or if its folder is
+        missing. Also if it is the same file as a source or as another output.
     """
     taken: dict[Identity, str] = {}
     for source in sources:
@@ -43,7 +43,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
         try:
             _check_place(out)
             own = _identity(out)
-        except (OSError, ValueError) as error:  # the latter of names that no file can have
+        except (OSError, ValueError) as error:  # ValueError: no file can have this name
             reason = getattr(error, "strerror", None) or error
             raise LissomError(f"cannot write {out}: {reason}") from error
         if own in taken:
@@ -52,13 +52,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder for what is written, and those around it, where they are not there.
-
-    Raises
-    ------
-    LissomError
-        If that cannot be done.
-    """
+    """Make a folder for outputs and its missing parents, or raise `LissomError`."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as error:
@@ -90,16 +84,16 @@ def _check_place(path: Path) -> None:
             "would be replaced; name a plain file"
         )
     if not os.access(target, os.W_OK):
-        # To put another file in its place would be possible where the folder may be written to.
+        # In a writable folder the system would allow replacing a read-only file.
         raise LissomError(
             f"cannot write {path}: it may only be read; choose another name, or allow to write it"
         )
 
 
 def _is_stream(status: os.stat_result) -> bool:
-    """Tell whether a file is what this process reads or writes by itself, as /dev/stdout says."""
+    """Return whether a file is a standard stream of this process, such as /dev/stdout."""
     for descriptor in STREAMS:
-        with suppress(OSError):  # it may be closed
+        with suppress(OSError):  # the stream may be closed
             if os.path.samestat(status, os.fstat(descriptor)):
                 return True
     return False

@@ -1,4 +1,4 @@
-"""Reading whole files, which are neither endless nor larger than memory."""
+"""Reading whole files, within limits of size."""
 
 import hashlib
 import os
@@ -17,11 +17,11 @@ MEBIBYTE = 1024 * 1024
 LARGEST_FILE = 1024 * MEBIBYTE
 TAIL = 1 * MEBIBYTE
 AT_ONCE = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-# By which all members of a zip file together may outgrow it. Pictures are packed already, so that
-# this is for arrays and JSON; the largest meshes take 60.
+# Limit of the growth of all members of a zip file by unpacking. Pictures are packed already; the
+# limit concerns arrays and JSON. The largest meshes take 60 MiB.
 MOST_UNPACKED = 256 * MEBIBYTE
 METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
-# What zipfile raises on damaged files; the first two are encryption and a method that is not known.
+# Exceptions of zipfile on damaged files. The first two mean encryption and an unknown method.
 DAMAGED_ZIP = (
     RuntimeError,
     NotImplementedError,
@@ -46,16 +46,16 @@ class OpenFile(NamedTuple):
 
 @contextmanager
 def open_file(path: Path) -> Iterator[OpenFile]:
-    """Lend a file for reading: the one door through which files that people name come in.
+    """Open a file for reading. All files that people name are opened here.
 
     Raises
     ------
     LissomError
-        If it is something else, such as a pipe or a device, which may never end.
+        If the path is not a plain file: a pipe or a device may be endless.
     OSError
-        If it cannot be opened.
+        If the file cannot be opened.
     """
-    # Nobody waits until somebody writes to a pipe, and what is looked at is what is read.
+    # Do not wait for the writer of a pipe. The checked file is the file that is read.
     descriptor = os.open(path, os.O_RDONLY | AT_ONCE)
     status = os.fstat(descriptor)
     if not stat.S_ISREG(status.st_mode):
@@ -69,13 +69,11 @@ def open_file(path: Path) -> Iterator[OpenFile]:
 
 @contextmanager
 def open_zip(file: IO[bytes]) -> Iterator[zipfile.ZipFile]:
-    """Open a zip file whose members are packed as nearly all are.
+    """Open a zip file whose members use the common packing methods.
 
-    Raises
-    ------
-    NotImplementedError
-        If one is packed otherwise: what else there is unpacks more than it is asked for, and fails
-        in ways of its own. As all of `DAMAGED_ZIP`, it may come of any damaged file.
+    Raises `NotImplementedError` if a member uses another method: the decoders of other methods
+    ignore size limits and raise other errors. As every exception in `DAMAGED_ZIP`, it may also come
+    of any damaged file.
     """
     with zipfile.ZipFile(file) as archive:
         if not {member.compress_type for member in archive.infolist()} <= METHODS:
@@ -84,10 +82,10 @@ def open_zip(file: IO[bytes]) -> Iterator[zipfile.ZipFile]:
 
 
 def tail_digest(file: IO[bytes]) -> str:
-    """Return what tells the contents of a zip file from others: its size and its end.
+    """Return a digest of the size and the end of a zip file, which identifies its contents.
 
-    Its table of contents is there, with a checksum of each member. When it was written proves
-    nothing: it may have been copied, and clocks jump.
+    The end holds the table of contents with a checksum of each member. The modification time proves
+    nothing: files are copied, and clocks jump.
     """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - TAIL))
@@ -97,10 +95,8 @@ def tail_digest(file: IO[bytes]) -> str:
 def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
     """Return the bytes of a file.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, unreadable, no ordinary file, or larger than `largest` bytes.
+    Raises `LissomError` if the file is missing, unreadable, no plain file, or larger than `largest`
+    bytes.
     """
     try:
         with open_file(path) as (file, size):
@@ -108,7 +104,7 @@ def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
                 return file.read(size)
     except OSError as error:
         raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
-    except ValueError as error:  # of names that no file can have
+    except ValueError as error:  # no file can have this name
         raise LissomError(f"cannot read {path}: {error}") from error
     raise LissomError(
         f"cannot read {path}: it has {size:,} bytes, more than the {largest:,} that Lissom reads"

@@ -1,4 +1,4 @@
-"""JSON as its standard has it, which every reader takes."""
+"""Standard JSON, which every reader accepts."""
 
 import json
 
@@ -10,10 +10,7 @@ NOT_FINITE = "a number in it is not finite, which JSON cannot say"
 def strict_json(content: object, *, indent: int | None = None) -> str:
     """Return a value as JSON, on one line or with this indent.
 
-    Raises
-    ------
-    LissomError
-        If a number in it is infinite or none: Python would write words that are no JSON.
+    Raises `LissomError` if a number is infinite or NaN: Python would write invalid JSON.
     """
     separators = (",", ":") if indent is None else None
     try:

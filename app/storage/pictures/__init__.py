@@ -1,7 +1,7 @@
-"""Pictures: one, or one on many layers, as pixels in sRGB with straight alpha.
+"""Pictures, single or layered, as pixels in sRGB with straight alpha.
 
 In: the bytes of a picture file.
-Out: decoded pictures, and in words what was done to them.
+Out: decoded pictures, and notices about changes of their contents.
 Imports: `app.document`, `app.storage.preferences`, `engine.arrays`.
 """
 

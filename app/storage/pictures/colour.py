@@ -1,4 +1,4 @@
-"""From the colours of a picture's own profile to sRGB, in which everything here is drawn."""
+"""Conversion from a picture's colour profile to sRGB, the colour space of the program."""
 
 import io
 
@@ -6,14 +6,14 @@ import numpy as np
 from PIL import Image, ImageCms
 
 GREYS = {"1", "L", "LA", "La"}
-# What profiles call their colours: the mode that they apply to, and the modes that turn into it
+# By the colour space of a profile: the mode of its pixels, and the modes that become this mode
 # without a profile.
 MODES = {
     "RGB": ("RGB", GREYS | {"P", "PA", "RGB", "RGBA", "RGBX", "RGBa", "YCbCr"}),
     "GRAY": ("L", GREYS),
     "CMYK": ("CMYK", {"CMYK"}),
 }
-# The profiles that call themselves sRGB differ by as much; a person sees no difference.
+# Profiles named sRGB differ by this much; a person sees no difference.
 SAME = 2  # levels, of 255
 LONGEST_NAME = 60
 
@@ -21,24 +21,22 @@ LONGEST_NAME = 60
 def to_srgb(image: Image.Image, profile: bytes | None) -> tuple[Image.Image, str]:
     """Convert a picture to sRGB, for `PIL.Image.Image.convert("RGBA")`.
 
+    Uses relative colorimetric intent with black point compensation, the default of picture editors.
+    White stays white, and colours within sRGB keep their values. Other colours become the nearest.
+
     Parameters
     ----------
     image : Image
-        Of at most 8 bits per channel.
+        At most 8 bits per channel.
     profile : bytes, optional
-        The ICC profile of its colours; without one they are taken for sRGB.
+        ICC profile. A picture without a profile counts as sRGB.
 
     Returns
     -------
     Image
-        The same one where the profile is sRGB, or cannot be used.
+        The same object if the profile is sRGB or unusable.
     str
-        What happened, in words; empty where no colour changed.
-
-    Notes
-    -----
-    Relative colorimetric with black point compensation, as editors of pictures do by default: white
-    stays white, and colours that sRGB has stay exactly what they are. Others become the nearest.
+        A notice; empty if no colour changed.
     """
     if not profile:
         return image, ""
@@ -67,7 +65,7 @@ def to_srgb(image: Image.Image, profile: bytes | None) -> tuple[Image.Image, str
 
 
 def _changes_nothing(transform: ImageCms.ImageCmsTransform, mode: str, *, only_greys: bool) -> bool:
-    """Tell whether colours, or only greys, come out as they go in."""
+    """Return whether the transform keeps all colours, or all greys."""
     if only_greys:
         colours = np.arange(256)[:, None].repeat(3, axis=1)
     else:

@@ -1,4 +1,4 @@
-"""A drawing on several layers, and what its readers share."""
+"""A layered drawing, and the code shared by its readers."""
 
 import io
 from collections import Counter
@@ -25,17 +25,17 @@ from engine.arrays import readonly
 
 MOST_LAYERS = 200
 MOST_GROUPS = 10_000
-LONGEST_NAME = 1_000  # characters of a layer or a group
+LONGEST_NAME = 1_000  # characters of a layer's or group's name
 EMPTY = "left out, since it is empty"
-# Of a layer's pixels: where no more of them are within the box of what is drawn, the rest is cut
-# off. Decoded, and on the graphics card, every pixel takes memory.
+# Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
+# pixel takes memory, also on the graphics card.
 CUT_OFF = 0.8
 GROUPS_DEEP = "its groups lie more than {most} deep in each other"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ImportedLayer:
-    """A layer of a drawing.
+    """A layer of an imported drawing.
 
     Parameters
     ----------
@@ -44,18 +44,15 @@ class ImportedLayer:
     data : bytes
         The layer's picture as a file.
     picture : Picture
-        The same, decoded.
+        The same picture, decoded.
     corner : complex
-        Where its lower left corner is on the canvas, in pixels, y up.
+        Lower left corner on the canvas, in pixels, y up.
     visible : bool
-        By itself, whatever its groups.
-    opacity : float
-        In [0, 1].
-    blend : BlendMode
+        The layer's own visibility, independent of its groups.
     clipped : bool
-        Whether it is seen only where what lies below it in its group is.
+        Whether the layer is clipped by the content below it in its group.
     group : str
-        The path of the group that it is in, "" where there is none.
+        Path of its group; "" outside groups.
     """
 
     name: str
@@ -71,17 +68,16 @@ class ImportedLayer:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LayeredPicture:
-    """A drawing on layers.
+    """A layered drawing.
 
     Parameters
     ----------
     size : tuple of int
         Width and height of the canvas in pixels.
     layers : tuple of ImportedLayer
-        From the one behind all others to the one in front; there is always one.
-    summary : ImportLog
+        Back to front; never empty.
     groups : tuple of Group
-        Those of the layers, each after the one that it is in.
+        All groups of the layers; a group follows its parent.
     """
 
     size: tuple[int, int]
@@ -91,9 +87,9 @@ class LayeredPicture:
 
 
 class UniqueNames:
-    """Names as they are given out: one that is taken gets the next number that is free.
+    """Gives out unique names: a taken name gets the next free number.
 
-    However many of them are alike, each takes as little time.
+    The time per name does not depend on the number of equal names.
     """
 
     def __init__(self) -> None:
@@ -101,7 +97,7 @@ class UniqueNames:
         self._next: dict[str, int] = {}
 
     def claim(self, name: str) -> str:
-        """Take a name, with a number where it needs one, and return it."""
+        """Take a name, with a number if it is taken, and return it."""
         free, number = name, self._next.get(name, 2)
         while free in self._taken:
             free, number = f"{name} {number}", number + 1
@@ -111,19 +107,17 @@ class UniqueNames:
 
 
 class GroupPaths:
-    """The groups of a drawing as they are found, each with a path of its own."""
+    """The groups of an imported drawing, each with a unique path."""
 
     def __init__(self) -> None:
         self._names = UniqueNames()
         self._found: dict[str, Group] = {}
 
     def add(self, around: str, group: Group) -> str:
-        """Take in a group by its name, that is in the one with the path `around`; return its path.
+        """Add a group inside the group with the path `around`; return its path.
 
-        Raises
-        ------
-        LissomError
-            If it lies too deep in others, there are too many, or its name is too long.
+        Raises `LissomError` if the nesting is too deep, there are too many groups, or the name is
+        too long.
         """
         if around.count("/") + bool(around) >= MAX_GROUP_DEPTH:
             raise LissomError(GROUPS_DEEP.format(most=MAX_GROUP_DEPTH))
@@ -131,7 +125,7 @@ class GroupPaths:
             raise LissomError(
                 f"it has more than {MOST_GROUPS:,} groups, which Lissom does not take: merge some"
             )
-        # A slash stands between groups.
+        # A slash separates groups.
         name = display_name(group.name).replace("/", "-").strip() or "group"
         check_name_length(name)
         path = self._names.claim(f"{around}/{name}" if around else name)
@@ -139,11 +133,11 @@ class GroupPaths:
         return path
 
     def is_clipped(self, path: str) -> bool:
-        """Tell whether a group is seen only where what lies below it is."""
+        """Return whether a group is clipped by the content below it."""
         return self._found[path].clipped
 
     def groups_of(self, layers: Sequence[ImportedLayer]) -> tuple[Group, ...]:
-        """Return the groups that these layers are in."""
+        """Return the groups that contain these layers."""
         filled = {path for layer in layers for path in ancestor_paths(layer.group)}
         return tuple(group for path, group in self._found.items() if path in filled)
 
@@ -151,17 +145,16 @@ class GroupPaths:
 def build_layered_picture(
     size: tuple[int, int], found: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector
 ) -> LayeredPicture:
-    """Return the drawing of the layers that were found, each with a name of its own.
+    """Return the drawing of the imported layers, each with a unique name.
 
     Parameters
     ----------
-    size : tuple of int
     found : sequence of ImportedLayer
-        From back to front; those of which nothing is to be seen are left out.
+        Back to front; blank layers are left out.
     groups : GroupPaths
-        All of them.
+        All groups of the file.
     told : NoticeCollector
-        About the layers, and added to.
+        Collects the notices about the layers.
     """
     kept = _drawn_layers(found, groups, told)
     if not kept:
@@ -187,17 +180,18 @@ def build_layered_picture(
 def _drawn_layers(
     layers: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector, depth: int = 0
 ) -> list[ImportedLayer]:
-    """Return those of some layers, that are in the same groups so deep, of which a pixel is seen.
+    """Return the layers with at least one visible pixel.
 
-    What is clipped by an empty layer or group is nowhere.
+    All given layers share their groups down to `depth`. A layer clipped by an empty layer or group
+    is left out.
     """
 
     def unit(layer: ImportedLayer) -> Hashable:
-        """Return the group that lies next among these, or the layer."""
+        """Return the layer's group at this depth, or the layer itself."""
         return (*ancestor_paths(layer.group)[depth : depth + 1], layer)[0]
 
     seen: list[ImportedLayer] = []
-    empty = ""  # the last thing that clips others, where nothing is drawn on it
+    empty = ""  # the last clipping base, if nothing is drawn on it
     for found, each in groupby(layers, unit):
         run = list(each)
         path = found if isinstance(found, str) else ""
@@ -219,7 +213,7 @@ def _drawn_layers(
 
 
 def _layer_unless_blank(layer: ImportedLayer, told: NoticeCollector) -> list[ImportedLayer]:
-    """Return a layer, or nothing where it is empty, which is told."""
+    """Return a layer, or nothing and a notice if it is empty."""
     is_empty = is_blank(layer.picture)
     if is_empty:
         told.add_note(layer.name, EMPTY)
@@ -227,30 +221,29 @@ def _layer_unless_blank(layer: ImportedLayer, told: NoticeCollector) -> list[Imp
 
 
 def is_blank(picture: Picture) -> bool:
-    """Tell whether nothing at all is drawn on a picture."""
+    """Return whether all pixels of a picture are transparent."""
     return not picture.rgba[..., 3].any()
 
 
 class _Trimmed(NamedTuple):
-    """A picture without empty pixels around it, and how far its corner has moved."""
+    """A picture without empty pixels around it, and the shift of its corner."""
 
     data: bytes
     picture: Picture
     shift: complex
 
     def of(self, layer: ImportedLayer) -> ImportedLayer:
-        """Return a layer with this picture."""
         corner = layer.corner + self.shift
         return replace(layer, data=self.data, picture=self.picture, corner=corner)
 
 
 def _trimmed(layer: ImportedLayer) -> _Trimmed:
-    """Return a layer's picture without empty pixels around what is drawn, where they are many."""
+    """Return a layer's picture without its empty margins, if these are large."""
     picture, (width, height) = layer.picture, layer.picture.size
     drawn = picture.rgba[..., 3] > 0
     top, bottom = np.flatnonzero(drawn.any(axis=1))[[0, -1]].tolist()
     left, right = np.flatnonzero(drawn.any(axis=0))[[0, -1]].tolist()
-    # One more each way: what is opaque all over would be a picture that stands still.
+    # Keep a margin of one pixel: a fully opaque picture would become a still picture.
     top, left = max(top - 1, 0), max(left - 1, 0)
     bottom, right = min(bottom + 1, height - 1), min(right + 1, width - 1)
     if (right - left + 1) * (bottom - top + 1) > CUT_OFF * width * height:
@@ -264,14 +257,14 @@ def _trimmed(layer: ImportedLayer) -> _Trimmed:
 
 
 def encode_png(image: Image.Image) -> bytes:
-    """Return the PNG file of a picture, packed in little time."""
+    """Return the PNG file of a picture, packed fast."""
     file = io.BytesIO()
     image.save(file, "PNG", compress_level=1)
     return file.getvalue()
 
 
 def check_layer_count(count: int) -> None:
-    """Refuse more layers than there is room for, before anything of them is read."""
+    """Refuse too many layers before any of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
             f"it has {count:,} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
@@ -279,7 +272,7 @@ def check_layer_count(count: int) -> None:
 
 
 def check_name_length(name: str) -> None:
-    """Refuse a name that would be told and shown everywhere, and stands in those of all inside."""
+    """Refuse a name that is too long for lists and messages; group paths repeat it."""
     if len(name) > LONGEST_NAME:
         raise LissomError(
             f"the name {shortened(name)!r} has {len(name):,} characters; Lissom takes up to "
@@ -288,11 +281,11 @@ def check_name_length(name: str) -> None:
 
 
 def check_memory(sizes: Sequence[tuple[int, int]]) -> None:
-    """Refuse more layers, or larger ones, than there is room for, before they are decoded."""
+    """Refuse layers that need too much memory, before they are decoded."""
     check_layer_count(len(sizes))
     require_memory(sizes)
 
 
 def corner_from_top(left: float, top: float, size: tuple[int, int], height: int) -> complex:
-    """Return a layer's lower left corner, y up on a canvas so high, from its upper left one."""
+    """Return a layer's lower left corner, y up, from its upper left corner, y down."""
     return complex(left, height - top - size[1])

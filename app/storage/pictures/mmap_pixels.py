@@ -1,6 +1,6 @@
-"""Pixels that lie in a file without a name, of which memory holds only what was read just now.
+"""Pixels in an unnamed file; memory holds only the recently read pages.
 
-A drawing on many large layers would be in memory twice: decoded, and on the graphics card.
+A drawing with many large layers would be in memory twice: decoded, and on the graphics card.
 """
 
 import mmap
@@ -14,14 +14,14 @@ import numpy as np
 from app.storage.pictures.picture import Picture
 from engine.arrays import Bytes
 
-# Where the system has no such thing, it takes the memory back by itself when it is short of it.
+# Systems without this call take back the memory themselves when it runs short.
 _UNREAD: Final = getattr(mmap, "MADV_DONTNEED", None)
 
 
 def move_to_disk(picture: Picture) -> Picture:
-    """Return a picture with its pixels in a file, which goes away with it; as it is if none fits.
+    """Return a picture with its pixels in a temporary file, or unchanged if the disk is full.
 
-    The file is written before it is mapped: on a full disk that fails, and no page of it later.
+    The file is written before it is mapped: a full disk fails here, and never at a later page.
     """
     pixels = picture.rgba
     with suppress(OSError), tempfile.TemporaryFile() as file:
@@ -33,7 +33,7 @@ def move_to_disk(picture: Picture) -> Picture:
 
 
 def release_pages(pixels: Bytes) -> None:
-    """Let memory go that pixels in a file take; they are read anew when they are needed."""
+    """Release the memory of pixels in a file; the system reads them again on use."""
     base: object = pixels
     while isinstance(base, np.ndarray):
         base = base.base

@@ -1,4 +1,4 @@
-"""Reading OpenRaster files: a zip of `stack.xml` and one PNG a layer.
+"""Reading OpenRaster files: a zip of `stack.xml` and one PNG per layer.
 
 Krita, MyPaint and GIMP write them.
 """
@@ -28,7 +28,7 @@ from app.storage.pictures.picture import decode_pictures, stored_size
 
 MIMETYPE = b"image/openraster"
 LARGEST_XML = 4 * 1024 * 1024
-# By which all pictures together may outgrow twice the file; they are packed already.
+# Limit of the pictures' total size beyond twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
 DAMAGED_STACK = "its stack.xml is damaged, or in a rare encoding; UTF-8 is usual"
@@ -44,7 +44,7 @@ DAMAGE = (*DAMAGED_ZIP, OSError)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Place:
-    """Where an element of the stack is."""
+    """Position and group of an element in the stack."""
 
     group: str = ""
     x: float = 0.0
@@ -69,7 +69,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     if image.tag != "image" or stack is None:
         raise LissomError("its stack.xml holds no stack of layers")
     told, groups = NoticeCollector(), GroupPaths()
-    # The stack counts from the front.
+    # The file lists the stack from the front.
     elements = list(_layers(stack, _Place(), groups, told))[::-1]
     check_layer_count(len(elements))
     sources = []
@@ -91,7 +91,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         member, picture = members[source], pictures[source]
         name = element.get("name", "").strip() or "layer"
         if is_blank(picture):
-            # It clips nothing: what else lies below does.
+            # An empty layer is no clipping base: the rest below is.
             told.add_note(name, EMPTY)
             continue
         layer = ImportedLayer(
@@ -115,7 +115,7 @@ def _clips(
     size: tuple[int, int],
     told: NoticeCollector,
 ) -> bool:
-    """Tell whether a layer is clipped, which here all that lies below it in its group does."""
+    """Return whether a layer is clipped; in this format all content below in its group clips it."""
     depth = len(ancestor_paths(layer.group))
     below = set()
     for each in found:
@@ -125,7 +125,7 @@ def _clips(
         if covers and each.visible and not each.corner:
             return False
         if not each.clipped:
-            # Of a group in the group, all layers are one.
+            # All layers of a nested group count as one.
             below.add((*ancestor_paths(each.group)[depth : depth + 1], each)[0])
     if len(below) > 1:
         what = "clipped by what lies right below it, not by all that does in its group"
@@ -136,7 +136,7 @@ def _clips(
 def _layers(
     stack: ET.Element, around: _Place, groups: GroupPaths, told: NoticeCollector
 ) -> Iterator[tuple[ET.Element, _Place]]:
-    """Go through the layers of a stack and of the groups in it, from the front."""
+    """Yield the layers of a stack and of its groups, from the front."""
     for element in stack:
         place = replace(
             around,
@@ -170,20 +170,20 @@ def _opacity(element: ET.Element) -> float:
 
 
 def _passes(element: ET.Element) -> bool:
-    """Tell whether a group of this element is painted as if there were none; no faded one is."""
+    """Return whether a group of this element is pass-through; a faded group never is."""
     return element.get("isolation", "auto") == "auto" and _opacity(element) == 1
 
 
 def _is_clipped(element: ET.Element) -> bool:
-    """Tell whether an element is seen only where something lies below it.
+    """Return whether an element is clipped by the content below it.
 
-    Krita says so of layers that inherit alpha, other programs by an attribute of their own.
+    Krita writes this as inherited alpha, other programs as an attribute of their own.
     """
     return element.get("composite-op") == "svg:src-atop" or element.get("alpha-preserve") == "true"
 
 
 def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
-    """Return how an element is blended; a mode that is not taken over is told."""
+    """Return the blend mode of an element. An unsupported mode gives a notice."""
     mode = element.get("composite-op", "")
     if mode not in MODES:
         name = element.get("name", "").strip() or element.tag
@@ -194,16 +194,16 @@ def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
 
 
 class _Builder(ET.TreeBuilder):
-    """Builds the elements of a layer stack, in whichever encoding it is."""
+    """Builds the elements of a layer stack, in any encoding."""
 
     def doctype(self, *_: str | None) -> None:
-        """Refuse a document type: that is where entities that grow are declared."""
+        """Refuse a document type: its entities could grow without limit."""
         raise LissomError("its stack.xml has a document type, which no layer stack has")
 
 
 def _parse(content: bytes) -> ET.Element:
     try:
-        # No entities are left.
+        # The builder has refused all entities.
         return ET.fromstring(content, ET.XMLParser(target=_Builder()))  # noqa: S314
     except (ET.ParseError, LookupError, TypeError, ValueError, RecursionError) as error:
         raise LissomError(DAMAGED_STACK) from error
@@ -213,7 +213,7 @@ def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
     member = archive.getinfo(name)
     if member.file_size > largest:
         raise LissomError(f"its {name} is too large: {member.file_size:,} bytes")
-    # With the size given, no more is ever unpacked.
+    # Reading with the given size never unpacks more.
     with archive.open(member) as packed:
         return packed.read(member.file_size)
 

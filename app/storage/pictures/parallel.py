@@ -1,4 +1,4 @@
-"""Work on several pictures at once, on the cores and within the memory of the machine."""
+"""Parallel work on several pictures, within the cores and the memory of the machine."""
 
 import os
 from collections.abc import Callable, Iterable
@@ -11,13 +11,13 @@ from app.storage.preferences import load_preferences, settings_folder
 In = TypeVar("In")
 Out = TypeVar("Out")
 
-# Each picture under work takes some memory of its own.
+# Each picture in work takes further memory.
 MOST_WORKERS = 4
-# Bytes of larger ones: such are worked on one at a time.
+# Bytes of a large picture; large pictures are processed one at a time.
 LARGE = 64_000_000
 PIXEL = 4  # bytes
-# Of the machine's memory, for pictures, where the person has chosen nothing; where the system does
-# not tell, the machine is taken to have so many bytes.
+# Default share of the machine's memory for pictures. A machine of unknown memory counts as having
+# `USUAL` bytes.
 SHARE, USUAL = 0.25, 8_000_000_000
 MEMORY_OF_PICTURES = (
     "decoded it takes {needed:,.0f} MB of memory, and pictures may take {budget:,.0f} MB; scale it "
@@ -26,7 +26,7 @@ MEMORY_OF_PICTURES = (
 
 
 def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
-    """Refuse pictures of these widths and heights if decoded they would take too much memory."""
+    """Refuse pictures of these widths and heights if decoding them takes too much memory."""
     needed, budget = sum(PIXEL * width * height for width, height in sizes), memory_budget()
     if needed > budget:
         raise LissomError(
@@ -39,7 +39,7 @@ def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
 
 
 def memory_budget() -> int:
-    """Return how many bytes the pictures of a file may take."""
+    """Return the bytes that the pictures of a file may take."""
     chosen = load_preferences(settings_folder()).memory
     if chosen is not None:
         return chosen * 1_000_000
@@ -52,10 +52,10 @@ def memory_budget() -> int:
 def run_parallel(
     work: Callable[[In], Out], items: Iterable[In], sizes: Iterable[tuple[int, int]]
 ) -> list[Out]:
-    """Return what a function makes of items, in their order; of its errors the first is raised.
+    """Return the results of a function for all items, in order; the first error is raised.
 
-    Decoders and most of NumPy let other threads go on, so that these are as many as there are
-    cores, unless a picture of these widths and heights is large.
+    Decoders and most of NumPy release the interpreter lock. There are as many threads as cores,
+    unless a picture of these widths and heights is large.
     """
     is_large = any(PIXEL * width * height > LARGE for width, height in sizes)
     with ThreadPoolExecutor(1 if is_large else min(MOST_WORKERS, os.cpu_count() or 1)) as pool:

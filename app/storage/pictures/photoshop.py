@@ -1,4 +1,4 @@
-"""Reading Photoshop files with psd-tools, where that is installed."""
+"""Reading Photoshop files with psd-tools, if it is installed."""
 
 import io
 import logging
@@ -32,17 +32,16 @@ MEBIBYTE = 1024 * 1024
 SIGNATURE = b"8BPS"
 HEADER: Final = 26  # bytes
 MOST_RECORDS: Final = 1_000
-# Where files of more than 8 bits a channel list their layers.
+# Start of the layer list in files of more than 8 bits per channel.
 DEEP_LAYERS: Final = re.compile(rb"8B(IM|64)Lr(16|32)")
-# What is drawn, and by which name psd-tools knows it. Shapes, placed pictures and texts come with
-# pixels.
+# Names in psd-tools of layers with pixels. Shapes, placed pictures and texts come with pixels.
 DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
-# Channels of a layer's colours, numbered from 0, and the one before them.
+# Number of colour channels, numbered from 0; the alpha channel has number -1.
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
 TRANSPARENCY: Final = -1
 KNOCKOUT: Final = b"knko"
-PADDING: Final = 3  # bytes that may follow the picture of all layers
-# Of two black levels and two white ones, between which a layer is seen: all of them, or not told.
+PADDING: Final = 3  # bytes that may follow the merged picture
+# A layer's blending range of two black and two white levels: all levels, or unspecified.
 ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
 MODES: Final[dict[str, BlendMode]] = {
     "NORMAL": "normal",
@@ -70,22 +69,17 @@ DAMAGE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Place:
-    """Where a layer is."""
+    """Group and masks of a layer."""
 
     group: str = ""  # its path
-    masks: tuple[MaskedGroup, ...] = ()  # the groups around it by whose masks it is to be cut
+    masks: tuple[MaskedGroup, ...] = ()  # masked groups around the layer, whose masks cut it
 
 
 def read_photoshop(data: bytes) -> LayeredPicture:
-    """Read the layers of a Photoshop file.
+    """Read the layers of a Photoshop file. Masks are applied to the pixels.
 
-    Masks are taken into the pixels.
-
-    Raises
-    ------
-    LissomError
-        If psd-tools is not installed, or the file is no Photoshop file, is damaged or too large, or
-        nothing is drawn on it.
+    Raises `LissomError` if psd-tools is not installed, or if the file is no Photoshop file, is
+    damaged, too large or empty.
     """
     if not data.startswith(SIGNATURE):
         raise LissomError("it is not a Photoshop file")
@@ -97,11 +91,11 @@ def read_photoshop(data: bytes) -> LayeredPicture:
             "OpenRaster "
             "(.ora)"
         ) from error
-    # It says its own words about what it skips, where nobody listens on standard error.
+    # Its own messages about skipped content go to standard error, which nobody reads.
     logging.getLogger(psd_tools.__name__).setLevel(logging.CRITICAL)
     try:
         with warnings.catch_warnings():
-            # Where a channel cannot be unpacked, black would take its place.
+            # A channel that cannot be unpacked would become black.
             warnings.simplefilter("error", psd_tools.PSDDecompressionWarning)
             _require_few_records(data)
             return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
@@ -110,12 +104,12 @@ def read_photoshop(data: bytes) -> LayeredPicture:
 
 
 def _require_few_records(data: bytes) -> None:
-    """Refuse a file that lists more than there is time for, before it is read."""
+    """Refuse a file with too many layer records, before it is read."""
     (version,) = struct.unpack_from(">H", data, len(SIGNATURE))
     at = HEADER
     for _ in ("the palette", "the resources"):
         at += 4 + struct.unpack_from(">I", data, at)[0]
-    # After the lengths of all that is on layers, and of what is said of them.
+    # Skip the lengths of the layer section and of the layer list.
     at += 2 * 4 * version
     starts = [at] if at < len(data) else []
     starts += [block.end() + 4 * version for block in DEEP_LAYERS.finditer(data)]
@@ -136,7 +130,7 @@ def _read(drawing: Any) -> LayeredPicture:
         name = layer.name.strip() or "layer"
         if not layer.is_group():
             _require_channels(layer, drawing)
-        # An empty one clips what it does in the file.
+        # An empty layer still clips as in the file.
         image = masked_pixels(layer, place.masks, told) or Image.new("RGBA", (1, 1))
         picture = Picture(rgba=freeze(np.array(image)))
         read = ImportedLayer(
@@ -152,7 +146,7 @@ def _read(drawing: Any) -> LayeredPicture:
         )
         layers.append(read)
     if not found and not told.import_log:
-        # Saved without layers: the picture that all programs see.
+        # A file saved without layers holds only the merged picture.
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
         rows = drawing.height * drawing.channels
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
@@ -165,16 +159,16 @@ def _read(drawing: Any) -> LayeredPicture:
 def _drawn_layers(
     around: Any, place: _Place, groups: GroupPaths, told: NoticeCollector
 ) -> Iterator[tuple[_Place, Any, bool]]:
-    """Go through what is drawn, from the back: where it is, and whether it is clipped.
+    """Yield all drawn layers from the back: place, layer, and whether it is clipped.
 
-    A group on which nothing is drawn stands in its own place.
+    An empty group yields itself in its own place.
     """
-    # What clips a layer may be left out, and then nothing does.
+    # A clipping base may be left out; then its layers are not clipped.
     clips, has_base = True, False
     for layer in around:
         name = layer.name.strip() or "layer"
         is_clipped = _is_clipping(layer) and clips
-        # What clips a layer is cut by the masks of the groups around both.
+        # A clipped layer is cut by its base, which is already cut by the masks of their groups.
         masks = () if is_clipped and has_base else place.masks
         if layer.is_group():
             passes = layer.blend_mode.name == "PASS_THROUGH"
@@ -210,7 +204,7 @@ def _drawn_layers(
 
 
 def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
-    """Tell of what changes how a layer or group looks and is not taken over."""
+    """Add notices about unsupported features that change the look of a layer or group."""
     if layer.has_effects():
         effects = dict.fromkeys(
             _split_camel_case(type(effect).__name__) for effect in layer.effects if effect.enabled
@@ -229,17 +223,17 @@ def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
 
 
 def _is_clipping(layer: Any) -> bool:
-    """Tell whether a layer or a group, of which psd-tools does not tell, is to be clipped."""
+    """Return whether a layer or a group has the clipping flag, which psd-tools does not expose."""
     return bool(layer._record.clipping.name == "NON_BASE")  # noqa: SLF001 - as of channels
 
 
 def _split_camel_case(name: str) -> str:
-    """Return the name of a class, as "DropShadow", in words."""
+    """Return a class name such as "DropShadow" in separate words."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
 def _blend(layer: Any, told: NoticeCollector) -> BlendMode:
-    """Return how a layer is blended; a mode that is not taken over is told."""
+    """Return the blend mode of a layer. An unsupported mode gives a notice."""
     mode = layer.blend_mode.name
     if mode not in MODES:
         what = f"drawn normally, not in the mode {mode.lower().replace('_', ' ')!r}"
@@ -248,9 +242,9 @@ def _blend(layer: Any, told: NoticeCollector) -> BlendMode:
 
 
 def _require_channels(layer: Any, drawing: Any) -> None:
-    """Refuse a layer that lacks a channel, or rows of one, in whose place black would be seen.
+    """Refuse a layer that lacks a channel or rows of a channel, which would be black.
 
-    Its file tells so by private names only.
+    psd-tools exposes the channels by private names only.
     """
     found = {}
     for told, channel in zip(layer._record.channel_info, layer._channels, strict=True):  # noqa: SLF001
@@ -264,7 +258,7 @@ def _require_channels(layer: Any, drawing: Any) -> None:
 
 
 def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0) -> None:
-    """Refuse packed rows that are not as long together as they say one by one."""
+    """Refuse packed rows whose total length differs from the sum of their stated lengths."""
     if channel.compression.name == "RLE":
         size = 2 * version  # bytes of a length
         lengths = np.frombuffer(channel.data[: size * rows], f">u{size}")

@@ -1,4 +1,4 @@
-"""The pixels of a Photoshop layer, with its masks and those of groups around it taken in."""
+"""The pixels of a Photoshop layer, with its masks and those of its groups applied."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,26 +10,27 @@ from PIL import Image, ImageChops, ImageFilter
 from app.errors import NoticeCollector
 from engine.arrays import Booleans
 
-# Levels of a mask at which what lies behind a layer would be seen through it.
+# Mask levels that leave a layer half transparent.
 HALF_SEEN: Final = [2 < level < 253 for level in range(256)]
 
 
 @dataclass(slots=True, eq=False)
 class MaskedGroup:
-    """A group with a mask, by which its layers are to be cut."""
+    """A group with a mask, which cuts its layers."""
 
     group: Any
-    # Pixels of the canvas (h, w) that are half seen through it and have a layer there already.
+    # Pixels of the canvas (h, w) that are half transparent by the mask and already covered by a
+    # layer.
     covered: Booleans
-    has_warned: bool = False  # that its layers shine through each other
+    has_warned: bool = False  # about layers that shine through each other
 
 
 def masked_pixels(
     layer: Any, around: Sequence[MaskedGroup], told: NoticeCollector
 ) -> Image.Image | None:
-    """Return what is seen of a layer through its own mask and those of groups around it.
+    """Return a layer's pixels, cut by its own mask and by those of its groups.
 
-    None where it has no pixels.
+    None if it has no pixels.
     """
     if layer.width == 0 or layer.height == 0:
         return None
@@ -51,10 +52,10 @@ def masked_pixels(
 
 
 def is_masked(layer: Any, told: NoticeCollector) -> bool:
-    """Tell whether a layer or group has a mask of pixels; one that is not taken over is told."""
+    """Return whether a layer or group has a pixel mask. A vector mask gives a notice."""
     mask = layer.mask
     is_masked = mask is not None and not mask.disabled
-    # Programs store what is seen through a mask of paths as one of pixels, too.
+    # Programs store the result of a vector mask as a pixel mask, too.
     is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
     if is_by_paths and not layer.vector_mask.disabled:
         told.add_warning(layer.name.strip() or "layer", "drawn without its vector mask")
@@ -68,9 +69,10 @@ def _cut(pixels: Image.Image, mask: Image.Image) -> None:
 def _shines_through(
     around: MaskedGroup, corner: tuple[int, int], pixels: Image.Image, mask: Image.Image
 ) -> bool:
-    """Tell whether a layer lies over another one where both are half seen through a group's mask.
+    """Return whether a layer covers another layer where the group's mask is half transparent.
 
-    Cut one by one, they let through what is behind them; cut as one, they would not.
+    Layers that are cut one by one show the layer behind them there; a group that is cut as a whole
+    does not.
     """
     (left, top), (height, width) = corner, around.covered.shape
     half = np.array(HALF_SEEN)[np.asarray(mask)] & (np.asarray(pixels.getchannel("A")) > 0)
@@ -83,7 +85,7 @@ def _shines_through(
 
 
 def _seen_through(mask: Any, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
-    """Return how much of each pixel of a layer is seen through a mask."""
+    """Return the opacity of a mask at each pixel of a layer."""
     seen = Image.new("L", size, mask.background_color)
     drawn = mask.topil()
     if drawn is not None:

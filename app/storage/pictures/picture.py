@@ -19,7 +19,7 @@ from app.storage.pictures.parallel import require_memory, run_parallel
 from engine.arrays import Booleans, Bytes, Floats, freeze
 from engine.domain import Mask
 
-# PostScript and PDF are left out on purpose: Pillow would run an interpreter for them.
+# PostScript and PDF are excluded on purpose: Pillow would run an interpreter for them.
 FORMATS = {
     "PNG": ".png",
     "JPEG": ".jpg",
@@ -33,7 +33,7 @@ FORMATS = {
     "AVIF": ".avif",
 }
 FORMATS_IN_WORDS = "PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO"
-# Pillow's decoders let all of these through on damaged files.
+# Pillow's decoders raise all of these on damaged files.
 DECODER_ERRORS = (
     RuntimeError,
     OSError,
@@ -49,9 +49,9 @@ DECODER_ERRORS = (
     zlib.error,
 )
 EXIF_ORIENTATION = 0x0112
-BAND = 64  # rows of pixels that are copied at once
+BAND = 64  # rows of pixels copied at once
 OPAQUE = 255
-HALF = 128  # levels: of a mask, what is lighter is kept
+HALF = 128  # levels: lighter mask pixels are kept
 NO_PICTURE = "{name} is not a picture that Lissom reads ({formats})"
 DAMAGED_PICTURE = "{name} is damaged or cut short"
 
@@ -63,11 +63,11 @@ class Picture:
     Parameters
     ----------
     rgba : uint8, shape (h, w, 4)
-        sRGB with straight alpha, first row on top, rotated as its EXIF data asks.
+        sRGB with straight alpha, first row on top, rotated by its EXIF orientation.
     suffix : str
-        That files of its format end in, such as ".png", whatever the file's own name.
+        Usual file suffix of its format, such as ".png", whatever the file's own name.
     notices : tuple of str
-        What was done to the file's contents, in words.
+        Notices about changes of the file's contents.
     """
 
     rgba: Bytes
@@ -81,25 +81,22 @@ class Picture:
 
     @property
     def is_opaque(self) -> bool:
-        """Whether nothing of it is transparent."""
-        # Row by row: the first one of most drawings tells.
+        # Row by row: in most drawings the first row decides.
         return all(bool((row[:, 3] == OPAQUE).all()) for row in self.rgba)
 
 
 def decode_picture(data: bytes, name: str) -> Picture:
-    """Decode the bytes of a picture file; `name` is what errors call it.
+    """Decode the bytes of a picture file; errors call the file `name`.
 
-    Raises
-    ------
-    LissomError
-        If they are no picture, are damaged, or the picture is unreasonably large.
+    Raises `LissomError` if the bytes are no picture or damaged, or the picture is unreasonably
+    large.
     """
     (picture,) = decode_pictures([(data, name)])
     return picture
 
 
 def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
-    """Decode the bytes of several picture files, each with what errors call it."""
+    """Decode several picture files, given as bytes and name for errors."""
     sizes = [stored_size(*file) for file in files]
     try:
         require_memory(sizes)
@@ -110,7 +107,7 @@ def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
 
 
 def decode_mask(data: bytes, name: str) -> Mask:
-    """Decode a mask: what is light, and not transparent, is kept."""
+    """Decode a mask: light opaque pixels are kept."""
     rgba = decode_picture(data, name).rgba
     light: Booleans = rgba[..., :3].sum(axis=2, dtype=np.uint16) >= 3 * HALF
     return Mask.of(light & (rgba[..., 3] >= HALF))
@@ -124,7 +121,7 @@ def encode_mask(mask: Mask) -> bytes:
 
 
 def stored_size(data: bytes, name: str) -> tuple[int, int]:
-    """Return the width and height in pixels that a picture file tells, without decoding it."""
+    """Return the width and height in pixels from a picture file's header, without decoding it."""
     if not data:
         raise LissomError(f"{name} is empty")
     with (
@@ -137,13 +134,13 @@ def stored_size(data: bytes, name: str) -> tuple[int, int]:
 
 @contextmanager
 def _only_size_warnings() -> Iterator[None]:
-    """Let Pillow tell of pictures that are too large, and of nothing else.
+    """Silence all warnings of Pillow except those about too large pictures.
 
-    What is told is one setting of the whole process, so that it is set around all threads that
-    decode, not within each.
+    Warning filters belong to the whole process. Set them around all decoding threads, not within
+    each thread.
     """
     with warnings.catch_warnings():
-        # The warning comes at half the size of the error; we draw the line there.
+        # Pillow warns at half the size of its error; the warning's size is our limit.
         warnings.simplefilter("ignore")
         warnings.simplefilter("error", Image.DecompressionBombWarning)
         yield
@@ -151,7 +148,7 @@ def _only_size_warnings() -> Iterator[None]:
 
 @contextmanager
 def _naming_errors(name: str) -> Iterator[None]:
-    """Turn what Pillow raises into a `LissomError` that calls the file by its name."""
+    """Turn Pillow's exceptions into a `LissomError` that names the file."""
     try:
         yield
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
@@ -196,7 +193,7 @@ def _decoded(data: bytes) -> Picture:
 
 
 def _load(file: ImageFile.ImageFile) -> Bytes | None:
-    """Decode a picture; return its pixels (h, w, 4) where they are RGBA, and there only once."""
+    """Decode a picture; return its pixels (h, w, 4) without a second copy if they are RGBA."""
     rgba = place = None
     if file.mode == "RGBA":
         rgba = np.zeros((file.height, file.width, 4), dtype=np.uint8)
@@ -206,7 +203,7 @@ def _load(file: ImageFile.ImageFile) -> Bytes | None:
 
 
 def apply_orientation(image: Image.Image) -> tuple[Image.Image, str]:
-    """Return a picture turned as its camera noted, and what happened, in words; none if nothing."""
+    """Return a picture rotated by its EXIF orientation, and a notice; empty if unchanged."""
     try:
         if image.getexif().get(EXIF_ORIENTATION, 1) not in range(2, 9):
             return image, ""
@@ -216,11 +213,10 @@ def apply_orientation(image: Image.Image) -> tuple[Image.Image, str]:
 
 
 def _pixels(image: Image.Image) -> Bytes:
-    """Return the pixels (h, w, 4) of a picture in sRGB."""
     width, height = image.size
     rgba = np.empty((height, width, 4), dtype=np.uint8)
-    # Pillow hands pixels out in small pieces; band by band these stay in the processor's cache, and
-    # it takes a fifth of the time.
+    # Pillow returns pixels in small pieces. Bands stay in the processor's cache, which takes a
+    # fifth of the time.
     for top in range(0, height, BAND):
         bottom = min(top + BAND, height)
         rgba[top:bottom] = np.asarray(image.crop((0, top, width, bottom)).convert("RGBA"))
@@ -228,10 +224,10 @@ def _pixels(image: Image.Image) -> Bytes:
 
 
 def _is_deep(image: ImageFile.ImageFile) -> bool:
-    """Tell whether a picture that is not loaded yet has more than 8 bits per channel.
+    """Return whether an unloaded picture has more than 8 bits per channel.
 
-    Pillow has no mode for deep colours: it drops the lower bits as it decodes. Only its name for
-    the layout in the file ("RGB;16B"), or the largest value of a PPM, tells.
+    Pillow has no mode for deep colours: it drops the lower bits in decoding. Only its name of the
+    file's layout ("RGB;16B") or the largest value of a PPM shows the depth.
     """
     for tile in image.tile:
         arguments = tile.args if isinstance(tile.args, tuple) else (tile.args,)
@@ -246,8 +242,8 @@ def _is_deep(image: ImageFile.ImageFile) -> bool:
 def _scale_deep_grey(greys: npt.NDArray[Any], *, is_float: bool) -> Bytes:
     """Map greys of more than 8 bits to 0 … 255.
 
-    Integers are 16 bits wide whatever their largest value; floating-point files write white as 1,
-    255 or 65535, whichever holds all of their values.
+    Integers are 16 bits wide, whatever their largest value. Floating-point files write white as 1,
+    255 or 65535: the smallest of these that holds all values.
     """
 
     def bands() -> Iterator[Floats]:

@@ -18,9 +18,9 @@ MIMETYPE = b"application/x-lissom"
 NO_PROJECT = "is not a Lissom project"
 MOST_MEMBERS = 65_535
 MEBIBYTE = 1024 * 1024
-# Members that deflating makes smaller; pictures are packed already, and the mimetype stays legible.
+# Members to deflate. Pictures are packed already, and the mimetype stays legible.
 PACKED = (".json", ".npy")
-# The same document gives the same bytes, whenever it is saved.
+# A constant date: the same document always gives the same bytes.
 DATE = (1980, 1, 1, 0, 0, 0)
 NPY_MAGIC = b"\x93NUMPY\x01\x00"
 LARGEST_NPY_HEADER = 1024
@@ -31,9 +31,9 @@ NOTHING_WRITTEN: Mapping[str, bytes] = MappingProxyType({})
 
 
 def write_archive(file: IO[bytes], members: Mapping[str, bytes]) -> None:
-    """Write the members, by their names, after the one that tells what the file is.
+    """Write the members by name, after the mimetype.
 
-    What would unpack to more than is read of a small file is not packed.
+    Members that would unpack beyond the reading limit of a small file are not packed.
     """
     packs = sum(map(len, members.values())) <= MOST_UNPACKED
     with zipfile.ZipFile(file, "w") as archive:
@@ -58,19 +58,17 @@ class Archive:
     Parameters
     ----------
     file : ZipFile
-        As `opened_zip` lends it.
+        As opened by `open_zip`.
     size : int
-        Of the file on the disk, in bytes. However much of it is read, no more is ever unpacked than
-        this and `MOST_UNPACKED` together.
-
+        Bytes of the file on the disk. At most `size` plus `MOST_UNPACKED` bytes are ever unpacked.
     written : mapping of str to bytes
-        Contents that were just written to it, which are not unpacked to be read.
+        Contents that were just written to the file; reading returns them without unpacking.
 
     Raises
     ------
     LissomError
-        If it is another kind of zip file, or not laid out as `write_archive` does, or would unpack
-        to too much. Nothing but its table of contents is read to tell.
+        If it is another kind of zip file, has another layout than `write_archive` gives, or would
+        unpack to too much. These checks read only the table of contents.
     """
 
     def __init__(
@@ -102,25 +100,21 @@ class Archive:
 
     @property
     def is_written(self) -> bool:
-        """Whether it was just written, so that what holds of its arrays is known."""
+        """Whether the file was just written, so that its maps are already certified."""
         return bool(self._written)
 
     @property
     def unread(self) -> list[str]:
-        """The names of the members that were not asked for, folders left out."""
+        """Names of members that were not read, without folders."""
         return [n for n in self._members if n not in self._read and not n.endswith("/")]
 
     def has(self, name: str) -> bool:
-        """Tell whether there is a member of this name."""
         return name in self._members
 
     def read(self, name: str, *, largest: int | None = None) -> bytes:
-        """Return the contents of a member, of at most `largest` bytes where that is given.
+        """Return the contents of a member, of at most `largest` bytes.
 
-        Raises
-        ------
-        LissomError
-            If it is missing or larger, before anything is unpacked.
+        Raises `LissomError` if the member is missing or larger; nothing is unpacked then.
         """
         if name not in self._members:
             raise LissomError(f"it lacks {name}")
@@ -132,8 +126,8 @@ class Archive:
             )
         if name in self._written and len(self._written[name]) == member.file_size:
             return self._written[name]
-        # With the size given, no more than that is ever unpacked, whatever the data would grow to;
-        # a checksum that differs is an error.
+        # Reading with the given size never unpacks more, however far the data would grow. A wrong
+        # checksum is an error.
         with self._file.open(member) as packed:
             content = packed.read(member.file_size)
         if len(content) < member.file_size:
@@ -141,29 +135,29 @@ class Archive:
         return content
 
     def points(self, name: str, *, most: int) -> Complexes:
-        """Return an array of points, complex128 (n,), of which there are at most `most`."""
+        """Return an array of at most `most` points, complex128 (n,)."""
         array = self._array(name, np.dtype("<c16"), columns=1, most=most)
         return readonly(array.astype(np.complex128, copy=False))
 
     def numbers(self, name: str, *, most: int) -> Floats:
-        """Return an array of numbers, float64 (n,), of which there are at most `most`."""
+        """Return an array of at most `most` numbers, float64 (n,)."""
         array = self._array(name, np.dtype("<f8"), columns=1, most=most)
         return readonly(array.astype(np.float64, copy=False))
 
     def triangles(self, name: str, *, most: int) -> Integers:
-        """Return an array of triangles, int32 (m, 3), of which there are at most `most`."""
+        """Return an array of at most `most` triangles, int32 (m, 3)."""
         array = self._array(name, np.dtype("<i4"), columns=3, most=most)
         return readonly(array.astype(np.int32, copy=False).reshape(-1, 3))
 
     def bytes(self, name: str, *, most: int) -> Bytes:
-        """Return an array uint8 (n,) of at most `most`."""
+        """Return an array uint8 (n,) of at most `most` bytes."""
         array = self._array(name, np.dtype("|u1"), columns=1, most=most)
         return readonly(array.astype(np.uint8, copy=False))
 
     def _array(
         self, name: str, dtype: np.dtype[Any], *, columns: int, most: int
     ) -> npt.NDArray[Any]:
-        # Read by hand: NumPy's reader would believe any shape and allocate it.
+        # Read by hand: NumPy's reader would trust any shape and allocate memory for it.
         row = columns * dtype.itemsize
         content = self.read(name, largest=LARGEST_NPY_HEADER + most * row)
         start = 10 + int.from_bytes(content[8:10], "little")

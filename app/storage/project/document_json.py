@@ -1,4 +1,4 @@
-"""The document as `project.json`, except for its layers' pictures and arrays."""
+"""The document as `project.json`, without its layers' pictures and arrays."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import astuple
@@ -81,18 +81,18 @@ MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
 
 
 def _counts(lines: Sequence[Stroke] | Sequence[CutLine]) -> tuple[int, ...]:
-    """Return how many points each of some lines has."""
+    """Return the number of points of each line."""
     return tuple(len(line.points) for line in lines)
 
 
 def _read_joints(content: object, where: str) -> dict[str, int]:
-    """Return the handles of joints by their names."""
+    """Return the handles of joints by joint name."""
     joints = as_object(content, where)
     return {name: as_whole(handle, f"{where}.{name}") for name, handle in joints.items()}
 
 
 def _options(usual: FormatOptions) -> Codec:
-    """Return how the options of a format are held; of which kinds they are, the usual ones tell."""
+    """Return the codec of a format's options; the defaults give the kind of each option."""
     kinds: dict[type, Codec] = {bool: FLAG, int: WHOLE}
     named = {name: kinds.get(type(getattr(usual, name))) for name in usual.option_fields()}
     fields = (Field(name, kind or optional(NUMBER)) for name, kind in named.items())
@@ -146,13 +146,13 @@ TARGETS = list_of(
         unknown=lambda pair: pair[1].unknown,
     )
 )
-# Keys and poses are read as their fields, which have no map yet.
+# Keys and poses are read as fields first; their maps are added later.
 EASING = Codec(Easing.to_json, lambda content, _: Easing.parse(content))
 KEY = record(
     dict,
     Field("frame", WHOLE),
     Field("easing", EASING),
-    # Before there were passings, every key had a corner.
+    # Before tangent modes existed, every key was a corner.
     Field("tangent_mode", TEXT, legacy_default=TangentMode.CORNER, legacy_name="passing"),
     Field("revolutions", WHOLE, legacy_name="turns"),
     Field("targets", TARGETS, lambda key: key.pose.targets.items()),
@@ -200,7 +200,7 @@ SPRING = record(
     Field("lag", NUMBER, default=0.0),
     Field("strength", NUMBER, default=1.0),
     Field("root", optional(WHOLE), default=None),
-    # Before springs had roots, all of them swung freely.
+    # Before springs had roots, all handles swung freely.
     Field("stretch", NUMBER, legacy_default=1.0),
     Field("enabled", FLAG, default=True),
 )
@@ -240,7 +240,7 @@ APPLIED_MOTION = record(
 
 
 def _write_motions(layer: Layer) -> list[Any]:
-    """Return a layer's motions, with those that were not read in their places."""
+    """Return a layer's motions, with unread motions in their places."""
     written = [APPLIED_MOTION.write(motion) for motion in layer.motions]
     for unread in layer.unread_motions:
         written.insert(unread.index, unread.content)
@@ -248,7 +248,7 @@ def _write_motions(layer: Layer) -> list[Any]:
 
 
 def _read_motions(content: object, handles: Collection[int]) -> dict[str, Any]:
-    """Return a layer's motions, and those that are not known here, or do not fit."""
+    """Return a layer's motions, and unknown or unfitting motions apart."""
     motions: list[AppliedMotion] = []
     unread = []
     for index, each in enumerate(as_list(content, "motions")):
@@ -274,7 +274,7 @@ STROKE = nested_record(
     Field("radius", NUMBER),
     Field("keeps", FLAG),
 )
-# How a layer's domain was made, from the layer.
+# How a layer's domain was built, from the layer.
 DOMAIN = nested_record(
     dict,
     Field("detail", TEXT, attrgetter("meshing.detail")),
@@ -349,7 +349,7 @@ LAYER = record(
     Field("next_handle", WHOLE),
     Field("keys", list_of(KEY)),
     Field("anchor", optional(POINT)),
-    # Before there were auto-pins, handles moved as they liked between keys.
+    # Before auto-pins existed, handles moved freely between keys.
     Field("has_auto_pins", FLAG, default=False, legacy_name="stillness"),
     Field("tracks", list_of(TRACK), default=()),
     Field("springs", list_of(SPRING), default=()),
@@ -364,7 +364,7 @@ LAYER = record(
     ),
     Field("library", list_of(LIBRARY_POSE)),
     Field("mirror", optional(NUMBER)),
-    # What it is as a layer: a scene of one layer says none of it.
+    # Properties of a layer among others; a scene of one layer writes none of them.
     Field("name", TEXT, default="layer"),
     Field("corner", POINT, default=0j),
     Field("still", FLAG, default=False),
@@ -379,7 +379,7 @@ LAYER = record(
     Field("blend", TEXT, default="normal"),
     Field("clipped", FLAG, default=False),
     Field("group", TEXT, default=""),
-    # Its joints: the first one, and those that come later.
+    # Its attachments: the first one, and the later ones.
     Field(
         "attachment", optional(ATTACHMENT), lambda each: (*each.attachments, None)[0], default=None
     ),
@@ -421,7 +421,7 @@ DOCUMENT = record(
 
 
 def write_document(document: Document) -> dict[str, Any]:
-    """Return the fields of a document, those that this version does not know among them."""
+    """Return the fields of a document, with the unknown ones."""
     written: dict[str, Any] = DOCUMENT.write(document)
     return written
 
@@ -431,13 +431,10 @@ def read_document(
 ) -> Document:
     """Return the document with these fields, and with the pictures and arrays of an archive.
 
-    Of an archive that was just written, layers that are `known` by their ids are not read again;
-    they come first.
+    Layers in `known`, by id, are not read again from a just written archive; they come first.
 
-    Raises
-    ------
-    LissomError, EngineError
-        If a field is missing or of another kind, or the document would not be valid.
+    Raises `LissomError` or `EngineError` if a field is missing or of another kind, or the document
+    would be invalid.
     """
     if as_whole(content["schema"], "schema") == 1:
         _bring_up_to_schema_2(content)
@@ -448,7 +445,7 @@ def read_document(
     del fields["schema"], fields["app_version"]
     layers = fields.pop("layers")
     if len({layer["id"] for layer in layers}) < len(layers):
-        # Told before their members are read, once for each.
+        # Refused here: later each layer's members would be read twice.
         raise LissomError("two of its layers have the same id")
     shared: dict[str, PictureFile] = {}
     read = tuple(_read_layer(layer, archive, shared) for layer in layers)
@@ -458,9 +455,9 @@ def read_document(
 
 
 def _bring_up_to_schema_2(content: JsonObject) -> None:
-    """Give the fields of schema 1 those that came with schema 2, so that nothing looks different.
+    """Add the fields of schema 2 to schema 1, so that nothing looks different.
 
-    What played was what was exported, unless exports had frames of their own.
+    In schema 1 the preview range was exported, unless exports had frames of their own.
     """
     work = content.pop("work")
     content |= {"preview": work, "markers": []}
@@ -474,9 +471,9 @@ def _bring_up_to_schema_2(content: JsonObject) -> None:
 
 
 def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]) -> Layer:
-    """Return the layer with these fields; what holds of its maps is proven anew.
+    """Return the layer with these fields, its maps certified again.
 
-    Its picture is one of those that are `shared`, by their checksums, or becomes one.
+    Its picture is taken from or added to `shared`, by checksum.
     """
     members, made = LayerMembers(archive, fields["id"]), fields.pop("domain")
     picture = members.picture(**fields["picture"])
@@ -517,13 +514,13 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
 
 
 def _prover(domain: Domain, bounds: Bounds) -> Callable[[HarmonicMap], Certificate]:
-    """Return what proves maps of a domain."""
+    """Return a function that certifies maps of a domain."""
     boundary = Boundary.sample(domain)
     return lambda f: certify(f, boundary, bounds)
 
 
 def _unproven(_: HarmonicMap) -> Certificate:
-    """Return the certificate of a map of which nothing is said."""
+    """Return the certificate of an uncertified map."""
     return Certificate(k=inf, sigma_a=inf, sigma_b=-inf, winding=None, is_certified=False)
 
 

@@ -1,11 +1,14 @@
-"""The members of a project file that hold a layer's picture and arrays.
+"""The members of a project file with a layer's picture and arrays.
 
-They are in a folder of the layer: the picture byte for byte as `source.*`, the arrays of the
-domain, what was cut out by hand, and phi and psi of each key under `keys/` and of the library's
-poses under `poses/`. Where the domain has holes, their outlines and cages are under `holes/`, their
-centres beside it, and the coefficients of a map's logarithms beside its phi and psi. Where it was
-parted by a knife, `closed.npy` tells where its loops are painted; `stiffness.npy` is the stiffness
-that is painted on the vertices of its loops.
+Each layer has a folder. The picture is stored byte for byte as `source.*`, beside the arrays of the
+domain and of the cut-out drawn by hand. The maps phi and psi of each key are under `keys/`, those
+of library poses under `poses/`.
+
+If the domain has holes, `holes/` stores their outlines and cages. Hole centres are beside it, and
+the coefficients of a map's logarithms are beside its phi and psi.
+
+If cut lines part the domain, `closed.npy` stores the painted places of its loops. `stiffness.npy`
+is the stiffness painted on the vertices of its loops.
 """
 
 from collections.abc import Sequence
@@ -73,19 +76,17 @@ def layer_members(layer: Layer) -> dict[str, bytes]:
 
 
 class LayerMembers:
-    """The members of a layer, as they are read."""
-
     def __init__(self, archive: Archive, layer: int) -> None:
         self._archive = archive
         self._folder = _folder(layer)
 
     def picture(self, *, suffix: str, sha256: str, size: tuple[int, int]) -> PictureFile:
-        """Return the picture, which must be the one that was saved."""
+        """Return the picture, which must have the saved checksum and size."""
         data = self._archive.read(f"{self._folder}/source{suffix}")
         picture = PictureFile(data=data, suffix=suffix, size=size)
         if picture.sha256 != sha256:
             raise LissomError(OTHER_CHECKSUM)
-        # A camera's note on its orientation may have turned it by a quarter.
+        # The camera's orientation note may have turned the picture by a quarter.
         width, height = stored_size(picture.data, "its picture")
         if size not in {(width, height), (height, width)}:
             raise LissomError(
@@ -94,7 +95,7 @@ class LayerMembers:
         return picture
 
     def domain(self, *, parted: bool) -> MeshedDomain:
-        """Return the domain, which was parted by a knife or not."""
+        """Return the domain, parted by cut lines or not."""
         outline, cage, vertices = (
             as_points(self._points(f"{name}.npy", most), name, at_least=3)
             for name, most in (
@@ -118,17 +119,16 @@ class LayerMembers:
         return domain
 
     def stiffness(self, domain: MeshedDomain) -> Floats:
-        """Return what is painted on the vertices of the domain's loops."""
+        """Return the stiffness painted on the vertices of the domain's loops."""
         most = sum(map(len, domain.loops))
         return self._archive.numbers(f"{self._folder}/{STIFFNESS}", most=most)
 
     def mask(self, size: tuple[int, int]) -> Mask:
-        """Return the mask of the cut-out."""
         most = -(-size[0] * size[1] // 8)
         return Mask(bits=self._archive.bytes(f"{self._folder}/mask.npy", most=most), size=size)
 
     def lines(self, kind: Literal["strokes", "slits"], counts: Sequence[int]) -> list[Complexes]:
-        """Return the points of the lines of a kind that were drawn by hand, so many of each."""
+        """Return the points of the lines drawn by hand, with these numbers of points."""
         if not counts:
             return []
         points = self._points(f"{kind}.npy", MOST_STROKE_POINTS)
@@ -137,7 +137,7 @@ class LayerMembers:
         return np.split(points, np.cumsum(counts)[:-1])
 
     def map(self, domain: MeshedDomain, kind: Literal["keys", "poses"], index: int) -> HarmonicMap:
-        """Return the map of a key, or of a pose of the library."""
+        """Return the map of a key or of a library pose."""
         phi, psi, logs = _of_map(kind, index)
         return HarmonicMap(
             cage=domain.cage,
@@ -150,7 +150,7 @@ class LayerMembers:
     def _holes(self) -> tuple[Hole, ...]:
         if not self._archive.has(f"{self._folder}/{CENTRES}"):
             return ()
-        # A hole has three corners at least.
+        # A hole has at least three corners.
         centres = as_points(self._points(CENTRES, LARGEST_OUTLINE // 3), "hole_centres")
         holes = []
         for index, centre in enumerate(centres):
@@ -167,11 +167,11 @@ def _folder(layer: int) -> str:
 
 
 def _of_hole(index: int) -> tuple[str, str]:
-    """Return the names of outline and cage of a hole."""
+    """Return the member names of a hole's outline and cage."""
     return f"holes/{index:05}.outline.npy", f"holes/{index:05}.cage.npy"
 
 
 def _of_map(kind: str, index: int) -> tuple[str, str, str]:
-    """Return the names of the coefficients of a map: phi, psi, and those of its logarithms."""
+    """Return the member names of a map's coefficients: phi, psi, and its logarithms."""
     first = f"{kind}/{index:05}"
     return f"{first}.phi.npy", f"{first}.psi.npy", f"{first}.logs.npy"

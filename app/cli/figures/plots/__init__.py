@@ -1,7 +1,7 @@
-"""The figures, a module each, but for those that compare alike.
+"""The figures, one module each; figures that compare alike share one.
 
-In: a studio.
-Out: plates: a picture, a caption, and the numbers beside them.
+In: a `FigureContext`.
+Out: `PaperFigure`s: a picture, a caption, and numbers.
 Imports: `app.cli.figures` without its page.
 """
 

@@ -11,7 +11,7 @@ from app.cli.figures.sheet import draw_strip, new_sheet, plot_shares
 from engine.baselines import harmonic_coordinate_maps
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
-HORN_TURN, HORN_GROWTH = 2.4, 0.7  # of the bar of Figure 7, over its length
+HORN_TURN, HORN_GROWTH = 2.4, 0.7  # of the bar in Figure 7, over its length
 
 
 def make_figure_5(studio: FigureContext) -> PaperFigure:
@@ -36,7 +36,7 @@ def make_figure_6(studio: FigureContext) -> PaperFigure:
 
 
 def make_figure_7(studio: FigureContext) -> PaperFigure:
-    """Draw Figure 7: a bar whose keyframe is told by its boundary alone, bent to a horn."""
+    """Draw Figure 7: a bar bent to a horn, with a keyframe known only on its boundary."""
     caption = (
         "Square bar. Only the places of the outline's vertices are given in both keyframes; "
         "harmonic coordinates make maps of them (Weber and Gotsman 2010, Section 10). Pictures and "

@@ -18,7 +18,6 @@ CAPTION = (
 
 
 def make_figure_1(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     tracks = measure_motions(make_sample_pair("giraffe", 0, 1, studio.triangles), METHODS, MEASURED)
     metric = tracks[METRIC.name]
     between = ((name, track, TIME) for name, track in tracks.items())

@@ -1,4 +1,4 @@
-"""Figure 10: what the metric variant makes of this project's own drawings."""
+"""Figure 10: the metric variant on this project's own drawings."""
 
 from app.cli.figures.measure import MeasuredMotion
 from app.cli.figures.methods import METRIC
@@ -16,7 +16,6 @@ CAPTION = (
 
 
 def make_figure_10(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     triangles = studio.triangles
     pairs = {
         "giraffe": make_sample_pair("giraffe", 0, 1, triangles),

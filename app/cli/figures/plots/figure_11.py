@@ -1,4 +1,4 @@
-"""Figure 11: scaled η on plain meshes, and what is lost by that when they are made finer."""
+"""Figure 11: scaled η on plain meshes, and the Poisson error under refinement."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ from engine.maps import HarmonicMap
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 TIME = 0.5
 SIZES = (500, 2_000, 8_000)
-SWIRL, WAVE = 1.1, 0.05  # radians in the middle, and of the height
+SWIRL, WAVE = 1.1, 0.05  # radians in the middle; share of the height
 TURN, SHEAR = 1.5, 0.15
 CAPTION = (
     "The scaled η variant on meshes: two keyframes that are not harmonic, blended triangle by "
@@ -28,7 +28,7 @@ CAPTION = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PoissonError:
-    """What the Poisson step changes at t = 0.5, by the mean square, of so many triangles."""
+    """Mean square change by the Poisson step at t = 0.5, for a number of triangles."""
 
     name: str
     triangles: int
@@ -46,7 +46,6 @@ def measure_errors(triangles: int) -> tuple[PoissonError, ...]:
 
 
 def make_figure_11(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     shape = _octopus(studio.triangles)
     keyframes = _swirled(shape)
     still = HarmonicMap.identity(shape.domain.cage)
@@ -74,7 +73,7 @@ def _octopus(triangles: int) -> Shape:
 
 
 def _swirled(shape: Shape) -> tuple[Complexes, Complexes]:
-    """Return the mesh waved from side to side, and swirled about its middle; neither harmonic."""
+    """Return the mesh waved from side to side, and swirled about its middle, both non-harmonic."""
     rest = shape.domain.mesh.vertices
     height = float(np.ptp(rest.imag))
     middle = rest.mean()

@@ -1,4 +1,4 @@
-"""Figure 3: a square that turns while it is stretched, and which way the stretch turns."""
+"""Figure 3: the direction of stretch of a square that turns while it is stretched."""
 
 from dataclasses import dataclass
 
@@ -23,10 +23,10 @@ CAPTION = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StretchResult:
-    """How a method stretches the square at t = 0.8."""
+    """The stretch of the square at t = 0.8 by one method."""
 
     name: str
-    direction: float  # degrees by which the direction of the stretch is off the keyframes'
+    direction: float  # degrees from the keyframes' direction of stretch
     k: float
 
 
@@ -54,7 +54,6 @@ def measure_stretch() -> tuple[StretchResult, ...]:
 
 
 def make_figure_3(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     both = make_square_pair()
     nu, eta = MeasuredMotion(both, NU), MeasuredMotion(both, SCALED_ETA)
     identity = HarmonicMap.identity(both.shape.domain.cage)

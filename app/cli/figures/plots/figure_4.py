@@ -1,4 +1,4 @@
-"""Figure 4: a bar that is wound up and grows, with η as it is and with η scaled."""
+"""Figure 4: a bar that is wound up and grows, with η and with scaled η."""
 
 from app.cli.figures.measure import MeasuredMotion, measure_motions
 from app.cli.figures.methods import ETA, SCALED_ETA
@@ -11,7 +11,7 @@ from engine.maps import HarmonicMap
 
 TURN, GROWTH, NU = 2.6, 1.4, 0.5
 TIME = 0.36
-ZOOM = 0.17  # of the picture's longer side: half of what is shown larger
+ZOOM = 0.17  # of the picture's longer side: half of the enlarged part
 CAPTION = (
     "Scaling η, at t = 0.36. Where the keyframe enlarges the bar by more than √e, the unscaled η "
     "variant leaves the bounds on conformal distortion (upper row, and nearer in the second "
@@ -21,7 +21,7 @@ CAPTION = (
 
 
 def make_wound_bar(triangles: int) -> dict[str, MeasuredMotion]:
-    """Return η and scaled η on the bar at rest, and wound up."""
+    """Return the motion of the wound bar by η and by scaled η."""
     shape = beam(triangles)
     identity = HarmonicMap.identity(shape.domain.cage)
     wound = spiral_map(shape, turn=TURN, growth=GROWTH, nu=NU)
@@ -29,7 +29,6 @@ def make_wound_bar(triangles: int) -> dict[str, MeasuredMotion]:
 
 
 def make_figure_4(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     tracks = make_wound_bar(studio.triangles)
     sheet = new_sheet(11, 5.2)
     for row, track in zip(sheet.subplots(2, 4), tracks.values(), strict=True):

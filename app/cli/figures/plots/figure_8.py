@@ -14,7 +14,7 @@ from engine.arrays import Complexes
 from engine.maps import HarmonicMap
 
 TIME = 0.5
-NEAR = 0.04  # of the width: what turns with the tip of the tail
+NEAR = 0.04  # of the width: the neighbourhood of the tail's tip
 CAPTION = (
     "Dragon with a moving tail: Ω in the first picture and f⁰ ≠ Id in the second. Scaled η blends "
     "the angle of the tail linearly and metric does not; metric and Chen et al. (2013) look alike."
@@ -23,11 +23,11 @@ CAPTION = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TailPosition:
-    """Where a method's in-betweens are at t = 0.5."""
+    """Position of a method's in-between at t = 0.5."""
 
     name: str
-    turned: float  # the part of its way that the tip of the tail has turned
-    from_metric: float  # the largest distance from the metric variant, over the diameter
+    turned: float  # turned share of the whole rotation of the tail's tip
+    from_metric: float  # largest distance from the metric variant, over the diameter
 
 
 def make_tail_pair(triangles: int) -> ShapePair:
@@ -36,7 +36,7 @@ def make_tail_pair(triangles: int) -> ShapePair:
 
 
 def measure_tail(tracks: tuple[MeasuredMotion, ...]) -> tuple[TailPosition, ...]:
-    """Measure methods, of which the first is metric."""
+    """Measure methods; the first one must be metric."""
     both = tracks[0].pair
     rest = both.shape.domain.mesh.vertices
     tip = int(rest.real.argmax())
@@ -56,7 +56,6 @@ def measure_tail(tracks: tuple[MeasuredMotion, ...]) -> tuple[TailPosition, ...]
 
 
 def make_figure_8(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     both = make_tail_pair(studio.triangles)
     tracks = tuple(MeasuredMotion(both, method) for method in (METRIC, SCALED_ETA, SIG13))
     metric, eta, chen = tracks
@@ -82,7 +81,7 @@ def make_figure_8(studio: FigureContext) -> PaperFigure:
 
 
 def _turn(rest: Complexes, first: Complexes, second: Complexes, tip: int) -> float:
-    """Return by how many radians the neighbourhood of a vertex turns from one pose to another."""
+    """Return the rotation of a vertex's neighbourhood between two poses, in radians."""
     near = np.abs(rest - rest[tip]) < NEAR * np.ptp(rest.real)
     before, after = (positions[near] - positions[near].mean() for positions in (first, second))
     return float(np.angle(np.vdot(before, after)))

@@ -14,7 +14,7 @@ from engine.streaming import Positions, build_series, finish
 
 SIZES = (1_000, 3_000, 10_000, 50_000, 100_000)
 TIME = 0.4
-ENOUGH = 0.02  # seconds that a measurement lasts at least
+ENOUGH = 0.02  # minimum seconds of a measurement
 MOST = 200  # frames of a measurement
 SERIES = "metric, as a series"
 CAPTION = (
@@ -27,20 +27,20 @@ CAPTION = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameTimes:
-    """Seconds of a frame by each method, by its name, at a number of vertices."""
+    """Seconds per frame by method name, at a number of vertices."""
 
     vertices: int
     seconds: dict[str, float]
 
     def ratio(self, method: str) -> float:
-        """Return by how many times Chen et al. (2013) is slower than a method."""
+        """Return the time of Chen et al. (2013) divided by a method's time."""
         return self.seconds[SIG13.name] / self.seconds[method]
 
 
 def measure_frame_times(
     largest: int, methods: Sequence[ComparedMethod] = METHODS
 ) -> tuple[FrameTimes, ...]:
-    """Time methods on the giraffe, with up to so many vertices."""
+    """Time methods on the giraffe, with up to `largest` vertices."""
     timings = []
     for size in SIZES:
         if size > max(largest, SIZES[0]):
@@ -57,7 +57,6 @@ def measure_frame_times(
 
 
 def make_figure_9(studio: FigureContext) -> PaperFigure:
-    """Draw the figure."""
     timings = measure_frame_times(studio.largest)
     vertices = [timing.vertices for timing in timings]
     sheet = new_sheet(9, 5)
@@ -94,13 +93,13 @@ def make_figure_9(studio: FigureContext) -> PaperFigure:
 
 
 def _played(pair: ShapePair) -> Callable[[float], object]:
-    """Return what plays the metric variant's series."""
+    """Return a function that plays the metric variant's series."""
     prepared = prepare_variant(pair, Variant.METRIC)
     return finish(build_series(Positions.of(prepared.segments[0], prepared.sampled_domain))).values
 
 
 def _seconds(frame: Callable[[], object]) -> float:
-    """Return the least time of a frame, of one core."""
+    """Return the smallest time of a frame, on one core."""
     least, spent = float("inf"), 0.0
     for _ in range(MOST):
         start = time.process_time()

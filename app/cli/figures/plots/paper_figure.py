@@ -1,4 +1,4 @@
-"""What every figure comes to, and what it is made with."""
+"""A finished figure, and the context of making figures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,26 +16,16 @@ BOUNDED = ("", "k, of its key", "τ − 1, of its key", "largest k", "largest τ
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FigureContext:
-    """What figures are made with."""
+    """Renderer and sizes for making figures."""
 
     renderer: ShapeRenderer
     triangles: int  # of a shape's mesh
-    largest: int  # vertices of the largest mesh that is timed
+    largest: int  # vertices of the largest timed mesh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PaperFigure:
-    """A figure as it is shown.
-
-    Parameters
-    ----------
-    title, caption : str
-    picture : bytes
-        A PNG file.
-    heads : tuple of str
-        Of the columns of numbers beside it; the first is of the rows' names.
-    rows : tuple of tuple of str
-    """
+    """A finished figure: a PNG file and a table; the first column holds the names of the rows."""
 
     title: str
     caption: str
@@ -47,7 +37,7 @@ class PaperFigure:
 def make_distortion_figure(
     title: str, caption: str, sheet: "Figure", tracks: Mapping[str, MeasuredMotion]
 ) -> PaperFigure:
-    """Return a figure, and beside it how far in-betweens keep to their keyframes, by name."""
+    """Return a figure with the distortion of in-betweens relative to their keyframes, by name."""
     rows = []
     for name, track in tracks.items():
         one = track.summarize()
