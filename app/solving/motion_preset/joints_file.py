@@ -1,4 +1,4 @@
-"""Joints of a drawing, written as a small JSON text."""
+"""Files with the joints of a drawing, in JSON."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ FIELDS = ("schema", "kind", "joints")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointsFile:
-    """What is said of the joints of a drawing."""
+    """The contents of a joints file."""
 
-    kind: str | None  # None leaves it to be guessed
+    kind: str | None  # None lets the program guess
     joints: Mapping[str, complex]  # in pixels from the lower left corner, y up
 
 
@@ -27,7 +27,7 @@ def load_joints(path: Path) -> JointsFile:
     Raises
     ------
     LissomError
-        If the file is missing, is not JSON, or says anything that it cannot say.
+        If the file is missing, is not JSON, or is not a valid joints file.
     """
     return load_json(path, _parsed, largest=LARGEST)
 
