@@ -57,7 +57,6 @@ class History:
 
     @property
     def document(self) -> Document:
-        """The current document."""
         return self._steps[self._now].document
 
     @property

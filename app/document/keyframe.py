@@ -132,7 +132,6 @@ class Pose:
     def of(
         cls, harmonic_map: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
     ) -> "Pose":
-        """Return a pose with this map."""
         f = harmonic_map
         return cls(targets=targets, phi=f.phi, psi=f.psi, logs=f.logs, certificate=certificate)
 

@@ -184,7 +184,6 @@ def _prepare(
     clip: Clip,
     siblings: Mapping[int, PoseSampler],
 ) -> FrameCorrector:
-    """Return the earlier corrector, or a new one."""
     if earlier is not None:
         return earlier
     layer = clip.layer

@@ -81,7 +81,6 @@ class DeformMesh:
 
     @classmethod
     def fine(cls, source: MeshedDomain) -> "DeformMesh":
-        """Return the layer's own mesh."""
         return cls(domain=source, source=source, coordinates=_coordinates(source))
 
     @classmethod

@@ -80,7 +80,6 @@ class InbetweenCache:
     _moved: tuple[SecondaryCorrection, Complexes] | None = field(init=False, default=None)
 
     def segment(self, clip: Clip, number: int) -> CachedSegment | None:
-        """Return the cached segment of a clip, if any."""
         return self._known.get(segment_key(clip, number))
 
     def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
@@ -196,7 +195,6 @@ class InbetweenCache:
     def positions(
         self, clip: Clip, frame: float, correction: SecondaryCorrection | None = None
     ) -> Complexes | None:
-        """Return the positions of `vertices`."""
         vertices = self.vertices(clip, frame, correction=correction)
         return None if vertices is None else vertices.positions
 
@@ -254,7 +252,6 @@ class InbetweenCache:
     def segments_job(
         self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
     ) -> Callable[[], CacheUpdate]:
-        """Return the job that prepares some segments of a clip."""
         sampler, keep = self.sampler or sibling, self._poses()
         return partial(compute_segments, clip, wanted, self.mesh, sampler, keep=keep)
 
@@ -403,7 +400,6 @@ class InbetweenCache:
         )
 
     def _segment_keys(self, clip: Clip) -> tuple[SegmentKey, ...]:
-        """Return the keys of a clip's segments."""
         known = self._present.get(clip) or self._nearby.get(clip)
         return known or tuple(
             segment_key(clip, number) for number in range(len(segment_keys(clip)))

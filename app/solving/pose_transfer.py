@@ -76,7 +76,6 @@ class SimilarityTransform:
         return self.factor * (places.conj() if self.mirrors else places) + self.shift
 
     def apply_to_point(self, place: complex) -> complex:
-        """Return the image of a place."""
         return complex(self.apply(np.array([place]))[0])
 
     def apply_inverse(self, places: Complexes) -> Complexes:

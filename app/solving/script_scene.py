@@ -25,7 +25,6 @@ from app.solving.script import LayerScript, PoseScript, ScriptAttachment
 
 
 def find_layer(document: Document, name: str) -> Layer:
-    """Return the layer with this name."""
     names = {layer.name: layer for layer in document.layers}
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {join_names([*names])}")
@@ -89,7 +88,6 @@ def with_world_transforms(document: Document, script: PoseScript) -> Document:
 
 
 def with_draw_order(document: Document, script: PoseScript) -> Document:
-    """Return a document with the script's draw order keys."""
     for part in script.layers:
         if part.layer is None or not part.order:
             continue

@@ -143,7 +143,6 @@ def _among(document: Document, identity: int, part: LayerScript) -> Iterator[Non
 
 
 def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
-    """Return the scripts of layers by layer id."""
     named = {}
     for part in script.layers:
         if part.layer is None:

@@ -121,7 +121,6 @@ def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int
 
 
 def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
-    """Return a layer with the repeats of a cycle as keys."""
     cycle = cycle_starting_at(layer, first)
     until = max(cycle.last, end if cycle.until is None else cycle.until)
     own = [key for key in layer.keys if cycle.contains(key.frame)]

@@ -147,6 +147,5 @@ def _follow(layer: Layer, handle: Handle, pose: Pose) -> Pose:
 
 
 def next_handle_name(layer: Layer) -> str:
-    """Return a free name for the next handle."""
     taken = {handle.name for handle in layer.handles}
     return with_number("handle", taken, layer.next_handle + 1)

@@ -60,7 +60,6 @@ def move_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
 
 @layer_command("Copy keys")
 def copy_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
-    """Copy the keys at some frames by a number of frames."""
     return _with_keys(layer, retime.with_copied_keys(layer.keys, frames, by))
 
 
@@ -110,7 +109,6 @@ def scale_keys(
 
 @layer_command("Make last key equal first")
 def match_loop_ends(layer: Layer) -> Layer:
-    """Give the last key the pose of the first, so that a loop has no jump."""
     first, last = layer.keys[0], layer.keys[-1]
     if first is last:
         raise LissomError("A loop needs two keys; insert a second one first.")

@@ -68,7 +68,6 @@ def set_preview(document: Document, preview: FrameRange | None) -> Document:
 
 @command("Set loop")
 def set_loop(document: Document, *, loop: bool) -> Document:
-    """Set whether the animation loops."""
     return document if loop == document.loop else replace(document, loop=loop)
 
 

@@ -15,7 +15,6 @@ from engine.variant import Variant
 
 @layer_command("Set interpolation")
 def set_variant(layer: Layer, variant: Variant) -> Layer:
-    """Set the variant of the in-betweens."""
     return layer if variant == layer.variant else replace(layer, variant=variant)
 
 

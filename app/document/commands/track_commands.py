@@ -28,7 +28,6 @@ def put_track(layer: Layer, track: Track) -> Layer:
 
 @layer_command("Delete track")
 def remove_tracks(layer: Layer, handles: Collection[int]) -> Layer:
-    """Delete the tracks of some handles."""
     gone = [_track(layer, handle) for handle in handles]
     return _with_tracks(layer, (track for track in layer.tracks if track not in gone))
 
@@ -74,7 +73,6 @@ def put_track_key(
 
 @layer_command("Paste keys of track")
 def put_track_keys(layer: Layer, handle: int, keys: Sequence[TrackKey]) -> Layer:
-    """Put keys at their frames in a handle's track, in place of existing keys."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_overwritten_keys(track.keys, keys))
 
@@ -87,7 +85,6 @@ def move_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int)
 
 @layer_command("Copy keys of track")
 def copy_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
-    """Copy the keys of a track at some frames by a number of frames."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_copied_keys(track.keys, frames, by))
 
@@ -146,7 +143,6 @@ def set_track_passing(
 
 @layer_command("Set delay")
 def set_delay(layer: Layer, handle: int, delay: int) -> Layer:
-    """Set the delay of a track in frames."""
     return _with(layer, handle, delay=delay)
 
 
@@ -205,7 +201,6 @@ def set_track_handles(layer: Layer, handle: int, handles: Sequence[int]) -> Laye
 
 @layer_command("Copy track")
 def copy_track(layer: Layer, handle: int, to: int) -> Layer:
-    """Copy a handle's track to another handle."""
     return _with_track(layer, track_for_handles(layer, _track(layer, handle), (to,)))
 
 
@@ -220,7 +215,6 @@ def mirror_track(layer: Layer, handle: int, pairs: SidePairs = PAIRS) -> Layer:
 
 @layer_command("Set spring")
 def put_spring(layer: Layer, spring: Spring) -> Layer:
-    """Set the spring of a handle."""
     if layer.spring_of(spring.handle) == spring:
         return layer
     others = tuple(each for each in layer.springs if each.handle != spring.handle)
@@ -229,7 +223,6 @@ def put_spring(layer: Layer, spring: Spring) -> Layer:
 
 @layer_command("Delete spring")
 def remove_springs(layer: Layer, handles: Collection[int]) -> Layer:
-    """Delete the springs of handles."""
     springs = tuple(spring for spring in layer.springs if spring.handle not in handles)
     return layer if springs == layer.springs else replace(layer, springs=springs)
 

@@ -82,7 +82,6 @@ class PoseSegment:
 
 
 def pose_segments(clip: Clip) -> tuple[PoseSegment, ...]:
-    """Return the pose segments of a clip, in order."""
     return _pose_segments(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 

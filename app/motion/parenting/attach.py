@@ -103,7 +103,6 @@ def reparent_in_place(
 
 
 def anchor_or_default(layer: Layer) -> complex:
-    """Return the anchor of a layer, or its default."""
     if layer.anchor is not None:
         return layer.anchor
     return deepest_point(layer.domain.outline, layer.domain.loops[1:])

@@ -88,7 +88,6 @@ def _attachment_transform(joint: Attachment) -> RigidMotion:
 def blend_transforms(
     layer: Layer, joint: Attachment, first: RigidMotion, last: RigidMotion, share: float
 ) -> RigidMotion:
-    """Return the blend of two transforms of an attached layer."""
     factor = first.factor * np.exp(1j * share * np.angle(last.factor / first.factor))
     # A detached layer is also blended at its anchor, as an attached one.
     anchor = require_anchor(layer) if joint.parent is None else 0j

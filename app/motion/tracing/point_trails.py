@@ -76,7 +76,6 @@ class PointTrails:
             self.known = dict(list(earlier.known.items())[-most:])
 
     def at(self, frame: float) -> TrailFrame:
-        """Return the points at a frame."""
         moment = segment_time_at(self.clip, frame)
         resting = keyed_pose_at(self.clip, moment)
         key: tuple[object, float]

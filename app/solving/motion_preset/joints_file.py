@@ -15,8 +15,6 @@ FIELDS = ("schema", "kind", "joints")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointsFile:
-    """The contents of a joints file."""
-
     kind: str | None  # None lets the program guess
     joints: Mapping[str, complex]  # in pixels from the lower left corner, y up
 

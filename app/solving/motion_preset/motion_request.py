@@ -61,7 +61,6 @@ class MotionRequest:
 
     @property
     def preset(self) -> Motion:
-        """The motion preset."""
         find_kind(self.kind)
         return find_motion(self.motion)
 
@@ -161,7 +160,6 @@ def _with_handle(
 
 
 def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
-    """Return a document in which the layer's head is stiff."""
     outline = document.layer(identity).domain.outline
     radius = HEAD * float(np.abs(outline - head).min())
     return stiffness_commands.paint_stiffness(identity, [head], radius=radius, amount=STIFF_HEAD)(

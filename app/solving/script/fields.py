@@ -25,7 +25,6 @@ def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObj
 
 
 def read_frame(key: Mapping[str, object], where: str, name: str = "frame") -> int:
-    """Return the frame in a field."""
     frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
         raise LissomError(

@@ -91,7 +91,6 @@ def _joint(content: object, where: str) -> ScriptAttachment:
 
 
 def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...]:
-    """Return the visibility keys of a layer."""
     switches = [
         (frame, as_flag(visible, at))
         for at, frame, visible in _from_frames(content, where, "true or false")
@@ -177,7 +176,6 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
 
 
 def parse_transform_keys(content: object, where: str) -> tuple[TransformKey, ...]:
-    """Return the transform keys of a layer."""
 
     def key(read: JsonObject, where: str, **way: Any) -> TransformKey:
         return build_value(
@@ -222,7 +220,6 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
 
 
 def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
-    """Return the draw order keys of a layer."""
     placings = []
     for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
         if place is None:

@@ -261,7 +261,6 @@ def _handle(content: object, where: str) -> ScriptHandle:
 
 
 def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Return the optional settings in the script."""
     options: dict[str, Any] = {}
     if "variant" in script:
         if script["variant"] not in VARIANTS:

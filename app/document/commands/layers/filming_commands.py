@@ -36,7 +36,6 @@ def delete_camera_key(document: Document, frame: int) -> Document:
 
 @layer_command("Key opacity")
 def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
-    """Set the opacity key of a layer at a frame."""
     row = layer.opacity_keys
     new = OpacityKey(frame=keyed_frame(layer, row, frame), opacity=float(opacity))
     changed = _with(row, new, _like(layer, row, new.frame))
@@ -55,7 +54,6 @@ def delete_opacity_key(layer: Layer, frame: int) -> Layer:
 
 @layer_command("Key movement")
 def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer:
-    """Set the transform key of a layer at a frame."""
     row = layer.transform_keys
     new = TransformKey(frame=keyed_frame(layer, row, frame), shift=shift, turn=float(turn))
     changed = _with(row, new, _like(layer, row, new.frame))

@@ -124,7 +124,6 @@ def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document
 
 @command("Set group's blend")
 def set_group_blend(document: Document, path: str, blend: GroupBlend) -> Document:
-    """Set the blend mode of a group."""
     return _changed(document, path, blend=blend)
 
 

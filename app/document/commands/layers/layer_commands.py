@@ -36,7 +36,6 @@ def add_layer(document: Document, layer: Layer, index: int | None = None) -> Doc
 
 @command("Add layers")
 def append_import_log(document: Document, summary: ImportLog) -> Document:
-    """Append notices of an import to the document's import log."""
     return replace(document, import_log=document.import_log + summary) if summary else document
 
 
@@ -222,7 +221,6 @@ def delete_attachment_key(layer: Layer, frame: int) -> Layer:
 
 @layer_command("Move joint in time")
 def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
-    """Move an attachment key to another frame."""
     moved = next((joint for joint in layer.attachments if joint.frame == frame), None)
     if moved is None:
         raise LissomError(f"{layer.name!r} is not attached anew at frame {frame}.")

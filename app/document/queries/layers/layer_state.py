@@ -37,8 +37,6 @@ OPACITY = KeyedProperty[OpacityKey, float](lambda key: key.opacity, SAME_OPACITY
 
 
 class CameraState(NamedTuple):
-    """State of the camera."""
-
     centre: complex  # point of the scene in the centre of the frame
     zoom: float  # above 0
     turn: float  # rotation of the picture, counter-clockwise, in radians
