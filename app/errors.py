@@ -187,10 +187,8 @@ def _quoted(word: str) -> str:
 def listen_to_progress(listener: ProgressListener) -> Iterator[None]:
     """Send the progress of this thread to a listener within a `with` block.
 
-    Parameters
-    ----------
-    listener : callable
-        Takes the finished share, from 0 to 1. An exception from the listener ends the work.
+    The listener takes the finished share, from 0 to 1. An exception from the listener ends the
+    work.
     """
     before = _listener.set(listener)
     try:

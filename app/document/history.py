@@ -103,17 +103,9 @@ class History:
     def do(self, command: Command, *, gesture: object = None) -> None:
         """Run a command on the document.
 
-        Parameters
-        ----------
-        gesture : object, optional
-            Consecutive commands with the same gesture object form one step. No step remains if they
-            end
-            with the document before the gesture.
-
-        Raises
-        ------
-        LissomError
-            If the command is not possible. The history is then unchanged.
+        Consecutive commands with the same `gesture` object form one step. No step remains if they
+        end with the document before the gesture. Raises a `LissomError` if the command is not
+        possible. The history is then unchanged.
         """
         document = command(self.document)
         unkeyed = _fitting(self.preview_pose, self.document, document)
@@ -137,18 +129,8 @@ class History:
         """Replace the pose of a gesture in its step and in all later steps, redo steps included.
 
         All poses with the same map are replaced: in keys, in copies of keys, in the library, and
-        the
-        unkeyed pose.
-
-        Parameters
-        ----------
-        new : callable
-            Returns a layer's new pose for a pose with the map of `old`.
-
-        Returns
-        -------
-        bool
-            False if the step of the gesture was dropped or overwritten.
+        the unkeyed pose. `new` returns a layer's new pose for a pose with the map of `old`. The
+        result is False if the step of the gesture was dropped or overwritten.
         """
         indices = range(len(self._steps))
         begun = next((i for i in indices if self._steps[i].gesture is gesture), None)
@@ -233,8 +215,7 @@ def _fitting(unkeyed: PreviewPose | None, before: Document, after: Document) -> 
     """Return the unkeyed pose with a target for each handle of the later document.
 
     A handle that was added or moved gets its own position as target. None if the later document has
-    no
-    such layer, or the layer has another domain.
+    no such layer, or the layer has another domain.
     """
     if unkeyed is None:
         return None

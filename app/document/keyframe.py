@@ -43,8 +43,7 @@ class Handle:
     position: complex  # at rest, in pixels, y up
     weight: float = 1.0  # relative to other handles
     # Depth of the drawing around the handle where the drawing overlaps itself: −1 behind, 1 in
-    # front, 0
-    # default order. Keys may override the depth.
+    # front, 0 default order. Keys may override the depth.
     depth: float = 0.0
     # Radius of the depth around the handle in pixels; None takes the default share of the drawing.
     extent: float | None = None

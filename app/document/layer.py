@@ -90,8 +90,7 @@ class Layer:
     next_handle: int = 0  # id of the next handle
     keys: tuple[Keyframe, ...]  # in the order of their frames, at least one
     # Point of the picture whose position and rotation are interpolated directly. None lets the
-    # engine
-    # choose the point.
+    # engine choose the point.
     anchor: complex | None = None
     # Whether auto-pin applies: a handle with equal targets in two keys stays there in between.
     has_auto_pins: bool = True
@@ -109,13 +108,11 @@ class Layer:
     bounds: Bounds = NATURAL.bounds  # limits of new poses
     library: tuple[LibraryPose, ...] = ()  # saved poses
     # Vertical axis for flipped poses, in pixels from the picture's left edge. None takes the mean
-    # of
-    # the paired handles, or the middle of the shape.
+    # of the paired handles, or the middle of the shape.
     mirror: float | None = None
     name: str = "layer"  # unique in the document
     # Lower left corner of the picture on the canvas. The domain, the handles and all other points
-    # are
-    # in pixels of the canvas, y up.
+    # are in pixels of the canvas, y up.
     corner: complex = 0j
     # Whether the picture is never deformed, such as a background. The domain is then the whole
     # picture, whatever the cut-out.
@@ -124,8 +121,7 @@ class Layer:
     locked: bool = False  # whether clicks on the drawing pass through
     hidden: bool = False  # at all frames
     # In the order of their frames. The first key holds before its frame too; without keys, the
-    # layer
-    # is visible.
+    # layer is visible.
     visibility_keys: tuple[VisibilityKey, ...] = ()
     opacity: float = 1.0  # in [0, 1]; used without opacity keys
     opacity_keys: tuple[OpacityKey, ...] = ()
@@ -383,10 +379,7 @@ class Layer:
     def require_on_shape(self, places: Mapping[str, complex]) -> None:
         """Refuse the first of these named points that is not on the shape.
 
-        Raises
-        ------
-        LissomError
-            For a point outside the shape.
+        Raises a `LissomError` for a point outside the shape.
         """
         points = np.array(list(places.values()), dtype=np.complex128)
         inside = self.covers(points, tolerance=ON_OUTLINE * diameter(self.domain.outline))

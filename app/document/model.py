@@ -178,10 +178,7 @@ class Document:
     ) -> tuple[Layer, ...]:
         """Return the layer with this id, its parent at a frame, and further ancestors in order.
 
-        Parameters
-        ----------
-        before : bool
-            Whether to use the parents just before the frame.
+        With `before`, the parents are those just before the frame.
         """
         frame = self.loop_frame(frame)
         layer = self.layer(identity)

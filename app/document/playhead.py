@@ -28,8 +28,7 @@ class Playhead:
         """Return the frame that is shown at clock reading `now`.
 
         A loop of the whole animation skips the last frame, which equals the first. A loop of the
-        preview
-        range shows all its frames. Without a loop, playback stops at the end.
+        preview range shows all its frames. Without a loop, playback stops at the end.
         """
         if self.since is None:
             return self.frame

@@ -33,10 +33,8 @@ class DistortionLimitPreset(NamedTuple):
 
 # Measured on the samples and on drawn heads, limbs and layers. Natural: limbs up to a third as
 # thick as long bend by a right angle. A head with three handles keeps its shape when a fourth
-# handle
-# is dragged by a third of its width; at σ_a ≤ 2.5 already the whole head follows. Stiff: limbs up
-# to
-# a seventh as thick as long bend by a right angle.
+# handle is dragged by a third of its width; at σ_a ≤ 2.5 already the whole head follows. Stiff:
+# limbs up to a seventh as thick as long bend by a right angle.
 STIFF: Final = DistortionLimitPreset(
     name="Stiff",
     bounds=Bounds(k=0.35, sigma_a=1.5, sigma_b=0.67),
@@ -162,8 +160,7 @@ class ExportSettings(FormatSettings):
         None exports all frames.
     names : str
         File names of frames without their ending. Each "#" is a digit of the frame number, and
-        "{name}"
-        is the project's name.
+        "{name}" is the project's name.
     earlier : tuple of PictureSettings
         Last settings of other formats.
     """
@@ -194,8 +191,7 @@ class ExportSettings(FormatSettings):
         """Return the settings with another format and its last size and background.
 
         A format without earlier settings takes the current ones. An opaque background that only the
-        current
-        format needs is not taken.
+        current format needs is not taken.
         """
         if name == self.format:
             return self

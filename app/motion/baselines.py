@@ -35,13 +35,7 @@ def compute_baseline(
     """Return in-betweens by a rival method, with all whole frames computed.
 
     The domain's mesh is the displayed mesh. The motion has corners at keys, since these methods
-    blend
-    two keys only.
-
-    Raises
-    ------
-    EngineError
-        If the method cannot handle these keys.
+    blend two keys only. Raises an `EngineError` if the method cannot handle these keys.
     """
     keys = [clip.keys[index] for index in segment_keys(clip)[interval]]
     prepared = prepare_baseline(

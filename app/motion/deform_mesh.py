@@ -55,6 +55,8 @@ class MeshPoints:
 class DeformMesh:
     """A mesh of a domain, with the coordinates by which any pose deforms it.
 
+    `order` is the drawing order of the mesh's triangles.
+
     Parameters
     ----------
     domain : MeshedDomain
@@ -64,11 +66,6 @@ class DeformMesh:
     coordinates : complex64, shape (v, n)
         Values of the basis functions of maps at the vertices. Single precision is enough for a
         screen.
-
-    Attributes
-    ----------
-    order : TriangleOrder
-        Drawing order of the mesh's triangles.
     """
 
     domain: MeshedDomain
@@ -142,8 +139,7 @@ def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Comp
     u, v = rest[:, 1] - rest[:, 0], rest[:, 2] - rest[:, 0]
     p, q = after[:, 1] - after[:, 0], after[:, 2] - after[:, 0]
     # p = a u + b conj(u) and q = a v + b conj(v). The determinant is −2i times twice the area, so
-    # sums
-    # of a and b times the determinant are area-weighted.
+    # sums of a and b times the determinant are area-weighted.
     determinant = u * v.conj() - v * u.conj()
     parts = (p * v.conj() - q * u.conj(), u * q - v * p, determinant)
     sums = [_gather(part, mesh) for part in parts]

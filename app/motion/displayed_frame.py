@@ -39,8 +39,7 @@ class DisplayedFrame:
     vertices: Vertices  # of the mesh
     handles: MeshPoints  # the layer's handles, located in the mesh
     # Displayed until the in-between is computed: one of its two keys, another of their in-betweens,
-    # or
-    # the last frame of another domain.
+    # or the last frame of another domain.
     placeholder: Pose | SingleFrame | MeshedDomain | None = None
     correction: SecondaryCorrection | None = None  # of tracks and springs
     is_approximate: bool = False  # whether the correction is that of an earlier clip
@@ -99,10 +98,8 @@ def show(
     """Return the best available frame; the earlier object itself without a change.
 
     Until an in-between is computed, the nearest in time of its two keys and of their known
-    in-betweens
-    replaces it. Any replacement is exact for its own time. After a change of the domain, the last
-    frame
-    stays until there is a mesh.
+    in-betweens replaces it. Any replacement is exact for its own time. After a change of the
+    domain, the last frame stays until there is a mesh.
 
     Parameters
     ----------

@@ -51,10 +51,8 @@ class InbetweenCache:
     """The in-betweens of a layer on a mesh; for the main thread only.
 
     The content (`SegmentKey`) identifies a segment. Undo, copied keys and a variant tried again
-    thus
-    find earlier results. A segment has nothing, one frame, prepared in-betweens, or a series.
-    Workers
-    get frozen input; their results are taken whenever they arrive.
+    thus find earlier results. A segment has nothing, one frame, prepared in-betweens, or a series.
+    Workers get frozen input; their results are taken whenever they arrive.
 
     Beyond the budget, segments that no clip needs are dropped first, the least recently used first.
     Then follow segments for undo and redo, and then series, those farthest from the playhead first.
@@ -278,8 +276,7 @@ class InbetweenCache:
         """Return the unfinished or next series to build, if any.
 
         Segments nearest to the frame come first; those beyond the budget get no series. With
-        `heat`, series
-        of the distortions are built too.
+        `heat`, series of the distortions are built too.
         """
         build, self.build = self.build, None
         if not self.has(clip):

@@ -39,8 +39,7 @@ class CachedSegment(NamedTuple):
 
     `poses` keeps the poses alive, since their ids are in the segment key. `velocity_shares` are the
     shares of the velocity at both ends. Rival methods have no sites. The series are of the
-    positions,
-    and of f_z and f_z̄.
+    positions, and of f_z and f_z̄.
     """
 
     poses: tuple[Pose, ...]

@@ -193,10 +193,7 @@ class DragSolver:
     def begin(cls, rig: Rig, pose: Pose) -> Self:
         """Return the drag that begins with a pose.
 
-        Raises
-        ------
-        EngineError
-            If the pose folds.
+        Raises an `EngineError` if the pose folds.
         """
         deformer = rig.allow_pose(pose)
         return cls(
@@ -240,8 +237,7 @@ class DragSolver:
         """Return the drag after release, and the new targets of the dragged handles.
 
         Yielding joints get new targets too. A pose at rest is also at rest for the new targets,
-        unless a
-        bone at its limit pulls at a fixed handle.
+        unless a bone at its limit pulls at a fixed handle.
         """
         wish = self.rig.build_targets(targets, self.pins, hands)
         at = self.deformer.positions(self.state)
@@ -279,8 +275,7 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
     """Return a single map that is nearest to the displayed frame, as a pose.
 
     At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
-    are
-    fitted on the outline. If the fit is not certified, it is mixed with the nearer key.
+    are fitted on the outline. If the fit is not certified, it is mixed with the nearer key.
 
     Parameters
     ----------

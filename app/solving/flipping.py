@@ -35,8 +35,7 @@ def flip_targets(
     `SimilarityTransform.transform_target` corrects for that offset.
 
     Partners are found by name, then by position. On a symmetric shape, a handle without a partner
-    takes
-    the motion of the shape at its mirror image. Otherwise it mirrors its own motion.
+    takes the motion of the shape at its mirror image. Otherwise it mirrors its own motion.
     """
     shape, likeness = layer.map_of(pose), SimilarityTransform.reflection(axis)
     handles = {handle.id: handle for handle in layer.handles}

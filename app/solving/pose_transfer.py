@@ -41,8 +41,7 @@ class SimilarityTransform:
         """Return the similarity that best maps places to images.
 
         Its scale is the ratio of their spreads, so that the fit of images to places is its inverse.
-        A
-        single place is only translated, or mirrored at a vertical axis.
+        A single place is only translated, or mirrored at a vertical axis.
 
         Parameters
         ----------
@@ -98,14 +97,12 @@ class SimilarityTransform:
         """Return the target of a point that moves like the image of a place with a target.
 
         The image of the motion f is S ∘ f ∘ S⁻¹. S maps the place p near to the point. The motion
-        of f at
-        p is applied to S(p), and the point moves with it rigidly:
+        of f at p is applied to S(p), and the point moves with it rigidly:
 
             S(f(p)) + u (point − S(p)),  u the rotation of the image at p
 
         or with another rotation of f, `turn`. The undeformed drawing stays undeformed whatever the
-        places
-        are, a rotation of the whole shape is kept, and the way back is the inverse.
+        places are, a rotation of the whole shape is kept, and the way back is the inverse.
         """
         if turn is None:
             (fz,), _ = shape.derivatives(np.array([place]))
@@ -255,8 +252,8 @@ def _image(
     inside = contains(cage, places, holes=inner)
     points = places[inside]
     fz, fzbar = shape.derivatives(points)
-    # With d S⁻¹ = dw/a or its conjugate: (S ∘ f ∘ S⁻¹)_w = f_z, and the other derivative is
-    # f_z̄ a/conj(a). If S mirrors, both are conjugated before this rotation.
+    # With d S⁻¹ = dw/a or its conjugate: (S ∘ f ∘ S⁻¹)_w = f_z, and the other derivative is f_z̄
+    # a/conj(a). If S mirrors, both are conjugated before this rotation.
     if likeness.mirrors:
         fz, fzbar = fz.conj(), fzbar.conj()
     turned = likeness.factor / likeness.factor.conjugate()

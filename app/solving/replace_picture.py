@@ -16,10 +16,8 @@ def start_picture_replacement(before: Layer, made: Layer, canvas: tuple[int, int
     """Return a resolver for a layer with another picture.
 
     A picture of the same size has the old one's place, and one of the canvas's size fills the
-    canvas.
-    Otherwise the centres of both shapes coincide. Handles and the anchor keep their places, or move
-    to
-    the nearest points of the new shape.
+    canvas. Otherwise the centres of both shapes coincide. Handles and the anchor keep their places,
+    or move to the nearest points of the new shape.
 
     Parameters
     ----------

@@ -109,8 +109,6 @@ def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
 
     Parameters
     ----------
-    renewal : KeyResolver
-        Not finished.
     picture : uint8, shape (h, w, 4)
         The layer's decoded picture.
     """

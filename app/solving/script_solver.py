@@ -52,8 +52,11 @@ def pose_document(
 
     Each key is solved by a drag from the key before, the first one from the undeformed drawing. A
     handle without a target in a key keeps its last target. A script of one layer poses the
-    frontmost
-    visible layer. In a script of several, layers without an entry become still.
+    frontmost visible layer. In a script of several, layers without an entry become still.
+
+    The notices are target errors, and parts of the script without effect. Raises a `LissomError` or
+    `EngineError` if a layer is missing or attached to itself, or a handle, a joint or the anchor
+    lies outside its shape.
 
     Parameters
     ----------
@@ -61,19 +64,6 @@ def pose_document(
         An undeformed one, as from `open_picture` or `open_layered`.
     progress : callable
         Receives the description of each step.
-
-    Returns
-    -------
-    document : Document
-    notices : tuple of str
-        Target errors, and parts of the script without effect.
-
-    Raises
-    ------
-    LissomError, EngineError
-        If a layer is missing or attached to itself, or a handle, a joint or the anchor lies outside
-        its
-        shape.
     """
     named, notices = _by_layer(document, script), list[str]()
     document = replace(

@@ -36,13 +36,8 @@ def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> 
     """Create a cycle that repeats until a frame, or until the end of the document.
 
     The cycle replaces one with the same first frame. A key at `last` with the pose of the first key
-    is
-    removed, since it repeats the first key.
-
-    Raises
-    ------
-    LissomError
-        If the cycle overlaps another cycle, or keys are in the way of its repeats.
+    is removed, since it repeats the first key. Raises a `LissomError` if the cycle overlaps another
+    cycle, or keys are in the way of its repeats.
     """
     cycle = Cycle(first=first, last=last, until=until)
     keys = layer.keys
@@ -91,17 +86,14 @@ def bake_cycle(document: Document, identity: int, first: int, end: int) -> Docum
     Only the tangents into and out of the range may change. An incomplete repeat at the end stays a
     repeat of the one before. Repeated switch keys are baked too.
 
+    Raises a `LissomError` if a track acts in a part of the cycle only, and is not zero at its ends.
+
     Parameters
     ----------
     identity : int
         Layer id.
     end : int
         The document's last frame, where repeats without an end stop.
-
-    Raises
-    ------
-    LissomError
-        If a track acts in a part of the cycle only, and is not zero at its ends.
     """
     cycle = cycle_starting_at(document.layer(identity), first)
     document = _with_baked_switch(
@@ -156,10 +148,8 @@ def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
 def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
     """Return the last frame of a cycle's repeats: whole repeats if possible; None is no end.
 
-    Raises
-    ------
-    LissomError
-        If the next key leaves no room for a repeat, or another cycle begins within the range.
+    Raises a `LissomError` if the next key leaves no room for a repeat, or another cycle begins
+    within the range.
     """
     for cycle in layer.cycles:
         if first < cycle.first < last:

@@ -29,9 +29,8 @@ def insert_key(layer: Layer, frame: int, pose: Pose, *, easing: Easing = LINEAR)
     """Insert a key at a frame without a key.
 
     A key within a segment takes the easing of the segment. New segments take `easing`: the segment
-    from
-    a new first key, or the segment from the former last key if its easing is linear. The document's
-    frames grow to contain the key, as in all commands here.
+    from a new first key, or the segment from the former last key if its easing is linear. The
+    document's frames grow to contain the key, as in all commands here.
     """
     return _inserted(layer, frame, pose, easing)
 
@@ -81,12 +80,7 @@ def reverse_keys(
 ) -> Layer:
     """Reverse the keys at some frames, and the motion between them.
 
-    Parameters
-    ----------
-    span : tuple of int, optional
-        First and last frame of the reversed range, for several layers at once. By default the range
-        of
-        the keys.
+    `span` is the first and the last frame of the reversed range, by default that of the keys.
     """
     return _with_keys(layer, retime.with_reversed_keys(layer.keys, frames, span))
 
@@ -97,10 +91,7 @@ def scale_keys(
 ) -> Layer:
     """Scale the frames of some keys around a fixed frame.
 
-    Parameters
-    ----------
-    first : int, optional
-        The fixed frame; by default the first of the keys.
+    `first` is the fixed frame, by default that of the first key.
     """
     keys = retime.with_scaled_keys(layer.keys, frames, factor, first)
     stays = min(frames, default=0) if first is None else first
@@ -176,8 +167,7 @@ def _carried_motions(
     """Return a layer's motion presets with their ends moved with the keys.
 
     A motion preset that would contain other keys or overlap another preset is dropped, since
-    applying
-    it again would delete these keys. A preset that moves as a whole stays unedited.
+    applying it again would delete these keys. A preset that moves as a whole stays unedited.
     """
     gone = {frame: to(frame) for frame in frames}
     motions: list[AppliedMotion] = []

@@ -62,8 +62,7 @@ class TimeScale:
         """Return keys at their scaled frames; `at_frame` moves one key.
 
         Two keys at one frame are refused. Before the fixed frame, where no frame is shown, the last
-        of them
-        counts.
+        of them counts.
         """
         placed: dict[int, Timed] = {}
         for key in keys:

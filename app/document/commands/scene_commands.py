@@ -169,10 +169,7 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
 def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
     """Replace a layer after a motion preset; a document without motion becomes a loop of it.
 
-    Parameters
-    ----------
-    moved : Layer
-        The layer with the new keys, and with `given` among its motions.
+    `moved` has the new keys, and `given` among its motions.
     """
     is_new = not _moves(document)
     document = document.with_layer(moved)

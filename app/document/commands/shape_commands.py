@@ -34,10 +34,7 @@ def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
 def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
     """Set the limits of distortion.
 
-    Parameters
-    ----------
-    poses : sequence of Pose, optional
-        All poses of the layer, solved within the new limits. By default the poses stay.
+    `poses` are all poses of the layer, solved within the new limits. By default the poses stay.
     """
     if poses is not None:
         return layer.with_poses(poses, bounds=bounds)

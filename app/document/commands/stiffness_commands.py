@@ -87,8 +87,7 @@ def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
     """Make the stiffness of a layer symmetric.
 
     At each point, the value farther from 1 of the point and its mirror image wins. Bones are copied
-    to
-    the partners of their handles by name.
+    to the partners of their handles by name.
     """
     stiffness, domain = layer.stiffness, layer.domain
     if stiffness is not None:

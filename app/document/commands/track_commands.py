@@ -175,11 +175,8 @@ def plant_track(
 ) -> Layer:
     """Change a track to scene space, or back to pose space.
 
-    Parameters
-    ----------
-    places, velocities : sequences of complex
-        New values of the keys in the new space, in order; `app.motion` computes them. Without
-        velocities the keys lose their own.
+    `app.motion` computes `places` and `velocities`, the values of the keys in the new space.
+    Without velocities the keys lose their own.
     """
     track = _track(layer, handle)
     velocities = velocities or [None] * len(places)

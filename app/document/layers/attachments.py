@@ -24,8 +24,7 @@ class Attachment:
     """A joint that attaches a layer to a parent from a frame on, or detaches it.
 
     The layer's anchor follows the point of the parent at every time. The in-betweens leave this
-    freedom
-    open (Section 7, "a user curve for the anchor"), so attachment adds no distortion.
+    freedom open (Section 7, "a user curve for the anchor"), so attachment adds no distortion.
     """
 
     parent: int | None  # layer id; None detaches the layer
@@ -85,8 +84,7 @@ def attachments_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:
     """Return whether the parent of a layer changes within a cycle and repeats with the cycle.
 
     The attachments repeat if no key lies in the repeats. A key at the end of the cycle may only
-    restore
-    the attachment of the beginning.
+    restore the attachment of the beginning.
     """
     begun = _begun(joints, cycle)
     return cycle.contains_changes(
@@ -101,10 +99,8 @@ def repeated_joints(
     """Return attachments with copies in each repeat of the cycles, up to the last frame.
 
     Each repeat, and the time after the last, begins like the cycle; the attachment before blends to
-    it.
-    With `keep_world_transform` each copy keeps the placement at its own frame. Nothing then jumps,
-    even
-    if the parent moves on meanwhile.
+    it. With `keep_world_transform` each copy keeps the placement at its own frame. Nothing then
+    jumps, even if the parent moves on meanwhile.
     """
     for cycle in cycles:
         if not (

@@ -5,8 +5,8 @@ from typing import Literal, get_args
 
 from app.document.checks import NOTHING, Unknown, require
 
-# How the colours of a layer are blended with the colours behind it ("Compositing and Blending
-# Level 1" of the W3C, Section 10).
+# How the colours of a layer are blended with the colours behind it ("Compositing and Blending Level
+# 1" of the W3C, Section 10).
 BlendMode = Literal["normal", "multiply", "screen"]
 BLENDS: tuple[BlendMode, ...] = get_args(BlendMode)
 # The layers of a pass-through group blend directly with the backdrop; the group's opacity is

@@ -46,8 +46,7 @@ class SwitchGroup:
     name: str  # unique in the document
     layers: tuple[int, ...]  # layer ids, at least two, in the order of the list
     # In the order of their frames. The first key holds before its frame too; without keys, the
-    # first
-    # layer is visible.
+    # first layer is visible.
     keys: tuple[SwitchKey, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 

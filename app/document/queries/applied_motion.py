@@ -12,8 +12,7 @@ def digest_keys(layer: Layer, first: int, last: int) -> str:
     """Return a digest of the keys from one frame to another, both included.
 
     The digest covers what a person edits: frames, targets, easings, tangent modes, depths and
-    cycles.
-    Solving the poses again within other limits or on another mesh does not change it.
+    cycles. Solving the poses again within other limits or on another mesh does not change it.
     """
     digest = hashlib.sha256()
     for key in layer.keys:

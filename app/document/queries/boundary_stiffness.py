@@ -90,10 +90,7 @@ def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:
 def bone_region(layer: Layer, bone: Bone, points: Complexes) -> Floats:
     """Return the share (t,), from 0 to 1, of a bone's stiffness at points of the boundary.
 
-    Raises
-    ------
-    EngineError
-        If the bone leaves the drawing or crosses a hole.
+    Raises an `EngineError` if the bone leaves the drawing or crosses a hole.
     """
     start, end = (layer.handle(identity).position for identity in bone.ends)
     return limb_weights(layer.domain.loops, start, end, points)

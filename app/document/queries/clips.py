@@ -55,8 +55,7 @@ class Clip:
     # A rival method to compare with the layer's own variant.
     baseline: Baseline | None = None
     # Clips of all ancestors, without ancestors of their own. Set only if springs or scene-space
-    # tracks
-    # depend on the motion of the ancestors.
+    # tracks depend on the motion of the ancestors.
     parents: "tuple[Clip, ...]" = ()
 
     def __eq__(self, other: object) -> bool:

@@ -11,8 +11,8 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 from app.document.timing import HOLD, Easing, TangentMode
 from engine.interpolation import InteriorKnot
 
-# Tangent of a segment at a key: the knot of a smooth key, or the share of a straight blend's
-# speed, 1 at a corner and 0 at a stop.
+# Tangent of a segment at a key: the knot of a smooth key, or the share of a straight blend's speed,
+# 1 at a corner and 0 at a stop.
 KeyTangent = InteriorKnot | float
 
 
@@ -159,8 +159,7 @@ def sample_segment(
     """Return the value at a share of a segment, 0 to 1; exact at both keys.
 
     A smooth key has its own velocity, or the slope of the parabola through it and its neighbours.
-    Next
-    to an equal neighbour it is a stop.
+    Next to an equal neighbour it is a stop.
     """
     one, other = passages.keys[leg.first], passages.keys[leg.last]
     share = one.easing(time)

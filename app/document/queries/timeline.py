@@ -27,8 +27,7 @@ class SegmentTime(NamedTuple):
 
     segment: int
     # Time within the segment's in-betweens, from 0 at the first key to 1 at the second. If only
-    # these
-    # two keys are blended, it is the weight of the second.
+    # these two keys are blended, it is the weight of the second.
     weight: float
 
 
@@ -49,10 +48,8 @@ def segment_time_at(clip: Clip, frame: float) -> SegmentTime:
     """Return the segment and the weight at a frame.
 
     The first and the last pose hold outside the keys. In a loop the last key leads to the first,
-    and
-    the last frame equals the first; frames outside wrap around. In a cycle, the repeated frame
-    counts.
-    Fractions lie between frames.
+    and the last frame equals the first; frames outside wrap around. In a cycle, the repeated frame
+    counts. Fractions lie between frames.
     """
     if len(clip.keys) == 1:
         return SegmentTime(0, 0.0)
@@ -209,17 +206,14 @@ def _poses_alike(clip: Clip, first: SegmentTime, second: SegmentTime) -> bool:
 def frame_times(document: Document, frames: FrameRange, fps: float | None = None) -> list[float]:
     """Return the frame, possibly fractional, of each picture of an export.
 
+    Raises a `LissomError` if the rate is out of its range.
+
     Parameters
     ----------
     frames : FrameRange
         The last frame is included only if the export's rate meets it.
     fps : float, optional
         Pictures per second; by default the document's rate.
-
-    Raises
-    ------
-    LissomError
-        If the rate is out of its range.
     """
     if fps is None:
         return [float(frame) for frame in range(frames.first, frames.last + 1)]

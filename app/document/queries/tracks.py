@@ -35,13 +35,12 @@ def track_at(track: Track, clip: Clip, frame: float) -> TrackSample | None:
     """Return the value of a track at a frame; None outside the range of its keys.
 
     The range is delayed by the track's delay. It wraps around in a loop, and repeats in a cycle
-    that
-    contains the track. The value at a key is exact.
+    that contains the track. The value at a key is exact.
 
     Position and rotation are interpolated separately
-    (`app.document.queries.tangents.sample_segment`).
-    Smooth first and last keys have zero velocity, since the track has no effect beyond them. If the
-    track fills a loop and its ends agree, the motion continues from the last to the first.
+    (`app.document.queries.tangents.sample_segment`). Smooth first and last keys have zero velocity,
+    since the track has no effect beyond them. If the track fills a loop and its ends agree, the
+    motion continues from the last to the first.
     """
     time = _time(track, clip, frame)
     if time is None or not track.enabled:
@@ -56,8 +55,7 @@ def velocity_at(track: Track, clip: Clip, frame: float) -> complex | None:
     """Return the velocity at which a key inserted at this frame does not change the motion.
 
     In pixels per frame. None if the keys around have no velocities, the segment is eased, or the
-    frame
-    is outside the track.
+    frame is outside the track.
     """
     time = _time(track, clip, frame)
     keys = track.keys
@@ -141,9 +139,8 @@ def spring_root(layer: Layer, spring: Spring) -> int | None:
     """Return the id of the handle about which a spring swings, if any.
 
     The spring's own root comes first; if that has a spring, the root of that spring, and so on.
-    Without
-    one, it is the nearest handle without a spring, first along bones, then along the drawing, never
-    across a gap. Tracks have no influence on the root.
+    Without one, it is the nearest handle without a spring, first along bones, then along the
+    drawing, never across a gap. Tracks have no influence on the root.
     """
     seen = {spring.handle}
     while spring.root is not None:

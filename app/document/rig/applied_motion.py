@@ -17,8 +17,7 @@ class AppliedMotion:
     """An applied motion preset, with all that is needed to apply it again with other parameters.
 
     The keys alone define how the layer moves. `app.document.queries.is_motion_unedited` tests
-    whether
-    the keys are still as the preset made them.
+    whether the keys are still as the preset made them.
     """
 
     motion: str  # name of an entry of `engine.geometry.motions.MOTIONS`

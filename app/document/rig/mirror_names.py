@@ -30,8 +30,8 @@ def mirrored_name(name: str, pairs: SidePairs = PAIRS) -> str | None:
 
     A pair of whole names comes first. A longer word counts at the borders of words, as in
     "handLeftUpper", but not in "bright" or "cleft". A single letter counts if it stands alone:
-    ".L",
-    "_r", "L arm", "arm.l.001". The last of several counts, as in "right tail.L". The case is kept.
+    ".L", "_r", "L arm", "arm.l.001". The last of several counts, as in "right tail.L". The case is
+    kept.
     """
     both_ways = [*pairs, *((other, word) for word, other in pairs)]
     for word, other in both_ways:
@@ -83,10 +83,7 @@ def require_pairs(pairs: SidePairs) -> None:
 def parse_pairs(text: str) -> SidePairs:
     """Return the pairs in a text such as "L/R, near/far".
 
-    Raises
-    ------
-    LissomError
-        If the text is not a list of pairs.
+    Raises a `LissomError` if the text is not a list of pairs.
     """
     pairs = []
     for part in filter(str.strip, text.split(",")):

@@ -16,16 +16,12 @@ HALVINGS = 54
 class Easing:
     """A monotone map of [0, 1] to itself, or a hold.
 
-    Raises
-    ------
-    LissomError
-        If there are not four numbers, or one is outside [0, 1].
+    Raises a `LissomError` if there are not four numbers, or one is outside [0, 1].
     """
 
     # x1, y1, x2, y2 of a cubic Bézier curve from (0, 0) to (1, 1). With all four in [0, 1], both
     # coordinates are monotone and the weight stays in [0, 1], which the distortion bounds require.
-    # None
-    # holds the first key until the second key.
+    # None holds the first key until the second key.
     curve: tuple[float, float, float, float] | None
 
     def __post_init__(self) -> None:

@@ -53,8 +53,8 @@ class Spring:
         require(self.root != self.handle, "A spring swings about another handle than its own.")
 
 
-# Frequency and damping by name. "tail" and "ear" are measured on the samples, the others are
-# chosen between them.
+# Frequency and damping by name. "tail" and "ear" are measured on the samples, the others are chosen
+# between them.
 SPRING_PRESETS: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
         "tail": (1.6, 0.18),

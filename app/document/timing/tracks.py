@@ -30,8 +30,7 @@ class TrackKey(BaseKey):
     # rotation.
     turn: float = 0.0
     # Velocity through the key in pixels per frame, in the space of `place`. None derives it from
-    # the
-    # neighbouring keys and the easings.
+    # the neighbouring keys and the easings.
     velocity: complex | None = None
 
     def __post_init__(self) -> None:

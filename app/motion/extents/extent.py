@@ -95,15 +95,8 @@ def motion_bounding_box(
 ) -> BoundingBox | None:
     """Return the bounding box of all layers in these frames; long ranges are sampled.
 
-    Parameters
-    ----------
-    place : callable
-        Returns the vertex positions of a layer, by its id, in a frame; None ends the search.
-
-    Raises
-    ------
-    LissomError
-        If a position is not finite.
+    `place` returns the vertex positions of a layer, by its id, in a frame. None ends the search.
+    Raises a `LissomError` if a position is not finite.
     """
     if not document.exported_layers:
         return BoundingBox(0j, complex(*document.canvas))

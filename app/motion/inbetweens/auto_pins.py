@@ -38,10 +38,8 @@ SLOWEST = 1e-9  # speed below which a segment begins at rest
 class AutoPins:
     """The auto-pins of a clip.
 
-    Parameters
-    ----------
-    sampler : PoseSampler
-        Of the layer's domain, at any points. Its cached data of the outline is used and extended.
+    `sampler` belongs to the layer's domain, at any points. Its cached data of the outline is used
+    and extended.
     """
 
     def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
@@ -136,8 +134,7 @@ class AutoPins:
         """Return the firmness of each handle: 0 on a point of higher rank, 1 far from it.
 
         The anchor ranks above pinned handles, these above fading ones, and these above all others.
-        Two
-        close points with different targets would tear the drawing.
+        Two close points with different targets would tear the drawing.
         """
         layer = self.clip.layer
         places = np.array([each.position for each in layer.handles], dtype=np.complex128)

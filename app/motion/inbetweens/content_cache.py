@@ -15,13 +15,7 @@ class ContentCache:
     """A thread-safe cache of frozen values within a budget; the least recently used go first.
 
     Domains with equal outlines, such as those of a duplicated layer or of a file opened again,
-    share
-    their values.
-
-    Parameters
-    ----------
-    budget : int
-        Bytes of all values together.
+    share their values. `budget` limits the bytes of all values together.
     """
 
     def __init__(self, budget: int) -> None:

@@ -33,10 +33,8 @@ HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
 class BaseMotionFrame(NamedTuple):
     """The frame that tracks are relative to.
 
-    Parameters
-    ----------
-    positions, rotations : complex128, shape (h,)
-        Positions of the handles without tracks, and rotation factors of the shape there.
+    `positions` (h,) are those of the handles without tracks. `rotations` (h,) are the factors, of
+    modulus 1, by which the shape turns there.
     """
 
     positions: Complexes
@@ -109,8 +107,7 @@ class FrameCorrector:
                 return None
             base, count = self._base(frame), len(self._points)
             # Passed here and not stored: a stored bound method would be a reference cycle, and the
-            # object would
-            # outlive its last user.
+            # object would outlive its last user.
             wanted = self._own.targets_at(frame, base.places[:count], base.fz[:count], self._places)
             return None if wanted is None else self._solve_correction(frame, base, wanted)
 
@@ -172,8 +169,7 @@ class FrameCorrector:
         """Return targets of handles with tracks and springs; other handles keep their places.
 
         Handles close to them, or close to a fixed anchor, have less firmness, since they would tear
-        the
-        drawing.
+        the drawing.
         """
         count, more = len(self._points), len(base.places) - len(self._points)
         size = self._corrector.boundary.size

@@ -98,8 +98,7 @@ class OutlineCache:
     ----------
     corrections : dict
         Corrections of frames by content, in the order of last use. Access needs `guard`, since
-        several
-        threads use it.
+        several threads use it.
     tangents : dict
         Tangents at smooth keys, by poses and the other values that determine them. Access needs
         `guard`.
@@ -157,6 +156,9 @@ class PoseSampler:
     The samples of each pose are cached; poses are frozen, so samples stay valid. The class is
     thread-safe.
 
+    Raises an `EngineError` if a point or the anchor is outside the domain. `forget_extension` frees
+    `extension_bytes` bytes.
+
     Parameters
     ----------
     anchor : complex, optional
@@ -167,16 +169,6 @@ class PoseSampler:
         Additional points that need values without derivatives; only with `points`.
     sibling : PoseSampler, optional
         With the same outline and cage; shares the data that depends on these alone.
-
-    Raises
-    ------
-    EngineError
-        If a point or the anchor is outside the domain.
-
-    Attributes
-    ----------
-    extension_bytes : int
-        Bytes that `forget_extension` frees.
     """
 
     def __init__(

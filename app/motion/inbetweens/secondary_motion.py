@@ -38,10 +38,7 @@ class SecondaryTargets(NamedTuple):
 class SecondaryMotion:
     """The springs and tracks of a clip.
 
-    Parameters
-    ----------
-    carried : callable, optional
-        Rigid motion of the layer at a frame; by default the identity.
+    `carried` returns the rigid motion of the layer at a frame, by default the identity.
     """
 
     def __init__(self, clip: Clip, carried: ParentMotion | None = None) -> None:
@@ -51,8 +48,7 @@ class SecondaryMotion:
         self._index = {handle.id: number for number, handle in enumerate(layer.handles)}
         self._tracks = [track for track in layer.tracks if track.enabled]
         # Tracks and springs hold their handles also before they move them, so that nothing jumps at
-        # their
-        # start.
+        # their start.
         own = [identity for track in self._tracks for identity in track.handles]
         own += [spring.handle for spring in self._swings.springs]
         self._is_own = np.zeros(len(layer.handles), np.bool_)

@@ -26,7 +26,9 @@ def attach_in_place(
     place: complex | None = None,
     turns: bool,
 ) -> tuple[complex, Attachment]:
-    """Return the anchor and the attachment that keep the layer in place at a frame.
+    """Return the child's anchor and the attachment that keep the child in place at a frame.
+
+    Raises a `LissomError` if the child is not at that place.
 
     Parameters
     ----------
@@ -38,23 +40,10 @@ def attach_in_place(
         The frame at which nothing moves. The attachment replaces the one in effect there.
     place : complex, optional
         Place of the joint in the scene. By default the child's anchor. If the parent is not there
-        and
-        no other attachment needs the anchor, the centre of the overlap. Outside the parent, the
-        child
-        keeps its offset from the nearest point.
+        and no other attachment needs the anchor, the centre of the overlap. Outside the parent, the
+        child keeps its offset from the nearest point.
     turns : bool
         Whether the child rotates with the parent.
-
-    Returns
-    -------
-    anchor : complex
-        Of the child.
-    joint : Attachment
-
-    Raises
-    ------
-    LissomError
-        If the child is not at that place.
     """
     own, other = joints.document.layer(child), joints.document.layer(parent)
     held = own.attachment_key_at(int(frame))

@@ -28,8 +28,9 @@ class ParentTransforms:
     """The transforms of a document's attached layers at any time.
 
     A parent moves a layer rigidly about its anchor. The distortion of the layer does not change,
-    and
-    the joint never opens.
+    and the joint never opens.
+
+    Raises an `EngineError` if a joint or an anchor lies outside its layer.
 
     Parameters
     ----------
@@ -46,11 +47,6 @@ class ParentTransforms:
         These points over time.
     is_whole : bool
         Whether all frames are computed.
-
-    Raises
-    ------
-    EngineError
-        If a joint or an anchor lies outside its layer.
     """
 
     def __init__(
@@ -196,8 +192,7 @@ class ParentTransforms:
         """Return position and rotation of a point for the computation of a dependent layer.
 
         Corrections are left out if they may depend on that layer in turn: those of the layer
-        itself, and of
-        layers that are its descendants at other frames.
+        itself, and of layers that are its descendants at other frames.
         """
         others = (each, *self.document.all_ancestors(each.id))
         if all(other.id != layer for other in others):

@@ -22,10 +22,7 @@ class JointsFile:
 def load_joints(path: Path) -> JointsFile:
     """Read the joints of a drawing.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, is not JSON, or is not a valid joints file.
+    Raises a `LissomError` if the file is missing, is not JSON, or is not a valid joints file.
     """
     return load_json(path, _parsed, largest=LARGEST)
 

@@ -24,8 +24,7 @@ from engine.geometry.motions import Body, Motion, Parameters, find_kind, find_mo
 from engine.maps import Bounds
 
 # Fractions of the drawing's diameter: a handle this close to a joint is its handle; a joint this
-# far
-# outside moves to the outline.
+# far outside moves to the outline.
 SAME_JOINT, BESIDE = 0.004, 0.01
 TRUNK = ("neck", "head", "chest")
 STIFF_TRUNK, STIFF_LIMB, STIFF_HEAD = 10.0, 3.0, 20.0
@@ -36,10 +35,8 @@ HEAD = 1.5  # radius as a multiple of the distance from the head's joint to the 
 class MotionRequest:
     """A request to apply a motion preset to a layer.
 
-    Raises
-    ------
-    EngineError
-        If the motion or the kind does not exist, or the motion is not made for the kind.
+    Raises an `EngineError` if the motion or the kind does not exist, or the motion is not made for
+    the kind.
     """
 
     motion: str
@@ -75,10 +72,8 @@ def find_facing(layer: Layer, order: MotionRequest) -> int:
 def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
     """Return the body of an undeformed layer.
 
-    Raises
-    ------
-    LissomError, EngineError
-        If a joint is not on the drawing, or the kind has no such joint.
+    Raises a `LissomError` or `EngineError` if a joint is not on the drawing, or the kind has no
+    such joint.
     """
     outline, kind = layer.domain.outline, find_kind(order.kind)
     x, y = outline.real, outline.imag

@@ -148,15 +148,8 @@ class MotionSolve:
 def start_motion_solve(document: Document, identity: int, order: MotionRequest) -> MotionSolve:
     """Return the initial state of applying a motion preset; no key is solved yet.
 
-    Parameters
-    ----------
-    identity : int
-        Layer id.
-
-    Raises
-    ------
-    LissomError, EngineError
-        If the layer cannot be posed, a joint is not on it, or a needed joint is missing.
+    Raises a `LissomError` or `EngineError` if the layer cannot be posed, a joint is not on it, or a
+    needed joint is missing.
     """
     before = document.layer(identity)
     if before.still:

@@ -39,8 +39,7 @@ def splice_motion(
         Of one repeat, and of the blend in.
     given : AppliedMotion
         It gets the digest of its keys. Overlapping motions are dropped, and cycles that repeat into
-        it
-        are baked.
+        it are baked.
     until : int
         Last frame whose key is deleted, if the motion replaces a longer one.
     """

@@ -104,10 +104,7 @@ def parse_switch_groups(
 ) -> tuple[ScriptSwitchGroup, ...]:
     """Return the switch groups of a script.
 
-    Parameters
-    ----------
-    switched : sequence of str
-        Layers with visibility keys of their own.
+    `switched` are the layers with visibility keys of their own.
     """
     entries = as_list(script.get("choices", []), "choices")
     choices = [_choice(entry, f"choices[{index}]") for index, entry in enumerate(entries)]

@@ -101,8 +101,7 @@ class LayerScript:
     """The animation of one layer, in pixels of the canvas, y up.
 
     The defaults are those of the file format. `layer` is None in a script of a single layer.
-    Tracks,
-    springs and bones refer to handles by index into `handles`.
+    Tracks, springs and bones refer to handles by index into `handles`.
     """
 
     layer: str | None = None
@@ -155,10 +154,7 @@ class PoseScript:
 def load_pose_script(path: Path) -> PoseScript:
     """Read a pose script.
 
-    Raises
-    ------
-    LissomError
-        If the file is missing, is not JSON, or is not a valid pose script.
+    Raises a `LissomError` if the file is missing, is not JSON, or is not a valid pose script.
     """
     return load_json(path, parse_pose_script, largest=LARGEST)
 
@@ -166,11 +162,8 @@ def load_pose_script(path: Path) -> PoseScript:
 def parse_pose_script(content: object) -> PoseScript:
     """Turn decoded JSON into a script.
 
-    Raises
-    ------
-    LissomError
-        If a field is unknown, missing or of the wrong kind, a key names an unknown handle, or the
-        frames are out of order.
+    Raises a `LissomError` if a field is unknown, missing or of the wrong kind, a key names an
+    unknown handle, or the frames are out of order.
     """
     read = as_object(content, "the script")
     if "figures" in read and "layers" not in read:

@@ -21,8 +21,7 @@ def group_layers(document: Document, identities: Collection[int], path: str) -> 
     """Put layers in a group, or with "" outside all groups; missing groups are created.
 
     The layers keep their order and go in front of the group's layers. In an empty group, they go
-    where
-    the foremost of them was.
+    where the foremost of them was.
     """
     missing = _missing_groups(document, path)
     chosen = [layer for layer in document.layers if layer.id in identities]

@@ -16,8 +16,7 @@ def create_switch_group(document: Document, name: str, layers: Sequence[int]) ->
     """Create a switch group from layers that are in no other switch group.
 
     Visibility keys become switch keys: at each frame the foremost visible layer is chosen. Where
-    none
-    is visible, the previous choice stays.
+    none is visible, the previous choice stays.
     """
     members = [document.layer(identity) for identity in layers]
     starts = {switch.frame for layer in members for switch in layer.visibility_keys}

@@ -24,8 +24,7 @@ class CompositeGroup(Generic[Drawn]):
     # and blends with that backdrop as if it were opaque.
     clipped: bool = False
     # Pass-through group: its parts blend directly with the backdrop; the group's opacity is applied
-    # to
-    # the result.
+    # to the result.
     is_pass_through: bool = False
 
     @property

@@ -57,8 +57,7 @@ def camera_at(document: Document, frame: float) -> CameraState | None:
     """Return the camera at a frame; None without camera keys.
 
     The camera holds before its first key and after its last. In a loop, a segment leads from the
-    last
-    key to the first.
+    last key to the first.
     """
     keys = document.camera
     if not keys:
@@ -139,10 +138,8 @@ def layers_in_draw_order(document: Document, frame: float) -> tuple[Layer, ...]:
     """Return the layers at a frame from back to front.
 
     Layers with a draw order key move next to their reference layer, each after the reference layer
-    has
-    moved. In a circle, the layer with the oldest key moves first. Clipped layers move with their
-    base
-    unless they have keys of their own, and no layer goes between them.
+    has moved. In a circle, the layer with the oldest key moves first. Clipped layers move with
+    their base unless they have keys of their own, and no layer goes between them.
     """
     placed: dict[int, tuple[int, int, bool]] = {}
     for layer in document.layers:

@@ -41,13 +41,8 @@ def layer_tree(
     """Return the rows of the layer list, the frontmost layer first.
 
     Groups are open and switch groups closed unless toggled. The members of a switch group are
-    listed
-    together at the foremost member. Each run of a group is a row.
-
-    Parameters
-    ----------
-    kept : collection of int
-        Layer ids that are listed even in a closed row.
+    listed together at the foremost member. Each run of a group is a row. Layers with an id in
+    `kept` are listed even in a closed row.
     """
     rows = _whole_tree(document, toggled)
     listed: list[TreeRow] = []

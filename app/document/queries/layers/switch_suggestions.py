@@ -17,8 +17,7 @@ def suggest_switch_groups(document: Document) -> tuple[tuple[str, tuple[int, ...
     """Return group paths named like mouths, eyes or hands, with the ids of their layers.
 
     A layer name such as "mouth/ah" counts as a group. Groups with a layer that has visibility keys
-    or a
-    switch group are left out.
+    or a switch group are left out.
     """
     together: dict[str, list[Layer]] = {group.name: [] for group in document.groups}
     for layer in document.layers:

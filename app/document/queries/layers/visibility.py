@@ -55,8 +55,7 @@ def switch_cycle(document: Document, choice: SwitchGroup) -> Cycle | None:
     """Return the cycle with which the switch keys of a group repeat, if any.
 
     All layers of the group have the cycle, and it contains all switch keys. A key at its end may
-    repeat
-    the layer at its beginning.
+    repeat the layer at its beginning.
     """
     shared, *others = (document.layer(each).cycles for each in choice.layers)
     for cycle in shared:
@@ -106,8 +105,7 @@ def repeated(
     """Return visibility, order or switch keys with copies in each repeat, up to the end.
 
     Each repeat, and the time after the last, begins with the state at the cycle's first frame;
-    `rest`
-    is the state before the first key.
+    `rest` is the state before the first key.
     """
     return _repeated(changes, cycles, end, rest) if changes and cycles else changes
 
