@@ -37,12 +37,12 @@ _CUT: Final = "\N{HORIZONTAL ELLIPSIS}"
 _LONG_QUOTED: Final = re.compile(
     rf"""(?<!\w)(['"])((?:(?!\1).){{{MAX_TEXT_LENGTH - 1}}})(?:(?!\1).){{2,}}\1(?!\w)"""
 )
-# Python does not count these spaces of other widths and zero-width joiners as printable.
+# Printable characters that `str.isprintable` rejects: spaces of any width, and joiners.
 _PRINTABLE: Final = re.compile("[\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000\u200c\u200d]")
 
 
 class LissomError(Exception):
-    """A request that cannot be met; the message states what is wrong and what to do."""
+    """A request that cannot be met; the message states the fault and the remedy."""
 
 
 # A command line, a job or a panel shows these errors as plain messages.
@@ -99,7 +99,7 @@ class NoticeCollector:
 def display_name(name: object) -> str:
     """Return the text with � in place of each byte that is not UTF-8.
 
-    Neither a window nor a text file accepts such bytes.
+    Neither a window nor a text file accepts other bytes.
     """
     return _UNREADABLE.sub("\N{REPLACEMENT CHARACTER}", str(name))
 

@@ -320,7 +320,7 @@ STILL_FORMAT: Final = next(name for name, format_ in EXPORT_FORMATS.items() if f
 
 
 def format_by_suffix() -> dict[str, str]:
-    """Return the format of each file name ending that belongs to one format only (not .png)."""
+    """Return the format of each unambiguous file name ending; .png is ambiguous."""
     every = [suffix for format_ in EXPORT_FORMATS.values() for suffix in format_.suffixes]
     return {
         suffix: name

@@ -214,8 +214,8 @@ class History:
 def _fitting(unkeyed: PreviewPose | None, before: Document, after: Document) -> PreviewPose | None:
     """Return the unkeyed pose with a target for each handle of the later document.
 
-    A handle that was added or moved gets its own position as target. None if the later document has
-    no such layer, or the layer has another domain.
+    A handle that was added or moved gets its own position as target. None if the later document
+    lacks the layer, or the layer has another domain.
     """
     if unkeyed is None:
         return None

@@ -32,7 +32,7 @@ class CorrectionUpdate(NamedTuple):
 class CorrectedFrames:
     """The corrections of a clip's whole frames; for the main thread only.
 
-    Until a frame's own correction is computed, that of an earlier clip of the layer replaces it.
+    Until a frame's own correction is computed, the correction of an earlier clip replaces it.
     """
 
     def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
@@ -143,7 +143,7 @@ class CorrectedFrames:
     def missing_ground(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
     ) -> Callable[[], CorrectionUpdate] | None:
-        """Return the next job for base frames, with those nearest to `frame` first, if any.
+        """Return the next job for base frames, the nearest to `frame` first, if any.
 
         A layer without handles needs no base frames, since nothing can be recorded.
         """

@@ -96,7 +96,7 @@ class DeformMesh:
     def locate(self, points: Complexes, positions: Complexes) -> "MeshPoints":
         """Locate points (p,) in the mesh with vertices at `positions` (v,).
 
-        The positions are the undeformed ones, or those of a pose.
+        The positions may be undeformed, or of a pose.
         """
         corners = positions[self.domain.mesh.triangles]
         origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]

@@ -55,8 +55,8 @@ class InbetweenCache:
     Workers get frozen input; their results are taken whenever they arrive.
 
     Beyond the budget, segments that no clip needs are dropped first, the least recently used first.
-    Then follow segments for undo and redo, and then series, those farthest from the playhead first.
-    Prepared in-betweens of present clips stay.
+    Then follow segments for undo and redo. Then follow series, the farthest from the playhead
+    first. Prepared in-betweens of present clips stay.
     """
 
     mesh: DeformMesh
@@ -275,7 +275,7 @@ class InbetweenCache:
     def next_build(self, clip: Clip, frame: float, *, heat: bool) -> SeriesBuild | None:
         """Return the unfinished or next series to build, if any.
 
-        Segments nearest to the frame come first; those beyond the budget get no series. With
+        Segments nearest to the frame come first. Segments beyond the budget get no series. With
         `heat`, series of the distortions are built too.
         """
         build, self.build = self.build, None
@@ -420,6 +420,6 @@ def _shows(known: CachedSegment, clip: Clip) -> bool:
 
 
 def _by_nearness(clip: Clip, frame: float) -> list[int]:
-    """Return the segment numbers of a clip, that at the frame first."""
+    """Return the segment numbers of a clip, nearest to the frame first."""
     current = segment_time_at(clip, frame).segment
     return sorted(range(len(segment_keys(clip))), key=lambda i: (abs(i - current), i < current))

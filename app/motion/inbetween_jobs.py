@@ -102,7 +102,7 @@ def compute_segments(
     sampler : PoseSampler, optional
         Of the mesh and the layer's anchor. Any other sampler of the same outline is reused in part.
     keep : frozenset of Pose
-        Poses whose samples stay, besides those of the clip.
+        Further poses, besides the clip's, whose samples stay.
     """
     layer, every = clip.layer, pose_segments(clip)
     if clip.baseline is not None:
@@ -147,8 +147,8 @@ def compute_frame(
 ) -> CacheUpdate:
     """Compute the exact in-between at a frame; on a worker thread.
 
-    The sampler is of the mesh and the layer's anchor. If the whole segment takes no longer, it is
-    prepared instead.
+    The sampler is of the mesh and the layer's anchor. If the whole segment takes no longer, the
+    segment is prepared instead.
     """
     moment, layer = segment_time_at(clip, frame), clip.layer
     if not sampler.makes_single_frames(layer.variant):

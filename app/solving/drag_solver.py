@@ -43,7 +43,7 @@ class Rig:
     handles : tuple of Handle
         Handles that hold poses, in the layer's order. Sprung handles are left out unless dragged.
     deformer : Deformer
-        For these handles and, if the layer has a parent, for its anchor, which is fixed.
+        For these handles, and for the fixed anchor of an attached layer.
     """
 
     layer: Layer
@@ -59,7 +59,7 @@ class Rig:
     ) -> Self:
         """Return the rig of a layer; unchanged parts come from an earlier rig.
 
-        `pulled` are the ids of dragged handles, which are included even with springs.
+        `pulled` are the ids of dragged handles. They are included even with springs.
         """
         domain, pins = layer.domain, _pins(layer)
         carried = layer.sprung_handles.difference(pulled)
@@ -217,7 +217,7 @@ class DragSolver:
     ) -> "DragSolver":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest.
 
-        `pulled` are the ids of dragged handles, which are included even with springs.
+        `pulled` are the ids of dragged handles. They are included even with springs.
         """
         rig = Rig.of(self.rig.layer, self.rig, pulled)
         deformer = self.deformer
@@ -275,7 +275,7 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
     """Return a single map that is nearest to the displayed frame, as a pose.
 
     At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
-    are fitted on the outline. If the fit is not certified, it is mixed with the nearer key.
+    are fitted on the outline. A fit without certificate is mixed with the nearer key.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def flip_targets(
 
     With R(z) = 2a − conj(z) the reflection, the flipped pose of a symmetric drawing is R ∘ f ∘ R.
     Drawings are rarely symmetric: R maps a handle to a place near its partner.
-    `SimilarityTransform.transform_target` corrects for that offset.
+    `SimilarityTransform.transform_target` corrects for the offset.
 
     Partners are found by name, then by position. On a symmetric shape, a handle without a partner
     takes the motion of the shape at its mirror image. Otherwise it mirrors its own motion.

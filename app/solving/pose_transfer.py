@@ -18,8 +18,8 @@ MOST_STEPS = 600  # per pose
 SIMILAR_SHARE = 0.9
 BESIDE = 0.005  # fraction of the shape's diameter: points this close are on the shape
 ENOUGH = 2_000  # vertices sampled for that test
-# A part is mirrored if its handles are off the best similarity without mirroring by more than this
-# fraction of their spread, and by this factor more than off the mirroring one.
+# A part is mirrored if the best similarity without mirroring has two large errors at the handles.
+# They exceed this fraction of the handles' spread, and this multiple of the mirrored error.
 ODD, CLEARER = 0.1, 4.0
 
 
@@ -101,8 +101,8 @@ class SimilarityTransform:
 
             S(f(p)) + u (point − S(p)),  u the rotation of the image at p
 
-        or with another rotation of f, `turn`. The undeformed drawing stays undeformed whatever the
-        places are, a rotation of the whole shape is kept, and the way back is the inverse.
+        or with another rotation of f, `turn`. An undeformed drawing stays undeformed for all
+        places. A rotation of the whole shape is kept. The transfer back is the inverse.
         """
         if turn is None:
             (fz,), _ = shape.derivatives(np.array([place]))

@@ -69,7 +69,7 @@ def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) ->
 
 
 def with_world_transforms(document: Document, script: PoseScript) -> Document:
-    """Return a posed document in which attachments without a point get the nearest point.
+    """Return a posed document; attachments without a point get the nearest point.
 
     The nearest point is known only after all layers are posed.
     """

@@ -55,8 +55,7 @@ def pose_document(
     frontmost visible layer. In a script of several, layers without an entry become still.
 
     The notices are target errors, and parts of the script without effect. Raises a `LissomError` or
-    `EngineError` if a layer is missing or attached to itself, or a handle, a joint or the anchor
-    lies outside its shape.
+    `EngineError` if a layer is missing or attached to itself, or if a point lies outside its shape.
 
     Parameters
     ----------

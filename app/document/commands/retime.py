@@ -1,6 +1,6 @@
-"""Moving keys in time: pure functions on the keys of any channel.
+"""Moving keys in time: pure functions on rows, the keys of a channel.
 
-Keys are in the order of their frames, at most one per frame.
+A row is in the order of its frames, with at most one key per frame.
 """
 
 from collections import Counter
@@ -92,7 +92,7 @@ def keys_at_frames(keys: Keys[Key], frames: Iterable[int]) -> list[Key]:
 
 
 def sorted_by_frame(keys: Iterable[Key]) -> Keys[Key]:
-    """Return keys sorted by frame; two keys at one frame are refused."""
+    """Return keys as a row; two keys at one frame are refused."""
     ordered = tuple(sorted(keys, key=lambda key: key.frame))
     for frame, count in Counter(key.frame for key in ordered).items():
         if count > 1:
@@ -101,13 +101,13 @@ def sorted_by_frame(keys: Iterable[Key]) -> Keys[Key]:
 
 
 def with_replaced_keys(keys: Keys[Key], changed: Mapping[int, Key]) -> Keys[Key]:
-    """Return keys with some replaced, the same object without a change."""
+    """Return the row with some keys replaced; the same object without a change."""
     row = sorted_by_frame(changed.get(key.frame, key) for key in keys)
     return keys if row == keys else row
 
 
 def with_inserted_key(keys: Keys[Key], new: Key) -> Keys[Key]:
-    """Return keys with one more key.
+    """Return the row with one more key.
 
     A key within a segment takes the easing of the segment. Otherwise the new segment takes the new
     key's easing; the former last key keeps an easing that is not linear.
@@ -123,14 +123,14 @@ def with_inserted_key(keys: Keys[Key], new: Key) -> Keys[Key]:
 
 
 def with_overwritten_keys(keys: Keys[Key], others: Iterable[Key]) -> Keys[Key]:
-    """Return keys with others at their frames, in place of existing keys."""
+    """Return the row with other keys at their frames, in place of existing keys."""
     return sorted_by_frame(
         ({key.frame: key for key in keys} | {key.frame: key for key in others}).values()
     )
 
 
 def with_moved_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
-    """Return keys with those at some frames moved by a number of frames."""
+    """Return the row with the keys at some frames moved by a number of frames."""
     chosen = keys_at_frames(keys, frames)
     return with_replaced_keys(
         keys, {key.frame: replace(key, frame=key.frame + by) for key in chosen if by}
@@ -138,13 +138,13 @@ def with_moved_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[K
 
 
 def with_copied_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
-    """Return keys with copies of those at some frames, moved by a number of frames."""
+    """Return the row with copies of the keys at some frames, moved by a number of frames."""
     copies: list[Key] = [replace(key, frame=key.frame + by) for key in keys_at_frames(keys, frames)]
     return sorted_by_frame(chain(keys, copies)) if copies else keys
 
 
 def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
-    """Return keys without those at some frames, possibly none."""
+    """Return the row without the keys at some frames; it may be empty."""
     gone = keys_at_frames(keys, frames)
     return tuple(key for key in keys if key not in gone) if gone else keys
 
@@ -152,7 +152,7 @@ def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
 def with_reversed_keys(
     keys: Keys[Key], frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Keys[Key]:
-    """Return keys with those at some frames reversed, and the motion between them.
+    """Return the row with the keys at some frames reversed, and the motion between them.
 
     The reversed range is that of the keys, or `span`.
     """
@@ -173,7 +173,7 @@ def with_reversed_keys(
 def with_scaled_keys(
     keys: Keys[Key], frames: Collection[int], factor: float, first: int | None = None
 ) -> Keys[Key]:
-    """Return keys with those at some frames scaled around a fixed frame."""
+    """Return the row with the keys at some frames scaled around a fixed frame."""
     chosen = keys_at_frames(keys, frames)
     stays = min(frames, default=0) if first is None else first
     scale = TimeScale(stays, factor)
@@ -184,13 +184,13 @@ def with_scaled_keys(
 
 
 def with_easing(keys: Keys[Key], frames: Collection[int], easing: Easing) -> Keys[Key]:
-    """Return keys with this easing after those at some frames."""
+    """Return the row with this easing after the keys at some frames."""
     chosen = [key for key in keys_at_frames(keys, frames) if key.easing != easing]
     return with_replaced_keys(keys, {key.frame: replace(key, easing=easing) for key in chosen})
 
 
 def with_tangent_mode(keys: Keys[Key], frames: Collection[int], passing: TangentMode) -> Keys[Key]:
-    """Return keys with this tangent mode at some frames; a hold ends."""
+    """Return the row with this tangent mode at some frames; a hold ends."""
     changed = {}
     for key in keys_at_frames(keys, frames):
         if key.shown_tangent_mode is passing:

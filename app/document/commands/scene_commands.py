@@ -167,7 +167,7 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
 
 @command("Give a motion")
 def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
-    """Replace a layer after a motion preset; a document without motion becomes a loop of it.
+    """Replace a layer after a motion preset; a document without motion becomes its loop.
 
     `moved` has the new keys, and `given` among its motions.
     """

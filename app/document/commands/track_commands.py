@@ -232,7 +232,7 @@ def _track(layer: Layer, handle: int) -> Track:
 
 
 def _unled(track: Track, frames: Collection[int]) -> tuple[TrackKey, ...]:
-    """Return the keys of a track; those at some frames lose their own velocities."""
+    """Return the keys of a track; the keys at some frames lose their own velocities."""
     chosen = retime.keys_at_frames(track.keys, frames)
     return retime.with_replaced_keys(
         track.keys, {key.frame: key.without_velocity() for key in chosen}

@@ -98,9 +98,9 @@ def repeated_joints(
 ) -> tuple[Attachment, ...]:
     """Return attachments with copies in each repeat of the cycles, up to the last frame.
 
-    Each repeat, and the time after the last, begins like the cycle; the attachment before blends to
-    it. With `keep_world_transform` each copy keeps the placement at its own frame. Nothing then
-    jumps, even if the parent moves on meanwhile.
+    Each repeat, and the time after the last, begins like the cycle; the attachment before it blends
+    to that state. With `keep_world_transform` each copy keeps the placement at its own frame.
+    Nothing then jumps, even if the parent moves on meanwhile.
     """
     for cycle in cycles:
         if not (

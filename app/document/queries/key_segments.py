@@ -1,8 +1,8 @@
-"""The segments between the keys of a clip, including those of its cycles.
+"""The segments between the keys of a clip, also within its cycles.
 
-A cycle has the segments between its keys once, and one from its last key to its first, whatever the
-number of repeats. The segment before a cycle ends at the cycle's first key. The segment after it
-begins at the key that the cycle shows at the end of its repeats.
+A cycle has each segment between its keys once, and one from its last key to its first. The number
+of repeats does not matter. The segment before a cycle ends at the cycle's first key. The segment
+after it begins at the key that the cycle shows at the end of its repeats.
 """
 
 from bisect import bisect_left, bisect_right

@@ -15,7 +15,7 @@ def memoized_on(query: Callable[[Whose, *Given], T]) -> Callable[[Whose, *Given]
     """Memoize a query about a layer or a domain; a result must not refer to the layer or domain.
 
     Each layer has its own results, so that many layers do not evict each other. The results of a
-    closed project are freed with it.
+    closed project are freed.
     """
     known: WeakKeyDictionary[Whose, dict[object, T]] = WeakKeyDictionary()
 

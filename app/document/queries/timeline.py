@@ -27,7 +27,7 @@ class SegmentTime(NamedTuple):
 
     segment: int
     # Time within the segment's in-betweens, from 0 at the first key to 1 at the second. If only
-    # these two keys are blended, it is the weight of the second.
+    # these two keys are blended, the time is the weight of the second.
     weight: float
 
 
@@ -69,7 +69,7 @@ def keyed_pose_at(clip: Clip, moment: SegmentTime) -> Pose | None:
 def changed_ranges(before: Document, after: Document) -> list[FrameRange]:
     """Return the frames in which two documents differ: keys, segments and markers.
 
-    A change of the whole drawing, such as of handles or of a domain, is not listed.
+    Changes of the whole drawing, for example of handles or of a domain, are not listed.
     """
     stretches: list[FrameRange] = []
     others = {layer.id: layer for layer in before.layers}

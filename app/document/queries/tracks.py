@@ -138,9 +138,9 @@ def _value(track: Track, clip: Clip, time: float, moved: KeyedProperty[TrackKey,
 def spring_root(layer: Layer, spring: Spring) -> int | None:
     """Return the id of the handle about which a spring swings, if any.
 
-    The spring's own root comes first; if that has a spring, the root of that spring, and so on.
-    Without one, it is the nearest handle without a spring, first along bones, then along the
-    drawing, never across a gap. Tracks have no influence on the root.
+    The spring's own root comes first; if that has a spring, the root of that spring, and so on. The
+    default root is the nearest handle without a spring, first along bones, then along the drawing,
+    never across a gap. Tracks have no influence on the root.
     """
     seen = {spring.handle}
     while spring.root is not None:

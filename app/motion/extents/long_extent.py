@@ -1,9 +1,9 @@
 """Extents of animations too long to measure every frame.
 
 Between two frames with keys, layers move smoothly, or repeat a cycle. Some of these frames are
-measured. If a side that bends or moves fast may exceed its values at both ends of a gap, the middle
-frame is measured, and so on. Gaps left at the budget count with their bound, so the result contains
-all frames.
+measured. A side that bends or moves fast may exceed its values at both ends of a gap. The middle
+frame of such a gap is then measured, and so on. Gaps left at the budget count with their bound, so
+the result contains all frames.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -19,7 +19,7 @@ from engine.arrays import Floats
 
 MOST_MEASURED: Final = 1_000  # frames; shorter ranges are measured completely
 MOST_WITHIN: Final = 7  # periods measured first between two keys
-MOST_PHASES: Final = 240  # measured frames of a period, besides those with keys
+MOST_PHASES: Final = 240  # measured frames of a period, besides frames with keys
 MOST_AT_FIRST: Final = 60  # frames of these first periods
 FEWEST_ROUNDS: Final = 4  # for fewer periods, every frame counts as a period
 MOST_REPEATED: Final = 250  # repeated key frames of a cycle that are measured as keys
@@ -50,7 +50,7 @@ class UnkeyedFrames(NamedTuple):
         return (self.last - self.first + 1) // self.period
 
     def frames_of_period(self, number: int) -> list[int]:
-        """Return the measured frames of a period; after the last one, those of the remainder."""
+        """Return the measured frames of a period; the last number is the remainder."""
         start = self.first + number * self.period
         return [start + phase for phase in self.phases if start + phase <= self.last]
 
@@ -99,7 +99,7 @@ class _Search:
             yield from self._split(stretch, ends, both)
 
     def close(self, gaps: list[_Gap]) -> Floats:
-        """Measure within the gaps with the largest bounds; return the extents with what is left."""
+        """Measure within the gaps with the largest bounds; return the bounds of all extents."""
         turns = count()
         left = [(-self._excess(gap), next(turns), gap) for gap in gaps]
         heapify(left)

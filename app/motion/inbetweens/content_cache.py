@@ -14,8 +14,8 @@ Value = TypeVar("Value")
 class ContentCache:
     """A thread-safe cache of frozen values within a budget; the least recently used go first.
 
-    Domains with equal outlines, such as those of a duplicated layer or of a file opened again,
-    share their values. `budget` limits the bytes of all values together.
+    Domains with equal outlines share their values, for example after a layer is duplicated or a
+    file is opened again. `budget` limits the bytes of all values together.
     """
 
     def __init__(self, budget: int) -> None:

@@ -33,8 +33,8 @@ HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
 class BaseMotionFrame(NamedTuple):
     """The frame that tracks are relative to.
 
-    `positions` (h,) are those of the handles without tracks. `rotations` (h,) are the factors, of
-    modulus 1, by which the shape turns there.
+    `positions` (h,) are the places of the handles without tracks. `rotations` (h,) are the factors,
+    of modulus 1, by which the shape turns there.
     """
 
     positions: Complexes

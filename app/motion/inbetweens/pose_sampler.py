@@ -264,7 +264,7 @@ class PoseSampler:
     def still_inbetweens(self, pose: Pose, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a pose with itself, which are corrected like their neighbours.
 
-        For a variant with a transform or a scale, those of η are the same.
+        A variant with a transform or a scale has the same in-betweens as η here.
         """
         kind = Variant.ETA if variant.needs_transform or variant.is_scaled else variant
         return self.inbetweens(pose, pose, kind)
@@ -310,7 +310,7 @@ class PoseSampler:
     ) -> tuple[float, float]:
         """Return the share of its velocity that the limits allow at both keys.
 
-        From 0, a stop, to 1, which is also the value without a smooth key.
+        From 0, a stop, to 1. A key without a smooth tangent has 1.
         """
         start, end = (
             end.velocity_share if isinstance(end, Tangent) else 1.0

@@ -31,7 +31,7 @@ def parent_links(
 ) -> tuple[ChainLink, ...]:
     """Return the links from a layer, by its id, to its root ancestor at a frame.
 
-    The attachments are those from the frame on, or with `before` those just before it.
+    The attachments are in effect from the frame on, or with `before` just before the frame.
     """
     chain = document.parent_chain(layer, frame, before=before)
     at = document.loop_frame(frame)

@@ -191,8 +191,8 @@ class ParentTransforms:
     def _seen_from(self, layer: int, each: Layer, place: complex, frame: float) -> PivotFrame:
         """Return position and rotation of a point for the computation of a dependent layer.
 
-        Corrections are left out if they may depend on that layer in turn: those of the layer
-        itself, and of layers that are its descendants at other frames.
+        Corrections that may depend on the layer in turn are left out. They belong to the layer
+        itself, or to its descendants at other frames.
         """
         others = (each, *self.document.all_ancestors(each.id))
         if all(other.id != layer for other in others):

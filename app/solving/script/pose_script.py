@@ -162,8 +162,8 @@ def load_pose_script(path: Path) -> PoseScript:
 def parse_pose_script(content: object) -> PoseScript:
     """Turn decoded JSON into a script.
 
-    Raises a `LissomError` if a field is unknown, missing or of the wrong kind, a key names an
-    unknown handle, or the frames are out of order.
+    Raises a `LissomError` for unknown, missing or wrong fields, unknown handles, and frames out of
+    order.
     """
     read = as_object(content, "the script")
     if "figures" in read and "layers" not in read:

@@ -43,7 +43,7 @@ def append_import_log(document: Document, summary: ImportLog) -> Document:
 def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
     """Replace a layer with another of the same id.
 
-    Layers attached to it stay attached, at the nearest points if their joints are no longer on it.
+    Child layers stay attached. A joint beside the new shape moves to its nearest point.
     """
     size = document.canvas
     changed = keep_attachments(identity)(document.with_layer(replace(layer, id=identity)))
@@ -86,7 +86,7 @@ def duplicate_layer(document: Document, identity: int) -> Document:
 
 @command("Delete layer")
 def remove_layer(document: Document, identity: int) -> Document:
-    """Delete a layer; its attachment keys on other layers are deleted."""
+    """Delete a layer, and the keys of other layers that refer to the layer."""
     document.layer(identity)
     if len(document.layers) == 1:
         raise LissomError(LAST_LAYER)

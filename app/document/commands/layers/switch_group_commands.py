@@ -159,7 +159,7 @@ def _put(turns: Iterable[SwitchKey], new: SwitchKey) -> tuple[SwitchKey, ...]:
 
 
 def _plain(turns: Iterable[SwitchKey]) -> tuple[SwitchKey, ...]:
-    """Return switch keys without those that repeat the layer before."""
+    """Return switch keys without repetitions of the layer before."""
     plain: list[SwitchKey] = []
     for turn in turns:
         if not plain or turn.layer != plain[-1].layer:

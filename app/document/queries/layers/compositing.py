@@ -20,8 +20,8 @@ class CompositeGroup(Generic[Drawn]):
     parts: tuple["Drawn | CompositeGroup[Drawn]", ...]  # from back to front
     opacity: float = 1.0  # in [0, 1]
     blend: BlendMode = "normal"
-    # Whether the group is visible only within the alpha of its backdrop in the composite around it,
-    # and blends with that backdrop as if it were opaque.
+    # Whether the group is visible only within the alpha of its backdrop in the outer composite, and
+    # blends with that backdrop as if it were opaque.
     clipped: bool = False
     # Pass-through group: its parts blend directly with the backdrop; the group's opacity is applied
     # to the result.

@@ -22,8 +22,8 @@ def depth_points_at(clip: Clip, frame: float) -> tuple[DepthPoint, ...]:
     """Return the points with a depth other than 0 at a frame.
 
     A key's depths hold from its frame on until a later key changes them. Before the first key, the
-    depths of the handles hold, or in a loop those after the last key. Each repeat of a cycle begins
-    with the depths before the first one.
+    depths of the handles hold, or in a loop the depths after the last key. Each repeat of a cycle
+    begins with the depths before the first one.
     """
     layer = clip.layer
     depths = {handle.id: handle.depth for handle in layer.handles}
