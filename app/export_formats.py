@@ -22,28 +22,16 @@ def expand_colour(text: str) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option:
-    """An option that only some formats have.
+    """An option that only some formats have."""
 
-    Parameters
-    ----------
-    label, tip : str
-        Texts of the window.
-    flag : str
-        Name on the command line, without dashes.
-    choices : tuple of (value, str)
-        Values and their labels. If a value is a number, or without choices, any number may be
-        entered.
-    minimum, maximum : float
-        Range of a number.
-    """
-
-    label: str
-    tip: str = ""
-    flag: str
+    label: str  # in the window
+    tip: str = ""  # in the window
+    flag: str  # on the command line, without dashes
     description: str
+    # Values with labels; numbers, or no choices, allow any number.
     choices: tuple[tuple[bool | float | None, str], ...] = ()
-    minimum: float = 0
-    maximum: float = 1
+    minimum: float = 0  # of a number
+    maximum: float = 1  # of a number
 
 
 def _option(usual: Any, **option: Any) -> Any:
@@ -142,59 +130,26 @@ class FormatSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportFormat:
-    """Properties of an export format; `app.export.writers` holds the writers.
-
-    Parameters
-    ----------
-    group : str
-        Heading in lists. Formats of one group follow one another.
-    use : str
-        One line: the purpose and the limits of the format.
-    about : str
-        Description for the help of the command line.
-    suffixes : tuple of str
-        Endings of the file name, the default first. Empty if each frame is a file in a folder.
-    data_suffix : str
-        Ending of the data file beside the picture; empty without a data file.
-    is_transparent : bool
-        Whether the format stores transparency; without transparency, a background is needed.
-    is_drawn : bool
-        Whether the file contains pictures. Otherwise it contains meshes and plays at any rate.
-    has_frame : bool
-        Whether the file shows a frame of the scene before a background.
-    keeps_order : bool
-        Whether the draw order may change over time.
-    composites : bool
-        Whether the file shows blend modes, clipping and group opacity.
-    largest : int, optional
-        Largest side of a picture in pixels.
-    is_still : bool
-        Whether the file contains one frame: at the playhead, or the first.
-    block : int
-        The sides of a picture are multiples of this number of pixels.
-    fastest : float, optional
-        Largest frame rate, in pictures per second.
-    options : str
-        Field of `FormatSettings` with the options; empty without options.
-    """
+    """Properties of an export format; `app.export.writers` holds the writers."""
 
     label: str
-    group: str
-    use: str
-    about: str
+    group: str  # heading in lists; formats of one group follow one another
+    use: str  # one line: the purpose and the limits of the format
+    about: str  # description for the help of the command line
+    # Endings of the file name, the default first. Empty if each frame is a file in a folder.
     suffixes: tuple[str, ...] = ()
-    data_suffix: str = ""
-    is_transparent: bool = True
-    is_drawn: bool = True
-    has_frame: bool = True
-    keeps_order: bool = True
-    composites: bool = True
-    largest: int | None = None
-    is_still: bool = False
-    block: int = 1
-    fastest: float | None = None
+    data_suffix: str = ""  # ending of the data file beside the picture; empty without one
+    is_transparent: bool = True  # otherwise the format needs a background
+    is_drawn: bool = True  # whether the file contains pictures; otherwise meshes, for any rate
+    has_frame: bool = True  # whether the file shows a frame of the scene before a background
+    keeps_order: bool = True  # whether the draw order may change over time
+    composites: bool = True  # whether the file shows blend modes, clipping and group opacity
+    largest: int | None = None  # side of a picture in pixels
+    is_still: bool = False  # one frame: at the playhead, or the first
+    block: int = 1  # the sides of a picture are multiples of this number of pixels
+    fastest: float | None = None  # pictures per second
     extra: Extra | None = None
-    options: str = ""
+    options: str = ""  # field of `FormatSettings`; empty without options
 
     def whole_blocks(self, size: tuple[int, int]) -> tuple[int, int]:
         """Return the smallest size of whole blocks that contains this size."""

@@ -35,12 +35,7 @@ class UndoStep:
 class History:
     """The undo steps of a session.
 
-    Parameters
-    ----------
-    saved : bool
-        Whether the document equals its file.
-    memory : int
-        Largest memory of the undo steps in bytes. Beyond it, the oldest steps are dropped.
+    With `saved`, the document equals its file. Beyond `memory` bytes, the oldest steps are dropped.
     """
 
     def __init__(self, document: Document, *, saved: bool, memory: int = HISTORY_BYTES) -> None:

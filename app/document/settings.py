@@ -148,21 +148,12 @@ def _require_pictures(name: str, size: tuple[int, int] | None, background: str) 
 class ExportSettings(FormatSettings):
     """Settings of the last export.
 
-    Parameters
-    ----------
-    size : tuple of int, optional
-        Width and height in pixels. None takes the framing at the drawing's own size.
-    background : str
-        "transparent" or "#rrggbb".
-    framing : str
-        "fit" shows all of the motion, "canvas" the canvas.
-    frames : FrameRange, optional
-        None exports all frames.
-    names : str
-        File names of frames without their ending. Each "#" is a digit of the frame number, and
-        "{name}" is the project's name.
-    earlier : tuple of PictureSettings
-        Last settings of other formats.
+    `size` is in pixels; None takes the framing at the drawing's own size. `background` is
+    "transparent" or "#rrggbb". The framing "fit" shows all of the motion, "canvas" the canvas.
+    Without `frames`, all frames are exported.
+
+    `names` are file names of frames without their ending. Each "#" is a digit of the frame number,
+    and "{name}" is the project's name. `earlier` are the last settings of other formats.
     """
 
     format: str = "png"

@@ -53,25 +53,14 @@ class MeshPoints:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DeformMesh:
-    """A mesh of a domain, with the coordinates by which any pose deforms it.
+    """A mesh of a domain, with the coordinates by which any pose deforms it."""
 
-    `order` is the drawing order of the mesh's triangles.
-
-    Parameters
-    ----------
-    domain : MeshedDomain
-        With the displayed mesh, which may be coarser than the layer's own.
-    source : MeshedDomain
-        The layer's own domain.
-    coordinates : complex64, shape (v, n)
-        Values of the basis functions of maps at the vertices. Single precision is enough for a
-        screen.
-    """
-
-    domain: MeshedDomain
-    source: MeshedDomain
+    domain: MeshedDomain  # with the displayed mesh, which may be coarser than the layer's own
+    source: MeshedDomain  # the layer's own domain
+    # Complex64 (v, n): values of the basis functions of maps at the vertices. Single precision is
+    # enough for a screen.
     coordinates: npt.NDArray[np.complex64]
-    order: TriangleOrder = field(init=False)
+    order: TriangleOrder = field(init=False)  # drawing order of the mesh's triangles
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "order", TriangleOrder(self.domain.mesh))

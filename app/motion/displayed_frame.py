@@ -101,16 +101,8 @@ def show(
     in-betweens replaces it. Any replacement is exact for its own time. After a change of the
     domain, the last frame stays until there is a mesh.
 
-    Parameters
-    ----------
-    pose : Pose, optional
-        Displayed in place of the layer's own pose at the frame.
-    stores : sequence of InbetweenCache
-        At least one, the preferred first.
-    earlier : DisplayedFrame, optional
-        The last displayed frame.
-    corrected : CorrectedFrames, optional
-        Corrections of the clip. They apply to a displayed `pose` too.
+    A given `pose` is displayed in place of the layer's own, with the clip's corrections. `stores`
+    has at least one cache, the preferred first.
     """
     domain, moment = clip.layer.domain, segment_time_at(clip, frame)
     correction, is_rough = None, False
@@ -163,16 +155,9 @@ def hang_shown(
 ) -> dict[int, DisplayedFrame]:
     """Return the displayed frames with the layers' placements in the scene.
 
-    Parameters
-    ----------
-    shown : mapping of int to DisplayedFrame
-        By layer id.
-    joints : ParentTransforms or None
-        Of the document. Without them, placements have the accuracy of the meshes.
-    poses : mapping of int to Pose
-        Displayed poses that are not in the document.
-    earlier : ParentTransforms, optional
-        Of an earlier document, for attachments with `keep_world_transform` until `joints` exist.
+    `shown` and `poses` have layer ids as keys; `poses` are displayed poses that are not in the
+    document. Without the document's `joints`, placements have the accuracy of the meshes. Until
+    they exist, the transforms of an earlier document serve attachments with `keep_world_transform`.
     """
     hung = {}
     for identity, each in shown.items():

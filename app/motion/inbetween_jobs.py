@@ -93,16 +93,10 @@ def compute_segments(
     *,
     keep: frozenset[Pose] = frozenset(),
 ) -> CacheUpdate:
-    """Prepare the in-betweens of some segments; on a worker thread.
+    """Prepare the in-betweens of the segments with these numbers; on a worker thread.
 
-    Parameters
-    ----------
-    wanted : sequence of int
-        Segment numbers.
-    sampler : PoseSampler, optional
-        Of the mesh and the layer's anchor. Any other sampler of the same outline is reused in part.
-    keep : frozenset of Pose
-        Further poses, besides the clip's, whose samples stay.
+    A sampler of the mesh and the layer's anchor is used; another sampler of the same outline is
+    reused in part. Samples of the poses `keep` stay, besides those of the clip's poses.
     """
     layer, every = clip.layer, pose_segments(clip)
     if clip.baseline is not None:
@@ -162,14 +156,9 @@ def compute_frame(
 
 
 class SeriesBuild:
-    """A series under construction; only the worker advances it.
+    """A series of a prepared segment under construction; only the worker advances it.
 
-    Parameters
-    ----------
-    interval : CachedSegment
-        A prepared segment.
-    distortions : bool
-        Whether the series is of f_z and f_z̄; otherwise of the positions.
+    With `distortions`, the series is of f_z and f_z̄; otherwise of the positions.
     """
 
     def __init__(self, pair: SegmentKey, interval: CachedSegment, *, distortions: bool) -> None:

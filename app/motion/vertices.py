@@ -21,14 +21,8 @@ class VertexArray:
 class StreamedVertices:
     """Vertices given by a series, which a graphics card can evaluate itself.
 
-    Parameters
-    ----------
-    distortions : Series or None
-        Series of f_z and f_z̄, if wanted.
-    time : float
-        In [0, 1].
-    triangles : int32, shape (m, 3)
-        In the drawing order.
+    The time is in [0, 1]. `distortions` is the series of f_z and f_z̄, if wanted. `triangles` are
+    int32 (m, 3), in the drawing order.
     """
 
     def __init__(

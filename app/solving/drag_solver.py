@@ -38,12 +38,8 @@ JOINT_PULL = 0.1
 class Rig:
     """The solver's data of a layer.
 
-    Parameters
-    ----------
-    handles : tuple of Handle
-        Handles that hold poses, in the layer's order. Sprung handles are left out unless dragged.
-    deformer : Deformer
-        For these handles, and for the fixed anchor of an attached layer.
+    `handles` are those that hold poses, in the layer's order. Sprung handles are left out unless
+    dragged. The deformer is for these handles, and for the fixed anchor of an attached layer.
     """
 
     layer: Layer
@@ -176,12 +172,8 @@ class Rig:
 class DragSolver:
     """The state of a drag; every map in between is certified.
 
-    Parameters
-    ----------
-    deformer : Deformer
-        With the layer's limits, widened if the first pose needs it.
-    pins : tuple of Target
-        Targets of the fixed points.
+    The deformer has the layer's limits, widened if the first pose needs it. `pins` are the targets
+    of the fixed points.
     """
 
     rig: Rig
@@ -275,14 +267,8 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
     """Return a single map that is nearest to the displayed frame, as a pose.
 
     At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
-    are fitted on the outline. A fit without certificate is mixed with the nearer key.
-
-    Parameters
-    ----------
-    rig : Rig
-        Of the clip's layer.
-    sibling : PoseSampler, optional
-        Of the layer's domain; its cached data of the outline is reused.
+    are fitted on the outline. A fit without certificate is mixed with the nearer key. A sibling of
+    the layer's domain is reused for its data of the outline.
     """
     layer, boundary = rig.layer, rig.deformer.boundary
     moment = segment_time_at(clip, frame)
@@ -326,12 +312,8 @@ def fit_map(
 ) -> HarmonicMap:
     """Return the map over a cage whose derivatives on the outline are nearest to the given ones.
 
-    Parameters
-    ----------
-    fz, fzbar, positions : complex128, shape (s,)
-        f_z, f_z̄ and f of the other map at the boundary's samples.
-    inside : bool, shape (m,), optional
-        The samples that have values, by default all.
+    `fz`, `fzbar` and `positions`, complex128 (s,), are those of the other map at the boundary's
+    samples, or at the samples chosen by `inside`, bool (m,).
     """
     chosen = slice(None) if inside is None else inside
     weights = boundary.lengths[chosen]

@@ -38,17 +38,11 @@ class SimilarityTransform:
 
     @classmethod
     def fit(cls, places: Complexes, images: Complexes, *, mirrors: bool | None = None) -> Self:
-        """Return the similarity that best maps places to images.
+        """Return the similarity that best maps places to images, each complex128 (n,), n ≥ 1.
 
         Its scale is the ratio of their spreads, so that the fit of images to places is its inverse.
-        A single place is only translated, or mirrored at a vertical axis.
-
-        Parameters
-        ----------
-        places, images : complex128, shape (n,)
-            At least one.
-        mirrors : bool, optional
-            Whether S mirrors. By default only if the images clearly are mirrored.
+        A single place is only translated, or mirrored at a vertical axis. By default S mirrors only
+        if the images clearly are mirrored.
         """
         if mirrors is not None:
             return cls._fit_nearest(places, images, mirrors=mirrors)
@@ -114,14 +108,9 @@ class SimilarityTransform:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseTransfer:
-    """A transfer of poses from one layer to another.
+    """A transfer of poses from one layer, as it was at the time of the poses, to another.
 
-    Parameters
-    ----------
-    source : Layer
-        At the time of its poses.
-    pairs : mapping of int to int
-        Handle ids of the target layer to handle ids of the source.
+    `pairs` maps handle ids of the target layer to handle ids of the source.
     """
 
     source: Layer
@@ -148,14 +137,10 @@ class PoseTransfer:
         return carried
 
     def transfer_pose(self, rig: Rig, pose: Pose, present: Pose | None = None) -> Pose:
-        """Return the source's pose for the rig's layer, solved within its limits.
+        """Return a pose of the source for the rig's layer, solved within its limits.
 
-        Parameters
-        ----------
-        pose : Pose
-            Of the source.
-        present : Pose, optional
-            Targets of handles without a partner; not needed if all have one.
+        Handles without a partner keep their targets in `present`, which is not needed if all have
+        one.
         """
         layer, targets = rig.layer, self.transfer_targets(rig.layer, pose)
         if present is not None:

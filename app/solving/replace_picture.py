@@ -15,16 +15,10 @@ from engine.maps import HarmonicMap
 def start_picture_replacement(before: Layer, made: Layer, canvas: tuple[int, int]) -> KeyResolver:
     """Return a resolver for a layer with another picture.
 
-    A picture of the same size has the old one's place, and one of the canvas's size fills the
-    canvas. Otherwise the centres of both shapes coincide. Handles and the anchor keep their places,
-    or move to the nearest points of the new shape.
-
-    Parameters
-    ----------
-    made : Layer
-        A layer of the new picture, with its lower left corner at 0.
-    canvas : tuple of int
-        Width and height of the canvas.
+    `made` is a layer of the new picture, with its lower left corner at 0. A picture of the same
+    size has the old one's place, and one of the canvas's size fills the canvas. Otherwise the
+    centres of both shapes coincide. Handles and the anchor keep their places, or move to the
+    nearest points of the new shape.
     """
     corner = _corner(before, made, canvas)
     domain = made.domain.moved(corner)

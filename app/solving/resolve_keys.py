@@ -28,40 +28,18 @@ AT_REST = 1e-3  # pixels: tolerance of coefficients of an undeformed drawing
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyResolver:
-    """The state of solving a layer's poses again for other limits, domain or picture.
-
-    Parameters
-    ----------
-    bounds : Bounds
-        Limits of the new poses.
-    meshing : Meshing, optional
-        Parameters of a new domain; None keeps the domain.
-    solves_all : bool
-        Whether poses that already satisfy the limits are solved too.
-    new_layer : Layer, optional
-        The layer with the new domain and undeformed poses, once built.
-    replaces_picture : bool
-        Whether `new_layer` has another picture.
-    rig : Rig, optional
-        None before the first key.
-    poses : tuple of Pose
-        The solved poses, in the order of `Layer.poses`.
-    unsolved : tuple of str
-        Names of poses that could not satisfy the limits and stay as they were.
-    notices : tuple of str
-        Notices of the domain builder.
-    """
+    """The state of solving a layer's poses again for other limits, domain or picture."""
 
     before: Layer
-    bounds: Bounds
-    meshing: Meshing | None = None
-    solves_all: bool = True
-    new_layer: Layer | None = None
-    replaces_picture: bool = False
-    rig: Rig | None = None
-    poses: tuple[Pose, ...] = ()
-    unsolved: tuple[str, ...] = ()
-    notices: tuple[str, ...] = ()
+    bounds: Bounds  # limits of the new poses
+    meshing: Meshing | None = None  # of a new domain; None keeps the domain
+    solves_all: bool = True  # also poses that already satisfy the limits
+    new_layer: Layer | None = None  # with the new domain and undeformed poses, once built
+    replaces_picture: bool = False  # whether `new_layer` has another picture
+    rig: Rig | None = None  # None before the first key
+    poses: tuple[Pose, ...] = ()  # solved, in the order of `Layer.poses`
+    unsolved: tuple[str, ...] = ()  # names of poses that could not satisfy the limits and stay
+    notices: tuple[str, ...] = ()  # of the domain builder
 
     @property
     def is_over(self) -> bool:
@@ -107,10 +85,7 @@ def _joined(label: str, *commands: Command) -> Command:
 def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
     """Build the domain, or solve the next key; on the worker thread.
 
-    Parameters
-    ----------
-    picture : uint8, shape (h, w, 4)
-        The layer's decoded picture.
+    `picture` is the layer's decoded picture, uint8 (h, w, 4).
     """
     if renewal.meshing is not None and renewal.new_layer is None:
         return _with_domain(renewal, picture, renewal.meshing)

@@ -48,21 +48,15 @@ SAME_PLACE = 1e-6  # pixels: tolerance for rounding
 def pose_document(
     document: Document, script: PoseScript, progress: Callable[[str], None]
 ) -> tuple[Document, tuple[str, ...]]:
-    """Return a document with the script's handles, keys and attachments.
+    """Return a document with the script's handles, keys and attachments, and notices.
 
     Each key is solved by a drag from the key before, the first one from the undeformed drawing. A
     handle without a target in a key keeps its last target. A script of one layer poses the
     frontmost visible layer. In a script of several, layers without an entry become still.
 
-    The notices are target errors, and parts of the script without effect. Raises a `LissomError` or
-    `EngineError` if a layer is missing or attached to itself, or if a point lies outside its shape.
-
-    Parameters
-    ----------
-    document : Document
-        An undeformed one, as from `open_picture` or `open_layered`.
-    progress : callable
-        Receives the description of each step.
+    The notices are target errors, and parts of the script without effect. `progress` receives the
+    description of each step. Raises a `LissomError` or `EngineError` if a layer is missing or
+    attached to itself, or if a point lies outside its shape.
     """
     named, notices = _by_layer(document, script), list[str]()
     document = replace(

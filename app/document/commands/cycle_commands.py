@@ -84,16 +84,9 @@ def bake_cycle(document: Document, identity: int, first: int, end: int) -> Docum
     """Replace the repeats of the cycle that begins at a frame with keys.
 
     Only the tangents into and out of the range may change. An incomplete repeat at the end stays a
-    repeat of the one before. Repeated switch keys are baked too.
-
-    Raises a `LissomError` if a track acts in a part of the cycle only, and is not zero at its ends.
-
-    Parameters
-    ----------
-    identity : int
-        Layer id.
-    end : int
-        The document's last frame, where repeats without an end stop.
+    repeat of the one before. Repeats without an end stop at `end`, the document's last frame.
+    Repeated switch keys are baked too. Raises a `LissomError` if a track acts in a part of the
+    cycle only, and is not zero at its ends.
     """
     cycle = cycle_starting_at(document.layer(identity), first)
     document = _with_baked_switch(

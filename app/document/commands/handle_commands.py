@@ -19,14 +19,8 @@ def add_handle(
 ) -> Layer:
     """Add a handle at a point of the picture; its target in each key is the point's image.
 
-    Parameters
-    ----------
-    position : complex
-        In pixels of the picture at rest, y up, on the shape.
-    name : str, optional
-        "handle 1" and so on by default. The new handle's id is `layer.next_handle`.
-    weight : float
-        Relative to other handles.
+    The position is on the shape, in pixels of the picture at rest, y up. The default name is
+    "handle 1" and so on. The new handle's id is `layer.next_handle`.
     """
     handle = Handle(
         id=layer.next_handle,

@@ -69,12 +69,8 @@ def replace_domain(
 ) -> Layer:
     """Replace the domain under the same handles and keys.
 
-    Parameters
-    ----------
-    domain : MeshedDomain
-        Built from the layer's cut-out. It must contain every handle and the anchor.
-    poses : sequence of Pose
-        All poses of the layer, solved over the new cage.
+    The domain is built from the layer's cut-out and contains every handle and the anchor. All poses
+    are solved over its cage.
     """
     unknown = {name: value for name, value in layer.unknown.items() if name != "domain"}
     return layer.with_poses(

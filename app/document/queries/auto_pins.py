@@ -19,27 +19,13 @@ SAME_TARGET_DISTANCE = 0.5  # pixels between two targets that count as equal
 
 
 class PinnedSegment(NamedTuple):
-    """The pins of a segment.
+    """The pins of a segment."""
 
-    Parameters
-    ----------
-    is_pinned : bool, shape (h,)
-        Handles pinned throughout the segment.
-    fading : bool, shape (2, h)
-        Other handles that are pinned in the segment before, and in the segment after.
-    neighbours : tuple of int or None
-        Numbers of these segments, if a pin fades to or from them.
-    content : tuple
-        Equal for equal pins, as long as the poses exist.
-    poses : tuple of Pose
-        All poses that determine the pins.
-    """
-
-    is_pinned: Booleans
-    fading: Booleans
-    neighbours: tuple[int | None, int | None]
-    content: tuple[object, ...]
-    poses: tuple[Pose, ...]
+    is_pinned: Booleans  # (h,): handles pinned throughout the segment
+    fading: Booleans  # (2, h): other handles, pinned in the segment before, and after
+    neighbours: tuple[int | None, int | None]  # their numbers, if a pin fades to or from them
+    content: tuple[object, ...]  # equal for equal pins, as long as the poses exist
+    poses: tuple[Pose, ...]  # all poses that determine the pins
 
     def weights(self, time: float) -> Floats:
         """Return the pin weight of each handle at a time of the segment, from 0 to 1."""

@@ -106,16 +106,9 @@ def brushed_stiffness(
 ) -> tuple[Floats | None, bool]:
     """Return the painted stiffness after a brush stroke, and whether the stroke met an outline.
 
-    Parameters
-    ----------
-    places : sequence of complex
-        Centres of the dabs, in pixels of the canvas, y up.
-    radius : float
-        In pixels.
-    amount : float
-        Stiffness at the outline within the radius of a dab.
-    softness : float
-        Share of the radius over which the effect fades, 0 to 1.
+    The places are the centres of the dabs, in pixels of the canvas, y up. Within the radius of a
+    dab, in pixels, the stiffness of the outline becomes `amount`. `softness` is the share of the
+    radius over which the effect fades, 0 to 1.
     """
     loops = layer.domain.loops
     shares = brush_weights(loops, as_points(list(places), "places"), radius, softness)

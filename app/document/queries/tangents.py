@@ -110,12 +110,8 @@ def tangents_at(
 ) -> tuple[KeyTangent, KeyTangent]:
     """Return the tangents of the segments before and after a key.
 
-    Parameters
-    ----------
-    is_same : callable
-        Returns whether two keys have the same value.
-    is_end : bool
-        Whether a smooth key has zero velocity, as at the first and the last key.
+    `is_same` returns whether two keys have the same value. With `is_end`, a smooth key has zero
+    velocity, as at the first and the last key.
     """
     before, after = _moving_segment(keys, before), _moving_segment(keys, after)
     reached = keys[index if before is None else before.last]

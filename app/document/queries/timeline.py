@@ -206,14 +206,8 @@ def _poses_alike(clip: Clip, first: SegmentTime, second: SegmentTime) -> bool:
 def frame_times(document: Document, frames: FrameRange, fps: float | None = None) -> list[float]:
     """Return the frame, possibly fractional, of each picture of an export.
 
+    `fps` is by default the document's rate. The last frame is included only if the rate meets it.
     Raises a `LissomError` if the rate is out of its range.
-
-    Parameters
-    ----------
-    frames : FrameRange
-        The last frame is included only if the export's rate meets it.
-    fps : float, optional
-        Pictures per second; by default the document's rate.
     """
     if fps is None:
         return [float(frame) for frame in range(frames.first, frames.last + 1)]

@@ -116,14 +116,8 @@ def mirrored_handles(
 ) -> Mapping[int, int]:
     """Return the mirror partner of each handle by name or else by position, as handle ids.
 
-    A handle near the axis is its own partner unless its name has a side.
-
-    Parameters
-    ----------
-    axis : float
-        The vertical mirror axis, in pixels from the left.
-    outline : complex128, shape (n,)
-        Outline of the layer, for the tolerance.
+    A handle near the vertical axis is its own partner unless its name has a side. The tolerance
+    depends on the size of the `outline`.
     """
     handles = tuple(handles)
     partners = dict(mirrored_handles_by_name(handles, pairs))

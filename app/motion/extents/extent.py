@@ -58,14 +58,8 @@ def measure_extent(
 ) -> BoundingBox:
     """Return the bounding box of an export's motion.
 
-    Parameters
-    ----------
-    stores : mapping of int to InbetweenCache
-        Caches with all in-betweens, by layer id.
-    joints : ParentTransforms, optional
-        Earlier transforms to reuse.
-    corrected : mapping of int to CorrectedFrames, optional
-        Complete corrections, by layer id.
+    `stores` have all in-betweens, and `corrected` all corrections, by layer id. Earlier transforms
+    `joints` are reused.
     """
     clips = {layer: clip_of(document, layer) for layer in stores}
     frames = frames_for_fit(document, export_frame_range(document))

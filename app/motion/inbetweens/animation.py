@@ -12,21 +12,12 @@ from engine.interpolation import Frame
 class Animation:
     """The motion of a clip at a sampler's points, with tracks and springs.
 
-    Parameters
-    ----------
-    variant : str, optional
-        By default the layer's own.
-    points : complex128, shape (m,), optional
-        By default the vertices of the domain's mesh.
-    sampler : PoseSampler, optional
-        An earlier sampler, reused if its domain and anchor are the layer's.
+    The variant is by default the layer's own, and the points, complex128 (m,), are the vertices of
+    the domain's mesh. An earlier sampler is reused if its domain and anchor are the layer's.
+    `carried` returns the rigid motion of the layer at a frame, for scene-space tracks, by default
+    the identity.
 
-    Attributes
-    ----------
-    base : KeyframeMotion
-        The motion with auto-pins, without tracks and springs.
-    carried : callable, optional
-        Rigid motion of the layer at a frame, for scene-space tracks; by default the identity.
+    `base` is the motion with auto-pins, without tracks and springs.
     """
 
     def __init__(

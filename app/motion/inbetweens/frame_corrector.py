@@ -66,12 +66,9 @@ def needs_correction(clip: Clip) -> bool:
 class FrameCorrector:
     """The corrections of a clip.
 
-    Parameters
-    ----------
-    sampler : PoseSampler
-        Of the layer's domain, at any points. Its cached data of the outline is used and extended.
-    carried : callable, optional
-        Rigid motion of the layer at a frame; by default the identity.
+    The sampler belongs to the layer's domain, at any points. Its cached data of the outline is used
+    and extended. `carried` returns the rigid motion of the layer at a frame, by default the
+    identity.
     """
 
     def __init__(

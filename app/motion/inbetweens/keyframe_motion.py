@@ -13,14 +13,8 @@ KEPT = 4  # segments that stay prepared
 class KeyframeMotion:
     """The motion of a clip at a sampler's points.
 
-    The last used segments stay prepared, since frames are usually requested in order.
-
-    Parameters
-    ----------
-    sampler : PoseSampler
-        Of the layer's domain and anchor.
-    pins : AutoPins, optional
-        Of the same clip and variant.
+    The sampler belongs to the layer's domain and anchor, the pins to the same clip and variant. The
+    last used segments stay prepared, since frames are usually requested in order.
     """
 
     def __init__(

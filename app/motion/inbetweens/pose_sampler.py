@@ -69,12 +69,8 @@ def prepare_corrector(
 ) -> tuple[PointCorrector, "PoseSampler"]:
     """Return the corrector of a layer's handles, and a sampler with the values that it needs.
 
-    Parameters
-    ----------
-    sibling : PoseSampler
-        With the same outline, cage and anchor.
-    more : complex128, shape (p,), optional
-        Further points to correct, after the handles.
+    The sibling has the same outline, cage and anchor. `more`, complex128 (p,), are further points
+    to correct, after the handles.
     """
     sites = sibling.sites
     points = np.array([each.position for each in layer.handles], dtype=np.complex128)
@@ -94,16 +90,9 @@ def prepare_corrector(
 class OutlineCache:
     """Data shared by the samplers of one outline and cage, computed on first use.
 
-    Attributes
-    ----------
-    corrections : dict
-        Corrections of frames by content, in the order of last use. Access needs `guard`, since
-        several threads use it.
-    tangents : dict
-        Tangents at smooth keys, by poses and the other values that determine them. Access needs
-        `guard`.
-    nbytes : int
-        Bytes that `forget_transform` frees.
+    `corrections` of frames are cached by content, in the order of last use. `tangents` at smooth
+    keys are cached by poses and the other values that determine them. Access to both needs `guard`,
+    since several threads use them. `forget_transform` frees `nbytes` bytes.
     """
 
     def __init__(self, domain: MeshedDomain) -> None:
@@ -154,10 +143,8 @@ class PoseSampler:
     """Points of a domain for in-betweens, with the samples of poses there.
 
     The samples of each pose are cached; poses are frozen, so samples stay valid. The class is
-    thread-safe.
-
-    Raises an `EngineError` if a point or the anchor is outside the domain. `forget_extension` frees
-    `extension_bytes` bytes.
+    thread-safe. `forget_extension` frees `extension_bytes` bytes. Raises an `EngineError` if a
+    point or the anchor is outside the domain.
 
     Parameters
     ----------
@@ -294,14 +281,9 @@ class PoseSampler:
         weight: float,
         pins: CorrectionSeries | None = None,
     ) -> Frame:
-        """Return a single in-between, for a variant with `makes_single_frames`.
+        """Return the in-between at the time `weight`, for a variant with `makes_single_frames`.
 
-        Parameters
-        ----------
-        weight : float
-            Time between the keys, in [0, 1].
-        pins : CorrectionSeries, optional
-            Corrections by auto-pins.
+        The weight is in [0, 1]. `pins` are corrections by auto-pins.
         """
         return frame_at(weight, variant, self._engine_interval(transit, bounds, variant), pins)
 

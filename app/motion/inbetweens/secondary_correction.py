@@ -8,27 +8,14 @@ from engine.interpolation import CorrectionSeries
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SecondaryCorrection:
-    """The correction of a frame that brings handles with tracks and springs to their targets.
+    """The correction of a frame that brings handles with tracks and springs to their targets."""
 
-    Parameters
-    ----------
-    series : CorrectionSeries
-        Constant in time: the correction of this frame.
-    target_errors : mapping of int to float
-        In pixels, for handles with tracks, by handle id.
-    targets : mapping of int to complex
-        Targets of the same handles.
-    limits : tuple of str
-        Names of the limits that stop the handles; see `DistortionRange.reached`.
-    steps : int
-        Total number of Newton steps.
-    """
-
-    series: CorrectionSeries
+    series: CorrectionSeries  # constant in time: the correction of this frame
+    # In pixels by handle id, for handles with tracks.
     target_errors: Mapping[int, float] = field(default_factory=dict)
-    targets: Mapping[int, complex] = field(default_factory=dict)
-    limits: tuple[str, ...] = ()
-    steps: int = 0
+    targets: Mapping[int, complex] = field(default_factory=dict)  # of the same handles
+    limits: tuple[str, ...] = ()  # that stop the handles; see `DistortionRange.reached`
+    steps: int = 0  # total number of Newton steps
 
     @property
     def is_limited(self) -> bool:

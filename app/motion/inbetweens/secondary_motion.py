@@ -13,26 +13,13 @@ TURNED = 50.0  # pixels that weigh as much as a rotation by one radian
 
 
 class SecondaryTargets(NamedTuple):
-    """Targets of the handles (h,).
+    """Targets of the handles (h,)."""
 
-    Parameters
-    ----------
-    positions : complex128, shape (h,)
-    has_target : bool, shape (h,)
-        Handles with tracks and springs.
-    rotations : float64, shape (h,)
-        Rotation of the shape, from −π to π; NaN where free.
-    reach : float
-        How far the displacement spreads around the handles, from 0 to 1 (freely).
-    tracked : frozenset of int
-        Ids of handles with a target by a track.
-    """
-
-    positions: Complexes
-    has_target: Booleans
-    rotations: Floats
-    reach: float
-    tracked: frozenset[int]
+    positions: Complexes  # complex128 (h,)
+    has_target: Booleans  # (h,): handles with tracks and springs
+    rotations: Floats  # float64 (h,): of the shape, from −π to π; NaN where free
+    reach: float  # how far the displacement spreads around the handles, from 0 to 1 (freely)
+    tracked: frozenset[int]  # ids of handles with a target by a track
 
 
 class SecondaryMotion:
@@ -76,12 +63,8 @@ class SecondaryMotion:
     ) -> SecondaryTargets | None:
         """Return the targets at a frame; None if all handles are there.
 
-        Parameters
-        ----------
-        places, fz : complex128, shape (h,)
-            Positions of the handles, and f_z there.
-        at : callable
-            Returns the positions (h,) at any frame before springs and tracks.
+        `places` and `fz`, complex128 (h,), are the positions of the handles, and f_z there. `at`
+        returns the positions at any frame before springs and tracks.
         """
         wanted, turns = places.copy(), np.full(len(places), np.nan)
         reaches, sizes, tracked = [], [], set()

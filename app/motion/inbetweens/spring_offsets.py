@@ -47,14 +47,8 @@ class SpringOffsets:
     A damped spring forgets. The simulation of a piece starts at rest, as many frames earlier as the
     spring takes to settle. A shorter loop is simulated whole, so that it closes.
 
-    Attributes
-    ----------
-    springs : tuple of Spring
-        The enabled springs.
-    roots : dict of int to int
-        Handle id to the index of the root handle.
-    run_up : int
-        Number of earlier frames that affect a displacement.
+    `springs` are the enabled springs. `roots` maps handle ids to indices of root handles. The
+    `run_up` earlier frames affect a displacement.
     """
 
     def __init__(self, clip: Clip, carried: ParentMotion | None) -> None:
@@ -77,12 +71,8 @@ class SpringOffsets:
     def offset(self, spring: Spring, frame: float, places: Complexes, at: PositionsAt) -> complex:
         """Return the displacement of a spring's handle at a frame, in the layer's space.
 
-        Parameters
-        ----------
-        places : complex128, shape (h,)
-            Positions of the handles at the frame before springs and tracks.
-        at : callable
-            Returns these positions at any frame.
+        `places`, complex128 (h,), are the positions of the handles at the frame before springs and
+        tracks. `at` returns these positions at any frame.
         """
         piece, time = self._piece(spring, frame, at)
         hung = self._carried(frame) if self._carried else IDENTITY_MOTION

@@ -28,22 +28,11 @@ def attach_in_place(
 ) -> tuple[complex, Attachment]:
     """Return the child's anchor and the attachment that keep the child in place at a frame.
 
-    Raises a `LissomError` if the child is not at that place.
-
-    Parameters
-    ----------
-    joints : ParentTransforms
-        Before the attachment.
-    child, parent : int
-        Layer ids.
-    frame : float
-        The frame at which nothing moves. The attachment replaces the one in effect there.
-    place : complex, optional
-        Place of the joint in the scene. By default the child's anchor. If the parent is not there
-        and no other attachment needs the anchor, the centre of the overlap. Outside the parent, the
-        child keeps its offset from the nearest point.
-    turns : bool
-        Whether the child rotates with the parent.
+    The attachment replaces the one in effect at the frame. `joints` are the transforms before it.
+    `place` is the joint in the scene, by default at the child's anchor. If the parent is not there
+    and no other attachment needs the anchor, it is the centre of the overlap. Outside the parent,
+    the child keeps its offset from the nearest point. With `turns`, the child rotates with the
+    parent. Raises a `LissomError` if the child is not at that place.
     """
     own, other = joints.document.layer(child), joints.document.layer(parent)
     held = own.attachment_key_at(int(frame))

@@ -51,17 +51,11 @@ def compose_chain(
     hinge: Callable[[Layer, complex], PivotFrame],
     kept: Callable[[Layer, Attachment], RigidMotion],
 ) -> RigidMotion:
-    """Return the transform of a layer from its chain of ancestors.
+    """Return the transform of a layer from its chain: the layer, its parent, and so on.
 
-    Parameters
-    ----------
-    chain : sequence of ChainLink
-        The layer, its parent, and so on.
-    hinge : callable
-        Returns position and rotation of a point in its layer's space.
-    kept : callable
-        Returns the transform that an attachment with `keep_world_transform` keeps: relative to the
-        parent's point, or in the scene after a detach.
+    `hinge` returns position and rotation of a point in its layer's space. `kept` returns the
+    transform that an attachment with `keep_world_transform` keeps. It is relative to the parent's
+    point, or in the scene after a detach.
     """
     last, released, placement = chain[-1]
     if released is not None and released.keep_world_transform:

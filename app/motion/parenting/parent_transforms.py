@@ -28,25 +28,12 @@ class ParentTransforms:
     """The transforms of a document's attached layers at any time.
 
     A parent moves a layer rigidly about its anchor. The distortion of the layer does not change,
-    and the joint never opens.
+    and the joint never opens. `siblings` have cached data of the outlines by layer id. Values of
+    earlier transforms that are still valid are reused. Raises an `EngineError` if a joint or an
+    anchor lies outside its layer.
 
-    Raises an `EngineError` if a joint or an anchor lies outside its layer.
-
-    Parameters
-    ----------
-    siblings : mapping of int to PoseSampler
-        By layer id; their cached data of the outlines is reused.
-    earlier : ParentTransforms, optional
-        Of an earlier document; values that are still valid are reused.
-
-    Attributes
-    ----------
-    points : dict of int to list of complex
-        The joint points of each layer: its own anchor, and points of its children.
-    tracked : dict of int to PointTrails
-        These points over time.
-    is_whole : bool
-        Whether all frames are computed.
+    `points` are the joint points of each layer: its own anchor, and points of its children.
+    `tracked` has these points over time. `is_whole` holds once all frames are computed.
     """
 
     def __init__(
@@ -91,12 +78,8 @@ class ParentTransforms:
     ) -> RigidMotion:
         """Return the transform of a layer at a frame.
 
-        Parameters
-        ----------
-        poses : mapping of int to Pose, optional
-            Poses shown in place of the layers' own, by layer id.
-        before : bool
-            Whether to use the attachments just before the frame.
+        `poses` are shown in place of the layers' own, by layer id. With `before`, the attachments
+        just before the frame are used.
         """
         if poses:
             return self._compute(layer, frame, poses, before=before)

@@ -30,14 +30,9 @@ def trace_paths(
 ) -> MotionPaths:
     """Return the exact positions of a clip's handles in all frames.
 
-    Parameters
-    ----------
-    earlier : MotionPaths, optional
-        Results for the same handles and poses are reused.
-    sibling : PoseSampler, optional
-        With the same outline and cage; shares the data that depends on these alone.
-    carried : callable, optional
-        Rigid motion of the layer at a frame.
+    Earlier paths of the same handles and poses are reused. The sibling has the same outline and
+    cage, and shares the data that depends on these alone. `carried` returns the rigid motion of the
+    layer at a frame.
     """
     first, last = clip.frames.first, clip.frames.last
     frames = np.arange(first, last + 1, 1 + (last - first) // MOST)

@@ -28,25 +28,13 @@ class TrailFrame(NamedTuple):
 class PointTrails:
     """Points of a layer at any frame of a clip, with corrections.
 
-    Parameters
-    ----------
-    points : complex128, shape (p,)
-        Of the undeformed layer; at least one.
-    sibling : PoseSampler, optional
-        With the same outline and cage; its cached data is reused.
-    earlier : PointTrails, optional
-        Reused if it has the same points.
-    carried : callable, optional
-        Rigid motion of the layer at a frame.
+    There is at least one point, complex128 (p,), of the undeformed layer. The sibling has the same
+    outline and cage; its cached data is reused, as are earlier trails of the same points. `carried`
+    returns the rigid motion of the layer at a frame.
 
-    Attributes
-    ----------
-    worked_out : int
-        Number of computed times; cached ones do not count.
-    sampler : PoseSampler or None
-        None until the first computation.
-    known : dict
-        Results by segment key and weight; for corrected clips, by clip and frame.
+    `worked_out` counts computed times, without cached ones. The sampler is None until the first
+    computation. `known` has results by segment key and weight, or for corrected clips by clip and
+    frame.
     """
 
     def __init__(

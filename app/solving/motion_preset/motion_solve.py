@@ -38,35 +38,17 @@ SMALLEST = 0.05  # smallest size of parameters
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionSolve:
-    """The state of applying a motion preset to a layer.
+    """The state of applying a motion preset to a layer."""
 
-    Parameters
-    ----------
-    document : Document
-        With handles and bones at the joints.
-    before : Layer
-        The original layer.
-    applied : AppliedMotion
-        Without a digest, since the keys are not yet solved.
-    blend_pose : Pose, optional
-        The pose from which the motion blends in.
-    key_poses : tuple of JointKeyPose
-        The keys to solve. A last key that equals the first is left out.
-    rig : Rig
-        Of the joints only; other handles follow the body.
-    poses : tuple of Pose
-        The solved poses.
-    """
-
-    document: Document
-    before: Layer
+    document: Document  # with handles and bones at the joints
+    before: Layer  # the original layer
     request: MotionRequest
     body: Body
-    applied: AppliedMotion
-    blend_pose: Pose | None
-    key_poses: tuple[JointKeyPose, ...]
-    rig: Rig
-    poses: tuple[Pose, ...] = ()
+    applied: AppliedMotion  # without a digest, since the keys are not yet solved
+    blend_pose: Pose | None  # the pose from which the motion blends in
+    key_poses: tuple[JointKeyPose, ...]  # to solve, without a last key that equals the first
+    rig: Rig  # of the joints only; other handles follow the body
+    poses: tuple[Pose, ...] = ()  # the solved poses
     # Largest target error of each joint by name, in pixels, with its frame.
     target_errors: Mapping[str, tuple[float, int]]
     # Bounds of the largest reachable size, and the number of tries.

@@ -31,17 +31,9 @@ def splice_motion(
 ) -> Layer:
     """Return a layer whose keys in the range of a motion are replaced by the motion's.
 
-    Parameters
-    ----------
-    identity : int
-        Layer id.
-    keys : sequence of Keyframe
-        Of one repeat, and of the blend in.
-    given : AppliedMotion
-        It gets the digest of its keys. Overlapping motions are dropped, and cycles that repeat into
-        it are baked.
-    until : int
-        Last frame whose key is deleted, if the motion replaces a longer one.
+    `keys` are those of one repeat and of the blend in. `given` gets the digest of its keys.
+    Overlapping motions are dropped, and cycles that repeat into it are baked. If the motion
+    replaces a longer one, keys up to the frame `until` are deleted.
     """
     first, last = given.first, max(given.last, until)
     for cycle in document.layer(identity).cycles:

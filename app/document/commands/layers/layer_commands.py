@@ -235,12 +235,7 @@ def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
 def detach_layer(document: Document, identity: int, factor: complex, shift: complex) -> Document:
     """Remove all parents of a layer, and transform its poses to where it was seen at one frame.
 
-    Parameters
-    ----------
-    factor : complex
-        Rotation of all poses, of modulus 1.
-    shift : complex
-        Translation after the rotation.
+    All poses are rotated by `factor`, of modulus 1, and then translated by `shift`.
     """
     layer = document.layer(identity)
     if not layer.attachments:

@@ -59,13 +59,8 @@ def composite_layers(
 ) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
     """Return the compositing of drawn layers at a frame, from back to front.
 
-    Parameters
-    ----------
-    drawn : mapping of int to Drawn
-        Visible layers by id. Each run of a group is composited separately. Layers clipped to an
-        invisible base are invisible.
-    frame : float
-        Determines the draw order and the opacities.
+    `drawn` has the visible layers by id. Each run of a group is composited separately. Layers
+    clipped to an invisible base are invisible.
     """
     opacities = {layer.id: opacity_at(document, layer, frame) for layer in document.layers}
     return _parts(_Painted(document, drawn, opacities), layers_in_draw_order(document, frame), 0)
