@@ -33,10 +33,7 @@ class UndoStep:
 
 
 class History:
-    """The undo steps of a session.
-
-    With `saved`, the document equals its file. Beyond `memory` bytes, the oldest steps are dropped.
-    """
+    """The undo steps of a session; beyond `memory` bytes, the oldest steps are dropped."""
 
     def __init__(self, document: Document, *, saved: bool, memory: int = HISTORY_BYTES) -> None:
         self._steps = [UndoStep(document, None, "")]
@@ -111,10 +108,7 @@ class History:
         self._go_on(UndoStep(self.document, unkeyed, "Pose", gesture))
 
     def extend_step(self, command: Command) -> None:
-        """Run a command as part of the last step; redo stays possible.
-
-        The unkeyed pose is removed.
-        """
+        """Run a command in the last step and remove the unkeyed pose; redo stays possible."""
         step = self._steps[self._now]
         document = command(step.document)
         if document is not step.document:

@@ -377,10 +377,7 @@ class Layer:
         self.require_on_shape(places)
 
     def require_on_shape(self, places: Mapping[str, complex]) -> None:
-        """Refuse the first of these named points that is not on the shape.
-
-        Raises a `LissomError` for a point outside the shape.
-        """
+        """Raise a `LissomError` for the first of these named points outside the shape."""
         points = np.array(list(places.values()), dtype=np.complex128)
         inside = self.covers(points, tolerance=ON_OUTLINE * diameter(self.domain.outline))
         for (name, place), is_inside in zip(places.items(), inside, strict=True):

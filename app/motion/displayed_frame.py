@@ -65,10 +65,7 @@ class DisplayedFrame:
         return self.mesh.derivatives(self.positions) if streamed is None else streamed
 
     def pivot_frame_at(self, place: complex) -> PivotFrame:
-        """Return the position and rotation of a point of the layer, in the layer's space.
-
-        The accuracy is that of the mesh.
-        """
+        """Return position and rotation of a point in the layer's space, as exact as the mesh."""
         rest = self.mesh.domain.mesh.vertices
         found = self.mesh.locate(np.array([place]), rest)
         positions = self.positions

@@ -299,10 +299,7 @@ class InbetweenCache:
     def set_needed_clips(
         self, present: Sequence[Clip], nearby: Sequence[Clip], frame: float
     ) -> None:
-        """Set the needed clips, the document's own first, and the playhead.
-
-        `nearby` are the clips after undo and redo.
-        """
+        """Set the playhead, the present clips, and the clips after undo and redo."""
         self._frame = frame
         if not (self._present.keys() == set(present) and self._nearby.keys() == set(nearby)):
             pinned = self._needed_keys()

@@ -156,10 +156,7 @@ def compute_frame(
 
 
 class SeriesBuild:
-    """A series of a prepared segment under construction; only the worker advances it.
-
-    With `distortions`, the series is of f_z and f_z̄; otherwise of the positions.
-    """
+    """A series of positions, or of f_z and f_z̄, under construction; only the worker advances it."""
 
     def __init__(self, pair: SegmentKey, interval: CachedSegment, *, distortions: bool) -> None:
         inbetweens, sites = interval.inbetweens, interval.sites

@@ -21,10 +21,7 @@ class TriangleOrder:
         self._depths = lru_cache(maxsize=_KEPT)(partial(_depths, mesh))
 
     def triangles(self, clip: Clip, frame: float) -> Integers:
-        """Return the triangles, int32 (m, 3), from back to front at a frame.
-
-        The result is the same array as long as the depths do not change.
-        """
+        """Return the triangles, int32 (m, 3), back to front; the same array for same depths."""
         fronts = depth_points_at(clip, frame)
         return self._ordered(fronts) if fronts else self._mesh.triangles
 

@@ -183,10 +183,7 @@ class DragSolver:
 
     @classmethod
     def begin(cls, rig: Rig, pose: Pose) -> Self:
-        """Return the drag that begins with a pose.
-
-        Raises an `EngineError` if the pose folds.
-        """
+        """Return the drag that begins with a pose; a folded pose raises an `EngineError`."""
         deformer = rig.allow_pose(pose)
         return cls(
             rig=rig,

@@ -18,10 +18,7 @@ from app.solving.pose_transfer import (
 def flip_poses(
     rig: Rig, poses: Sequence[Pose], axis: float, pairs: SidePairs = PAIRS
 ) -> list[Pose]:
-    """Return poses of a rig's layer mirrored at a vertical axis, solved within its limits.
-
-    The axis is in pixels from the left.
-    """
+    """Return poses mirrored at a vertical axis, in pixels, solved within the limits."""
     return [_flip(rig, pose, axis, pairs) for pose in poses]
 
 

@@ -83,10 +83,7 @@ def _joined(label: str, *commands: Command) -> Command:
 
 
 def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
-    """Build the domain, or solve the next key; on the worker thread.
-
-    `picture` is the layer's decoded picture, uint8 (h, w, 4).
-    """
+    """Build the domain of the picture, or solve the next key; on the worker thread."""
     if renewal.meshing is not None and renewal.new_layer is None:
         return _with_domain(renewal, picture, renewal.meshing)
     rig = renewal.rig or Rig.of(replace(renewal.new_layer or renewal.before, bounds=renewal.bounds))

@@ -79,7 +79,7 @@ def layer_command(
 ]:
     """Turn a function `(layer, *arguments) → layer` into one `(layer_id, *arguments) → Command`.
 
-    The animation is extended to all keys of the layer.
+    The document's frames are extended to all keys of the layer.
     """
 
     def make(

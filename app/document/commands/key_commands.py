@@ -78,10 +78,7 @@ def delete_keys(layer: Layer, frames: Collection[int]) -> Layer:
 def reverse_keys(
     layer: Layer, frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Layer:
-    """Reverse the keys at some frames, and the motion between them.
-
-    `span` is the first and the last frame of the reversed range, by default that of the keys.
-    """
+    """Reverse the keys at some frames within `span`, by default the range of the keys."""
     return _with_keys(layer, retime.with_reversed_keys(layer.keys, frames, span))
 
 
@@ -89,10 +86,7 @@ def reverse_keys(
 def scale_keys(
     layer: Layer, frames: Collection[int], factor: float, first: int | None = None
 ) -> Layer:
-    """Scale the frames of some keys around a fixed frame.
-
-    `first` is the fixed frame, by default that of the first key.
-    """
+    """Scale the frames of some keys around `first`, by default the first of the keys."""
     keys = retime.with_scaled_keys(layer.keys, frames, factor, first)
     stays = min(frames, default=0) if first is None else first
     return _rearranged(layer, keys, frames, TimeScale(stays, factor))

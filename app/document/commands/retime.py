@@ -152,10 +152,7 @@ def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
 def with_reversed_keys(
     keys: Keys[Key], frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Keys[Key]:
-    """Return the row with the keys at some frames reversed, and the motion between them.
-
-    The reversed range is that of the keys, or `span`.
-    """
+    """Return the row with keys and motion reversed in `span`, by default the range of the keys."""
     chosen = keys_at_frames(keys, frames)
     ends = sum(span) if span else chosen[0].frame + chosen[-1].frame if chosen else 0
     if len(chosen) < 2 and all(2 * key.frame == ends for key in chosen):

@@ -167,10 +167,7 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
 
 @command("Give a motion")
 def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
-    """Replace a layer after a motion preset; a document without motion becomes its loop.
-
-    `moved` has the new keys, and `given` among its motions.
-    """
+    """Replace a layer by one with a motion preset; a document without motion becomes its loop."""
     is_new = not _moves(document)
     document = document.with_layer(moved)
     if is_new and given.first == document.frames.first:

@@ -32,10 +32,7 @@ def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
 
 @layer_command("Set bounds")
 def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
-    """Set the limits of distortion.
-
-    `poses` are all poses of the layer, solved within the new limits. By default the poses stay.
-    """
+    """Set the limits of distortion; `poses` are all poses solved within them, if they change."""
     if poses is not None:
         return layer.with_poses(poses, bounds=bounds)
     return layer if bounds == layer.bounds else replace(layer, bounds=bounds)

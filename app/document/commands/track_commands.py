@@ -119,10 +119,7 @@ def scale_track_keys(
 
 @layer_command("Set easing")
 def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing: Easing) -> Layer:
-    """Set the easing after the keys of a track at some frames.
-
-    The keys lose their own velocities.
-    """
+    """Set the easing after some keys of a track, which lose their own velocities."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_easing(_unled(track, frames), frames, easing))
 
@@ -131,10 +128,7 @@ def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing:
 def set_track_passing(
     layer: Layer, handle: int, frames: Collection[int], passing: TangentMode
 ) -> Layer:
-    """Set the tangent mode of a track's keys at some frames; a hold ends.
-
-    The keys lose their own velocities.
-    """
+    """Set the tangent mode of some track keys, which lose their own velocities; a hold ends."""
     track = _track(layer, handle)
     return _with_keys(
         layer, track, retime.with_tangent_mode(_unled(track, frames), frames, passing)

@@ -58,10 +58,7 @@ class OpacityKey(BaseKey):
 
 @dataclass(frozen=True, slots=True)
 class DrawOrderKey:
-    """From a frame on, the layer is drawn directly in front of or behind another layer.
-
-    With `beside` None, the layer has its place in the document's order.
-    """
+    """From a frame on, a layer is drawn next to another; None restores the document's order."""
 
     frame: int
     beside: int | None  # id of the other layer

@@ -43,10 +43,7 @@ def motion_source(layer: Layer) -> tuple[object, ...]:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clip:
-    """A layer on the timeline of its document: all values that determine its motion.
-
-    Two clips are equal if their motion is.
-    """
+    """A layer on its document's timeline; two clips are equal if their motion is."""
 
     layer: Layer
     frames: FrameRange  # of the document

@@ -281,10 +281,7 @@ class PoseSampler:
         weight: float,
         pins: CorrectionSeries | None = None,
     ) -> Frame:
-        """Return the in-between at the time `weight`, for a variant with `makes_single_frames`.
-
-        The weight is in [0, 1]. `pins` are corrections by auto-pins.
-        """
+        """Return the in-between at the time `weight`, with pins; needs `makes_single_frames`."""
         return frame_at(weight, variant, self._engine_interval(transit, bounds, variant), pins)
 
     def velocity_shares(

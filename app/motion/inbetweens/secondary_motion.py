@@ -23,10 +23,7 @@ class SecondaryTargets(NamedTuple):
 
 
 class SecondaryMotion:
-    """The springs and tracks of a clip.
-
-    `carried` returns the rigid motion of the layer at a frame, by default the identity.
-    """
+    """The springs and tracks of a clip; `carried` is the layer's rigid motion at a frame."""
 
     def __init__(self, clip: Clip, carried: ParentMotion | None = None) -> None:
         layer = clip.layer

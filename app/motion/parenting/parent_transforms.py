@@ -114,8 +114,8 @@ class ParentTransforms:
     def _blends_until(self, layer: Layer, joint: Attachment) -> int | None:
         """Return the first frame of the next attachment; None if that depends on this one.
 
-        It does if it keeps the transform of that time, or if its parent is a descendant at some
-        frame.
+        The next attachment depends on this one if it keeps the transform of that time. It also does
+        if its parent is a descendant at some frame.
         """
         joints = self.document.attachments_of(layer)
         after = next((each for each in joints if each.frame > joint.frame), None)

@@ -20,10 +20,7 @@ class JointsFile:
 
 
 def load_joints(path: Path) -> JointsFile:
-    """Read the joints of a drawing.
-
-    Raises a `LissomError` if the file is missing, is not JSON, or is not a valid joints file.
-    """
+    """Read the joints of a drawing; an invalid or missing file raises a `LissomError`."""
     return load_json(path, _parsed, largest=LARGEST)
 
 

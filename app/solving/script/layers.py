@@ -102,10 +102,7 @@ def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...
 def parse_switch_groups(
     script: JsonObject, switched: Sequence[str]
 ) -> tuple[ScriptSwitchGroup, ...]:
-    """Return the switch groups of a script.
-
-    `switched` are the layers with visibility keys of their own.
-    """
+    """Return the switch groups; `switched` are layers with visibility keys of their own."""
     entries = as_list(script.get("choices", []), "choices")
     choices = [_choice(entry, f"choices[{index}]") for index, entry in enumerate(entries)]
     for name, count in Counter(choice.name for choice in choices).items():

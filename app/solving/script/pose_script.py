@@ -152,10 +152,7 @@ class PoseScript:
 
 
 def load_pose_script(path: Path) -> PoseScript:
-    """Read a pose script.
-
-    Raises a `LissomError` if the file is missing, is not JSON, or is not a valid pose script.
-    """
+    """Read a pose script; an invalid or missing file raises a `LissomError`."""
     return load_json(path, parse_pose_script, largest=LARGEST)
 
 

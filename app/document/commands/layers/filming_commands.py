@@ -69,10 +69,7 @@ def delete_movement_key(layer: Layer, frame: int) -> Layer:
 
 @layer_command("Set order from here on")
 def place_at(layer: Layer, placing: DrawOrderKey) -> Layer:
-    """Draw a layer directly in front of or behind another layer from a frame on.
-
-    In a cycle, the key repeats.
-    """
+    """Draw a layer directly in front of or behind another one from a frame on."""
     at = change_frame(layer.draw_order_keys, layer.cycles, placing.frame)
     placing = replace(placing, frame=at)
     others = [each for each in layer.draw_order_keys if each.frame != placing.frame]

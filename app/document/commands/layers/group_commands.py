@@ -83,7 +83,7 @@ def rename_group(document: Document, path: str, name: str) -> Document:
 
 @command("Ungroup layers")
 def ungroup_layers(document: Document, path: str) -> Document:
-    """Dissolve a group; its layers and groups keep the product of the opacities and stay hidden.
+    """Dissolve a group; its layers and subgroups take over its opacity and stay hidden if it was.
 
     Overlapping layers of a translucent group shine through each other afterwards.
     """
