@@ -1,7 +1,7 @@
-"""What is told to the person: errors, what to install, names of files, and how far long work is.
+"""Messages for the person: errors, notices, install hints and the progress of long work.
 
-Errors are messages and no tracebacks. Between what computes for long and whoever waits for it are
-many rooms that have nothing to add: so who listens is said once, for a block on the same thread.
+Errors are messages, never tracebacks. A context variable holds the progress listener of a thread,
+so that the rooms between the listener and the computation need not hand it on.
 """
 
 import platform
@@ -20,53 +20,52 @@ from typing import Final, Literal
 
 from engine.errors import EngineError
 
-# What Lissom can do with a library that it does not always have: extras of the package.
+# Optional features, each an extra of the package with its own library.
 Extra = Literal["video", "psd", "figures"]
 LIBRARIES: Final[dict[Extra, str]] = {"video": "av", "psd": "psd-tools", "figures": "matplotlib"}
 ProgressListener = Callable[[float], None]
 _listener: ContextVar[ProgressListener | None] = ContextVar("listener", default=None)
 CANCELLED: Final = "it was cancelled"
 REINSTALL: Final = "install Lissom again"
-# What Python makes of the bytes of a file's name that are no UTF-8, on Linux.
+# On Linux, Python reads the bytes of a file name that are not UTF-8 as these surrogates.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
-MAX_TEXT_LENGTH: Final = 120  # characters of a text that others wrote
+MAX_TEXT_LENGTH: Final = 120  # characters of a text from a file or another program
 MAX_MESSAGE_LENGTH: Final = 1_000  # characters
-MAX_LISTED: Final = 10  # names in a row, and notices
+MAX_LISTED: Final = 10  # names in a list, or notices
 _CUT: Final = "\N{HORIZONTAL ELLIPSIS}"
-# A text in quotes within a message, of more characters than are shown.
+# A quoted text within a message that is longer than MAX_TEXT_LENGTH.
 _LONG_QUOTED: Final = re.compile(
     rf"""(?<!\w)(['"])((?:(?!\1).){{{MAX_TEXT_LENGTH - 1}}})(?:(?!\1).){{2,}}\1(?!\w)"""
 )
-# Beside all that Python counts as printable: spaces of every width, and joiners within words.
+# Printable characters that `str.isprintable` rejects: spaces of any width, and joiners.
 _PRINTABLE: Final = re.compile("[\u00a0\u1680\u2000-\u200a\u202f\u205f\u3000\u200c\u200d]")
 
 
 class LissomError(Exception):
-    """A request that cannot be met; the message tells the person what was wrong and what to do."""
+    """A request that cannot be met; the message states the fault and the remedy."""
 
 
-# What a command line, a job or a panel reports as a plain message.
+# A command line, a job or a panel shows these errors as plain messages.
 EXPECTED_ERRORS = (LissomError, EngineError)
 
 
 @dataclass(frozen=True, slots=True)
 class ImportLog:
-    """What opening a drawing told, a line each, with the names of the layers that it is about."""
+    """Notices from opening a drawing, one per line, each with the names of its layers."""
 
-    warnings: tuple[str, ...] = ()  # what does not look as it does elsewhere
-    notes: tuple[str, ...] = ()  # what was done, and looks the same
+    warnings: tuple[str, ...] = ()  # the layer looks different from the program that made it
+    notes: tuple[str, ...] = ()  # the layer was changed on import and looks the same
 
     def __bool__(self) -> bool:
-        """Tell whether there is anything to be told."""
         return bool(self.warnings or self.notes)
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """All of it, losses first."""
+        """Warnings, then notes."""
         return self.warnings + self.notes
 
     def __add__(self, other: "ImportLog") -> "ImportLog":
-        """Return both."""
+        """Return the notices of both logs."""
         return ImportLog(self.warnings + other.warnings, self.notes + other.notes)
 
 
@@ -74,23 +73,22 @@ EMPTY_IMPORT_LOG = ImportLog()
 
 
 class NoticeCollector:
-    """What is found while a drawing is read: told once, with the names of all that it is about."""
+    """Collects notices while a drawing is read; equal notices share a line with all names."""
 
     def __init__(self) -> None:
         self._losses: dict[str, list[str]] = {}
         self._matters: dict[str, list[str]] = {}
 
     def add_warning(self, name: str, what: str) -> None:
-        """Tell what of something is not shown as it is elsewhere."""
+        """Add a notice that a layer looks different here."""
         self._losses.setdefault(what, []).append(name)
 
     def add_note(self, name: str, what: str) -> None:
-        """Tell what was done to something, which looks the same."""
+        """Add a notice that a layer was changed and looks the same."""
         self._matters.setdefault(what, []).append(name)
 
     @property
     def import_log(self) -> ImportLog:
-        """All that was told."""
         losses, matters = (
             tuple(f"{join_names(names)}: {what}" for what, names in found.items())
             for found in (self._losses, self._matters)
@@ -99,17 +97,17 @@ class NoticeCollector:
 
 
 def display_name(name: object) -> str:
-    """Return a file's name, or a text with names in it, with a � for each byte that is no UTF-8.
+    """Return the text with � in place of each byte that is not UTF-8.
 
-    Neither a window nor a file of text takes such a name as it is.
+    Neither a window nor a text file accepts other bytes.
     """
     return _UNREADABLE.sub("\N{REPLACEMENT CHARACTER}", str(name))
 
 
 def printable(text: object, *, keeps_lines: bool = False) -> str:
-    r"""Return a text as any terminal shows it: its control characters are escapes, such as \x1b.
+    r"""Return the text with control characters escaped, for example \x1b.
 
-    Those that turn the direction of writing are among them.
+    Characters that change the writing direction are escaped too.
     """
 
     def escaped(letter: str) -> str:
@@ -122,44 +120,44 @@ def printable(text: object, *, keeps_lines: bool = False) -> str:
 
 
 def shortened(text: object) -> str:
-    """Return a text that others wrote as it stands in a sentence: printable, and cut if long."""
+    """Return a foreign text for use in a sentence: printable and at most MAX_TEXT_LENGTH long."""
     shown = printable(str(text)[: MAX_TEXT_LENGTH + 1])
     return shown if len(shown) <= MAX_TEXT_LENGTH else shown[: MAX_TEXT_LENGTH - 1] + _CUT
 
 
 def display_message(message: object) -> str:
-    """Return a message as it is printed: on one line, printable, and what is long in it cut."""
+    """Return the message on one line, printable, with long quoted texts shortened."""
     shown = _LONG_QUOTED.sub(rf"\1\2{_CUT}\1", printable(" ".join(str(message).split())))
     half = MAX_MESSAGE_LENGTH // 2
     return shown if len(shown) <= MAX_MESSAGE_LENGTH else f"{shown[:half]}{_CUT}{shown[-half:]}"
 
 
 def join_names(names: Sequence[object]) -> str:
-    """Return names in a row, and how many more there are."""
+    """Return the first names, separated by commas, and the number of the others."""
     few = ", ".join(map(shortened, names[:MAX_LISTED]))
     more = len(names) - MAX_LISTED
     return f"{few} and {more:,} more" if more > 0 else few
 
 
 def few_notices(notices: Sequence[str]) -> list[str]:
-    """Return the first notices, and how many more there are."""
+    """Return the first notices and the number of the others."""
     more = len(notices) - MAX_LISTED
     return [*notices[:MAX_LISTED], *([f"and {more:,} more"] if more > 0 else [])]
 
 
 def install_hint(extra: Extra) -> str:
-    """Return how to install the library of an extra here; empty where it is there."""
+    """Return how to install the library of an extra; empty if it is installed."""
     is_there = find_spec(LIBRARIES[extra].replace("-", "_")) is not None
     return "" if is_there else _how_to_install(extra)
 
 
 def _how_to_install(extra: Extra) -> str:
-    """Return the command that brings an extra to this Lissom, or what else to do.
+    """Return the command that adds the extra's library to this installation of Lissom.
 
-    It does not ask for Lissom anew, which may have come from a folder.
+    The command does not reinstall Lissom: this installation may come from a local folder.
     """
     if getattr(sys, "frozen", False):
-        # What is built without Python has all of them inside.
+        # A bundled application contains all libraries.
         return "a part of Lissom is gone, install it again"
     home = Path(sys.prefix)
     if (home / "pipx_metadata.json").is_file():
@@ -173,13 +171,13 @@ def _how_to_install(extra: Extra) -> str:
 
 
 def required_library(extra: Extra) -> str:
-    """Return an extra's library, with the versions that will do."""
+    """Return the requirement of an extra: its library with the accepted versions."""
     lines = (line.partition(";") for line in requires("lissom") or ())
     return next(name.strip() for name, _, case in lines if re.search(rf"\b{extra}\b", case))
 
 
 def _quoted(word: str) -> str:
-    """Return a word as the system's usual shells take it."""
+    """Return the word quoted for the usual shells of this system."""
     if platform.system() != "Windows":
         return shlex.quote(word)
     return word if re.fullmatch(r"[\w:.\\-]+", word) else f'"{word}"'
@@ -187,12 +185,10 @@ def _quoted(word: str) -> str:
 
 @contextmanager
 def listen_to_progress(listener: ProgressListener) -> Iterator[None]:
-    """Let somebody listen to what this thread does in a `with` block.
+    """Send the progress of this thread to a listener within a `with` block.
 
-    Parameters
-    ----------
-    listener : callable
-        Takes the share that is done, from 0 to 1; what it raises ends the work.
+    The listener takes the finished share, from 0 to 1. An exception from the listener ends the
+    work.
     """
     before = _listener.set(listener)
     try:
@@ -202,7 +198,7 @@ def listen_to_progress(listener: ProgressListener) -> Iterator[None]:
 
 
 def report_progress(share: float) -> None:
-    """Tell how far the work is, if somebody listens."""
+    """Report the finished share of the work, from 0 to 1, to the listener of this thread."""
     listener = _listener.get()
     if listener is not None:
         listener(share)

@@ -1,8 +1,8 @@
-"""The formats that animations are exported to: one entry of a table each, and what each asks.
+"""Export formats and their options, one table entry per format.
 
-It loads nothing, so that the command line can tell of the formats at once. A new format is an entry
-here and a writer in `app.export.writers`; the window and the command line ask for its options, and
-project files hold them, by what stands here.
+This module loads no other part, so that the command line can list the formats at once. A new format
+is an entry here and a writer in `app.export.writers`. The window, the command line and project
+files take its options from this table.
 """
 
 import re
@@ -15,45 +15,33 @@ from app.errors import Extra, LissomError
 
 
 def expand_colour(text: str) -> str:
-    """Return a colour as it is kept, "#rrggbb", where "#rgb" is told; else the text as it is."""
+    """Return the colour "#rrggbb" for "#rgb"; return any other text unchanged."""
     is_short = re.fullmatch("#[0-9a-fA-F]{3}", text) is not None
     return "#" + "".join(2 * digit for digit in text[1:]) if is_short else text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Option:
-    """Something that only some formats ask.
+    """An option that only some formats have."""
 
-    Parameters
-    ----------
-    label, tip : str
-        In the window.
-    flag, about : str
-        On the command line: its name without dashes, and its help.
-    words : tuple of (value, str)
-        Words to choose from, and the values that they stand for. Where such a value is a number,
-        another one may be entered, and always where there are no words.
-    least, most : float
-        Of numbers.
-    """
-
-    label: str
-    tip: str = ""
-    flag: str
+    label: str  # in the window
+    tip: str = ""  # in the window
+    flag: str  # on the command line, without dashes
     description: str
+    # Values with labels; numbers, or no choices, allow any number.
     choices: tuple[tuple[bool | float | None, str], ...] = ()
-    minimum: float = 0
-    maximum: float = 1
+    minimum: float = 0  # of a number
+    maximum: float = 1  # of a number
 
 
 def _option(usual: Any, **option: Any) -> Any:
-    """Return a field of options, with what is asked for it."""
+    """Return a dataclass field with this default and this option."""
     return field(default=usual, metadata={"option": Option(**option)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FormatOptions:
-    """What some formats ask; the base of all such."""
+    """Base of the options of one or more formats."""
 
     def __post_init__(self) -> None:
         for name, option in self.option_fields().items():
@@ -66,13 +54,13 @@ class FormatOptions:
 
     @classmethod
     def option_fields(cls) -> dict[str, Option]:
-        """Return what is asked, by the names of the fields."""
+        """Return the options by field name."""
         return {each.name: each.metadata["option"] for each in fields(cls)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpriteSheetOptions(FormatOptions):
-    """How the frames lie on a sprite sheet."""
+    """Layout of the frames on a sprite sheet."""
 
     trimmed: bool = _option(
         True,  # noqa: FBT003 - the usual value
@@ -100,9 +88,10 @@ class SpriteSheetOptions(FormatOptions):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshOptions(FormatOptions):
-    """How closely an export of shapes follows the motion, in how many triangles of each layer.
+    """Accuracy and triangle count of an export of meshes.
 
-    Without a tolerance it is half a pixel, with no more shapes than every viewer shows.
+    Without a tolerance, the accuracy is half a pixel with at most 8 shapes, which every viewer
+    shows.
     """
 
     triangles: int = _option(
@@ -110,9 +99,9 @@ class MeshOptions(FormatOptions):
         label="Triangles",
         tip="Of each layer, about: more of them bend more smoothly, in a larger file",
         flag="triangles",
-        description="of a model, about (default: 4000)",
-        minimum=100,
-        maximum=2_000_000,  # as many as a domain may have
+        about="of a model, about (default: 4000)",
+        least=100,
+        most=2_000_000,  # the largest number of triangles of a domain
     )
     tolerance: float | None = _option(
         None,
@@ -130,79 +119,41 @@ class MeshOptions(FormatOptions):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FormatSettings:
-    """All options; an export uses those that its format asks, by `ExportFormat.options`."""
+    """Options of all formats; an export uses the options named by `ExportFormat.options`."""
 
     sheet: SpriteSheetOptions = SpriteSheetOptions()
     shapes: MeshOptions = MeshOptions()
 
     def options(self) -> dict[str, Any]:
-        """Return the options by the names of the fields."""
+        """Return the options by field name."""
         return {each.name: getattr(self, each.name) for each in fields(FormatSettings)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportFormat:
-    """What a person should know of a format; `app.export.writers` has what writes it.
-
-    Parameters
-    ----------
-    label : str
-        In lists.
-    group : str
-        The heading in lists, of which there is one for each run of formats with the same.
-    use : str
-        In one line, what it is good for and what it cannot do.
-    about : str
-        What comes out, in the words of the command line's help.
-    suffixes : tuple of str
-        That its file names end in, the usual one first; none where every frame is a file of its
-        own, in a folder.
-    data_suffix : str
-        That the name of a file of data beside it ends in; empty where there is none.
-    is_transparent : bool
-        Whether it keeps what is transparent; one that does not needs a background.
-    is_drawn : bool
-        Whether it holds pictures; else it holds shapes, and plays at any rate.
-    has_frame : bool
-        Whether it shows a part of the plane, before a background; else it is in the plane itself.
-    keeps_order : bool
-        Whether what lies in front of what may change in it.
-    composites : bool
-        Whether layers and groups are blended, clipped and faded in it as they are here.
-    largest : int, optional
-        Pixels of a picture each way, at most.
-    is_still : bool
-        Whether it is one frame, at the playhead or the first one.
-    block : int
-        Pixels of which the sides of its pictures are multiples.
-    fastest : float, optional
-        Pictures a second, at most.
-    extra : Extra, optional
-        What it needs beyond what Lissom always has.
-    options : str
-        The field of `FormatSettings` with what it asks; empty where it asks nothing of its own.
-    """
+    """Properties of an export format; `app.export.writers` holds the writers."""
 
     label: str
-    group: str
-    use: str
-    about: str
+    group: str  # heading in lists; formats of one group follow one another
+    use: str  # one line: the purpose and the limits of the format
+    about: str  # description for the help of the command line
+    # Endings of the file name, the default first. Empty if each frame is a file in a folder.
     suffixes: tuple[str, ...] = ()
-    data_suffix: str = ""
-    is_transparent: bool = True
-    is_drawn: bool = True
-    has_frame: bool = True
-    keeps_order: bool = True
-    composites: bool = True
-    largest: int | None = None
-    is_still: bool = False
-    block: int = 1
-    fastest: float | None = None
+    data_suffix: str = ""  # ending of the data file beside the picture; empty without one
+    is_transparent: bool = True  # otherwise the format needs a background
+    is_drawn: bool = True  # whether the file contains pictures; otherwise meshes, for any rate
+    has_frame: bool = True  # whether the file shows a frame of the scene before a background
+    keeps_order: bool = True  # whether the draw order may change over time
+    composites: bool = True  # whether the file shows blend modes, clipping and group opacity
+    largest: int | None = None  # side of a picture in pixels
+    is_still: bool = False  # one frame: at the playhead, or the first
+    block: int = 1  # the sides of a picture are multiples of this number of pixels
+    fastest: float | None = None  # pictures per second
     extra: Extra | None = None
-    options: str = ""
+    options: str = ""  # field of `FormatSettings`; empty without options
 
     def whole_blocks(self, size: tuple[int, int]) -> tuple[int, int]:
-        """Return the least size not below another one whose sides the format can have."""
+        """Return the smallest size of whole blocks that contains this size."""
         width, height = (side + -side % self.block for side in size)
         return width, height
 
@@ -320,12 +271,12 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
     }
 )
 
-# Of one frame.
+# The format of a single frame.
 STILL_FORMAT: Final = next(name for name, format_ in EXPORT_FORMATS.items() if format_.is_still)
 
 
 def format_by_suffix() -> dict[str, str]:
-    """Return the formats that the end of a name tells by itself; .png stands for several."""
+    """Return the format of each unambiguous file name ending; .png is ambiguous."""
     every = [suffix for format_ in EXPORT_FORMATS.values() for suffix in format_.suffixes]
     return {
         suffix: name

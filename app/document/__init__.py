@@ -1,7 +1,7 @@
 """The document that is edited, saved and rendered: values, commands, history.
 
 In: commands.
-Out: frozen documents, each of them valid, and where time stands in them.
+Out: frozen, valid documents, and the playhead.
 Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, window or clock.
 """
 

@@ -1,4 +1,4 @@
-"""Undo and redo of everything, as frozen snapshots that share what they have in common."""
+"""Undo and redo, as frozen snapshots of the document that share unchanged values."""
 
 from dataclasses import dataclass, replace
 
@@ -8,14 +8,14 @@ from app.document.layer import Layer, PictureFile
 from app.document.model import Document
 
 HISTORY_BYTES = 512 * 1024 * 1024
-# Tuples, names and numbers of a snapshot, roughly, and those of each pose.
+# Rough sizes of the names and tuples of a snapshot, and of a pose without its map.
 SNAPSHOT_BYTES = 2_000
 POSE_BYTES = 1_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PreviewPose:
-    """A pose of a layer at a frame that no key holds: undone like all else, but not saved."""
+    """An unkeyed pose of a layer at a frame. Undo covers it; a project file does not contain it."""
 
     layer: int
     frame: int
@@ -24,7 +24,7 @@ class PreviewPose:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UndoStep:
-    """What one action led to."""
+    """The document after one action."""
 
     document: Document
     preview_pose: PreviewPose | None
@@ -33,126 +33,93 @@ class UndoStep:
 
 
 class History:
-    """The documents of a session, one for each step.
-
-    Parameters
-    ----------
-    document : Document
-        As opened or made.
-    saved : bool
-        Whether it is what a file holds.
-    memory : int
-        Bytes that undoing may keep; beyond them the oldest steps are forgotten.
-    """
+    """The undo steps of a session; beyond `memory` bytes, the oldest steps are dropped."""
 
     def __init__(self, document: Document, *, saved: bool, memory: int = HISTORY_BYTES) -> None:
         self._steps = [UndoStep(document, None, "")]
-        # _bytes[i]: bytes that only steps up to i keep alive, freed by forgetting step i.
+        # _bytes[i]: bytes that only steps up to i use. Dropping step i frees them.
         self._bytes = [0]
         self._now = 0
-        self._forgotten = 0  # steps before them
+        self._forgotten = 0  # number of dropped steps
         self._gesture: object = None
-        # What the gesture's first command took the place of.
+        # The redo steps that the first command of the gesture replaced.
         self._undone: list[UndoStep] = []
         self._saved = document if saved else None
         self._memory = memory
 
     @property
     def document(self) -> Document:
-        """The document as it is now."""
         return self._steps[self._now].document
 
     @property
     def preview_pose(self) -> PreviewPose | None:
-        """The pose that no key holds, if there is one."""
+        """The current unkeyed pose, if any."""
         return self._steps[self._now].preview_pose
 
     @property
     def undo_label(self) -> str | None:
-        """What undo would take back; None where there is nothing."""
+        """Label of the action that undo takes back, if any."""
         return self._steps[self._now].label if self._now else None
 
     @property
     def redo_label(self) -> str | None:
-        """What redo would do again; None where there is nothing."""
+        """Label of the action that redo repeats, if any."""
         return self._steps[self._now + 1].label if self._now + 1 < len(self._steps) else None
 
     @property
     def position(self) -> int:
-        """How many steps have led to the document as it is now."""
+        """Number of steps from the first document to the current one, dropped steps included."""
         return self._forgotten + self._now
 
     @property
     def nearby(self) -> tuple[Document, ...]:
-        """The document as it is now, between those that undo and redo lead to, if there are any."""
+        """The documents after undo, now, and after redo, as far as they exist."""
         steps = self._steps[max(self._now - 1, 0) : self._now + 2]
         return tuple(step.document for step in steps)
 
     @property
     def picture_files(self) -> frozenset[PictureFile]:
-        """Those of all layers that are there now, or that undo and redo lead to."""
+        """Picture files of all layers in all undo and redo steps."""
         layers = (layer for step in self._steps for layer in step.document.layers)
         return frozenset(layer.picture for layer in layers)
 
     @property
     def is_saved(self) -> bool:
-        """Whether the document is the one that was saved last."""
+        """Whether the current document is the last saved one."""
         return self.document is self._saved
 
     def mark_saved(self, document: Document) -> None:
-        """Note that a file holds this document, which may no longer be the present one."""
+        """Record that a file holds this document, which may be older than the current one."""
         self._saved = document
 
     def do(self, command: Command, *, gesture: object = None) -> None:
         """Run a command on the document.
 
-        Parameters
-        ----------
-        gesture : object, optional
-            Commands of one gesture, that is with one and the same object here and nothing in
-            between, make up one step together; none if they end with the document before it.
-
-        Raises
-        ------
-        LissomError
-            If the command is not possible; then nothing has changed.
+        Consecutive commands with the same `gesture` object form one step. No step remains if they
+        end with the document before the gesture. Raises a `LissomError` if the command is not
+        possible. The history is then unchanged.
         """
         document = command(self.document)
         unkeyed = _fitting(self.preview_pose, self.document, document)
         self._go_on(UndoStep(document, unkeyed, command.label, gesture))
 
     def set_preview_pose(self, unkeyed: PreviewPose | None, *, gesture: object = None) -> None:
-        """Hold a pose outside of all keys in place of the one before, or none any more."""
+        """Replace or remove the unkeyed pose, as an undo step."""
         self._go_on(UndoStep(self.document, unkeyed, "Pose", gesture))
 
     def extend_step(self, command: Command) -> None:
-        """Run a command that belongs to the last step; what can be done again stays so.
-
-        The pose that no key holds is let go.
-        """
+        """Run a command in the last step and remove the unkeyed pose; redo stays possible."""
         step = self._steps[self._now]
         document = command(step.document)
         if document is not step.document:
             self._put(self._now, replace(step, document=document, preview_pose=None))
 
     def amend(self, gesture: object, old: Pose, new: PoseReplacement) -> bool:
-        """Let what a gesture has led to go on to another pose, as if it had led there at once.
+        """Replace the pose of a gesture in its step and in all later steps, redo steps included.
 
-        In its step and in all that came after it, those that can be done again among them, the
-        poses of the same map are exchanged: of keys, of copies of them, of the library, and that
-        which no key holds.
-
-        Parameters
-        ----------
-        gesture : object
-        old : Pose
-        new : callable
-            Returns the pose of a layer that takes the place of one with the map of `old`.
-
-        Returns
-        -------
-        bool
-            Whether the step of that gesture is there, and not forgotten or overwritten.
+        All poses with the same map are replaced: in keys, in copies of keys, in the library, and
+        the unkeyed pose. `new` returns a layer's new pose for a pose with the map of `old`. The
+        result is False if the step of the gesture was dropped or overwritten.
         """
         indices = range(len(self._steps))
         begun = next((i for i in indices if self._steps[i].gesture is gesture), None)
@@ -173,7 +140,7 @@ class History:
         return True
 
     def revert(self, gesture: object) -> None:
-        """Undo what a gesture did last, as if it had never begun; if it did nothing, stay."""
+        """Remove the last step if the gesture made it, and restore the replaced redo steps."""
         if gesture is None or gesture is not self._gesture:
             return
         del self._steps[-1], self._bytes[-1]
@@ -184,13 +151,13 @@ class History:
         self._gesture, self._undone = None, []
 
     def undo(self) -> None:
-        """Go back by one step, to the very document that was; without one, stay."""
+        """Go back one step, to the same document object, if possible."""
         if self._now:
             self._now -= 1
             self._gesture, self._undone = None, []
 
     def redo(self) -> None:
-        """Go forward again by one step; without one, stay."""
+        """Go forward one step, if possible."""
         if self._now + 1 < len(self._steps):
             self._now += 1
 
@@ -234,10 +201,10 @@ class History:
 
 
 def _fitting(unkeyed: PreviewPose | None, before: Document, after: Document) -> PreviewPose | None:
-    """Return a pose of a document as a later one can have it, with a target for each handle.
+    """Return the unkeyed pose with a target for each handle of the later document.
 
-    Returns None where that has the layer no more, or another domain. A handle that is put
-    elsewhere, or added, is wanted where it is.
+    A handle that was added or moved gets its own position as target. None if the later document
+    lacks the layer, or the layer has another domain.
     """
     if unkeyed is None:
         return None

@@ -1,4 +1,4 @@
-"""Handles, and the poses into which keys pull them."""
+"""Handles, targets, poses and pose keys."""
 
 import math
 from collections.abc import Mapping
@@ -22,35 +22,35 @@ from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
 
 MAX_WEIGHT = 1e6
-# How firmly a handle holds, in words: the weights that they stand for.
+# Weights of handles by name.
 WEIGHT_PRESETS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
-# A locked handle pulls so many times as strongly: a free one that is dragged as far as the limits
-# let it moves it by less than a tenth of a pixel.
+# Factor of a locked handle's weight. If a free handle is dragged to the limits, a locked handle
+# moves by less than a tenth of a pixel.
 LOCKED_WEIGHT = 1e4
 MAX_REVOLUTIONS = 20
-# Pixels. No pose between targets that are within `FARTHEST` comes near; beyond, what is seen of a
-# pose would run out of digits.
+# Pixels. Poses with targets within MAX_COORDINATE stay far below this size; a pose above it loses
+# too many digits to be drawn.
 LARGEST_COEFFICIENT = 1e12
 NO_DEPTHS: Mapping[int, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Handle:
-    """A named point of the picture by which poses are pulled."""
+    """A named point of the picture by which a pose is dragged."""
 
-    id: int  # never given twice in one document
+    id: int  # never used again in the same document
     name: str  # unique in the document
-    position: complex  # where it sits in the picture at rest, in pixels, y up
-    weight: float = 1.0  # how strongly it pulls, relative to others
-    # What the drawing is painted in around it where it lies over itself: −1 behind, 1 in front, 0
-    # in its usual order. Keys may say otherwise.
+    position: complex  # at rest, in pixels, y up
+    weight: float = 1.0  # relative to other handles
+    # Depth of the drawing around the handle where the drawing overlaps itself: −1 behind, 1 in
+    # front, 0 default order. Keys may override the depth.
     depth: float = 0.0
-    # How far around it that holds, in pixels; None is the usual part of the drawing.
+    # Radius of the depth around the handle in pixels; None takes the default share of the drawing.
     extent: float | None = None
-    # Whether it holds its place: it is not dragged, and hardly gives in to others.
+    # Whether the handle keeps its place. It cannot be dragged and hardly moves with other handles.
     locked: bool = False
-    group: str = ""  # those of one group are taken together; "" is none
-    # Whether it moves as it likes between two keys that have it at one place; else it stays there.
+    group: str = ""  # handles of one group are selected together; "" is no group
+    # Whether auto-pin skips the handle, so that it may move between keys with equal targets.
     is_unpinned: bool = False
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -72,12 +72,12 @@ class Handle:
 
     @property
     def effective_weight(self) -> float:
-        """How strongly it pulls when a pose is solved."""
+        """Weight in the solver, with the factor of a locked handle."""
         return self.weight * (LOCKED_WEIGHT if self.locked else 1.0)
 
 
 def require_depth(front: float) -> None:
-    """Raise a `LissomError` unless a depth lies between behind and in front."""
+    """Raise a `LissomError` unless the depth is from −1 to 1."""
     require(
         -1 <= front <= 1,
         f"What is painted in front is between −1, behind, and 1, in front, not {front:g}.",
@@ -86,10 +86,10 @@ def require_depth(front: float) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """Where a pose wants a handle."""
+    """Position of a handle in a pose."""
 
-    position: complex  # in pixels of the picture, y up; it may lie outside the picture
-    # By how much the shape turns at the handle, in radians; None leaves that free.
+    position: complex  # in pixels of the picture, y up; may lie outside the picture
+    # Rotation of the shape at the handle in radians; None leaves the rotation free.
     rotation: float | None = None
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -103,15 +103,16 @@ class Target:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Pose:
-    """A map with the wishes that it was solved for."""
+    """A harmonic map and the targets that it was solved for."""
 
-    targets: Mapping[int, Target]  # one for each handle of the document, by the handle's id
-    # complex128 (n,): Coefficients of the map over the domain's cage, and those in its holes.
+    targets: Mapping[int, Target]  # by handle id, one for each handle of the layer
+    # complex128 (n,): Coefficients of the map at the vertices of the cage, then of the holes'
+    # cages.
     phi: Complexes
     psi: Complexes
-    # complex128 (holes,): Those of its logarithms.
+    # complex128 (holes,): Coefficients of the map's logarithms.
     logs: Complexes = field(default_factory=lambda: freeze(np.empty(0, dtype=np.complex128)))
-    # What is proven of the map, by the solver or when it was read; it is never written.
+    # Proven distortion of the map, from the solver or from loading. A file does not contain it.
     certificate: Certificate
 
     def __post_init__(self) -> None:
@@ -130,24 +131,22 @@ class Pose:
     def of(
         cls, harmonic_map: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
     ) -> "Pose":
-        """Return a map as a pose with these wishes."""
         f = harmonic_map
         return cls(targets=targets, phi=f.phi, psi=f.psi, logs=f.logs, certificate=certificate)
 
     @property
     def nbytes(self) -> int:
-        """Memory that the map takes, in bytes."""
+        """Memory of the map in bytes."""
         return self.phi.nbytes + self.psi.nbytes + self.logs.nbytes
 
     def with_map(self, harmonic_map: HarmonicMap) -> "Pose":
-        """Return the pose with another map."""
         f = harmonic_map
         return replace(self, phi=f.phi, psi=f.psi, logs=f.logs)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LibraryPose:
-    """A pose in a layer's library, under a name that is unique there."""
+    """A pose in a layer's library; the name is unique there."""
 
     name: str
     pose: Pose
@@ -159,16 +158,16 @@ class LibraryPose:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Keyframe:
-    """A pose at a frame, and the way from there to the next key."""
+    """A pose at a frame, and the motion to the next key."""
 
     frame: int
     pose: Pose
-    easing: Easing = LINEAR  # how time runs until the next key
-    # How the motion passes the pose, other than by a hold, which is an easing.
+    easing: Easing = LINEAR  # of the segment to the next key
+    # How the motion passes the key. A hold is stored as an easing.
     tangent_mode: TangentMode = TangentMode.SMOOTH
-    # Whole turns, counter-clockwise, that the anchor makes on the way beyond the shorter way.
+    # Additional full turns of the anchor until the next key, counter-clockwise.
     revolutions: int = 0
-    # What is in front from here on, by the ids of handles; the others stay as they were.
+    # Depths from this key on, by handle id. Other handles keep their depth.
     depths: Mapping[int, float] = field(default_factory=lambda: NO_DEPTHS)
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -187,15 +186,15 @@ class Keyframe:
 
     @property
     def shown_tangent_mode(self) -> TangentMode:
-        """How the motion passes the key, by a hold too."""
+        """Tangent mode of the key, with a hold shown as `TangentMode.HOLD`."""
         return TangentMode.HOLD if self.easing == HOLD else self.tangent_mode
 
     def with_easing_of(self, other: Self, *, backwards: bool = False) -> Self:
-        """Return the key with the way on from another one, or with that way run backwards."""
+        """Return the key with the segment of another key, or with that segment reversed."""
         if backwards:
             return replace(self, easing=other.easing.reversed(), revolutions=-other.revolutions)
         return replace(self, easing=other.easing, revolutions=other.revolutions)
 
     def retimed(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - a pose has no velocity
-        """Return the key at another frame of a motion that runs so many times as fast."""
+        """Return the key at another frame; the speed factor `pace` has no effect on a pose."""
         return self if frame == self.frame else replace(self, frame=frame)

@@ -1,4 +1,4 @@
-"""A layer: a picture that is deformed, its domain, and the keys that pose it."""
+"""A layer: its picture, domain, handles and keys."""
 
 import hashlib
 import re
@@ -59,11 +59,11 @@ POSE_COUNT = "The layer has {count} poses, not {given}."
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PictureFile:
-    """The picture as it was opened, byte for byte."""
+    """The picture file as it was opened, byte for byte."""
 
-    data: bytes = field(repr=False)  # contents of the picture file
-    suffix: str  # of its name, such as ".png"
-    size: tuple[int, int]  # width and height in pixels as shown (after rotation by EXIF data)
+    data: bytes = field(repr=False)  # of the picture file
+    suffix: str  # ending of the file name, such as ".png"
+    size: tuple[int, int]  # width and height in pixels, after the rotation in the EXIF data
     sha256: str = field(init=False)
 
     def __post_init__(self) -> None:
@@ -78,65 +78,64 @@ class PictureFile:
 
 @dataclass(frozen=True, slots=True, weakref_slot=True, kw_only=True, eq=False)
 class Layer:
-    """A picture that is deformed, with all that is its own; time and export are the scene's."""
+    """A picture that is deformed, with its own data; timeline and export belong to the document."""
 
-    id: int = 0  # never given twice in one document
+    id: int = 0  # never used again in the same document
     picture: PictureFile
     domain: MeshedDomain
-    meshing: Meshing  # what the domain was built with
-    cut_out: CutOut = CutOut()  # what tells the subject from the rest of the picture
-    is_stale: bool = False  # whether the domain is still that of an earlier cut-out
+    meshing: Meshing  # settings that the domain was built with
+    cut_out: CutOut = CutOut()  # separates the subject from the rest of the picture
+    is_stale: bool = False  # whether the domain was built from an earlier cut-out
     handles: tuple[Handle, ...] = ()
-    next_handle: int = 0  # the id that the next handle will get
-    keys: tuple[Keyframe, ...]  # in the order of their frames; there is always one
-    # The point of the picture whose place and turn are blended directly; None lets the engine
-    # choose it.
+    next_handle: int = 0  # id of the next handle
+    keys: tuple[Keyframe, ...]  # in the order of their frames, at least one
+    # Point of the picture whose position and rotation are interpolated directly. None lets the
+    # engine choose the point.
     anchor: complex | None = None
-    # Whether handles that two keys have at one place stay there in between.
+    # Whether auto-pin applies: a handle with equal targets in two keys stays there in between.
     has_auto_pins: bool = True
-    tracks: tuple[Track, ...] = ()  # no handle has two
-    springs: tuple[Spring, ...] = ()  # no handle has two
+    tracks: tuple[Track, ...] = ()  # at most one per handle
+    springs: tuple[Spring, ...] = ()  # at most one per handle
     cycles: tuple[Cycle, ...] = ()  # in the order of their frames
-    # float64 (p,): How stiff it is painted, at the vertices of the domain's loops; None is the
-    # usual material, 1 everywhere.
+    # float64 (p,): Painted stiffness at the vertices of the domain's loops. None is 1 everywhere.
     stiffness: Floats | None = field(default=None, hash=False)
     bones: tuple[Bone, ...] = ()
-    # Ready motions that its keys were made by, in the order of their frames; they tell nothing of
-    # keys that were edited since.
+    # Motion presets that made keys, in the order of their frames. Later edits of the keys are not
+    # recorded here.
     motions: tuple[AppliedMotion, ...] = ()
-    unread_motions: tuple[UnreadMotion, ...] = ()  # in the order of their places
-    variant: Variant = Variant.METRIC  # it may be given by its name
-    bounds: Bounds = NATURAL.bounds  # distortion that the solver allows in new poses
-    library: tuple[LibraryPose, ...] = ()  # poses that are kept to be used again
-    # Where the upright axis crosses the picture at which flipped poses are mirrored, in pixels from
-    # its left edge; None takes the middle of the handles that are pairs, or of the shape.
+    unread_motions: tuple[UnreadMotion, ...] = ()  # in the order of their positions
+    variant: Variant = Variant.METRIC  # accepts the name of a variant
+    bounds: Bounds = NATURAL.bounds  # limits of new poses
+    library: tuple[LibraryPose, ...] = ()  # saved poses
+    # Vertical axis for flipped poses, in pixels from the picture's left edge. None takes the mean
+    # of the paired handles, or the middle of the shape.
     mirror: float | None = None
     name: str = "layer"  # unique in the document
-    # Where the lower left corner of the picture is on the canvas; the domain, the handles and all
-    # else are in pixels of the canvas, y up.
+    # Lower left corner of the picture on the canvas. The domain, the handles and all other points
+    # are in pixels of the canvas, y up.
     corner: complex = 0j
-    # Whether it is a picture that is never deformed, such as a background. Its domain is all of it,
-    # whatever is cut out.
+    # Whether the picture is never deformed, such as a background. The domain is then the whole
+    # picture, whatever the cut-out.
     still: bool = False
-    reference: bool = False  # whether it is there for the person only, and not exported
-    locked: bool = False  # whether a click on the drawing passes through it
-    hidden: bool = False  # whether it is seen at no time
-    # When it comes to be seen or hidden, in the order of their frames; it begins as the first one
-    # says. Always seen without any.
+    reference: bool = False  # a guide in the window; exports omit it
+    locked: bool = False  # whether clicks on the drawing pass through
+    hidden: bool = False  # at all frames
+    # In the order of their frames. The first key holds before its frame too; without keys, the
+    # layer is visible.
     visibility_keys: tuple[VisibilityKey, ...] = ()
-    opacity: float = 1.0  # in [0, 1]; where it has keys, they hold instead
+    opacity: float = 1.0  # in [0, 1]; used without opacity keys
     opacity_keys: tuple[OpacityKey, ...] = ()
     blend: BlendMode = "normal"
-    # Whether it is seen only where that is which lies below it in its group: a layer, or a group.
+    # Whether the layer is visible only where the layer or group below it in its group is opaque.
     clipped: bool = False
-    group: str = ""  # the path of the innermost group that it is in; "" outside of all groups
-    # The joints by which it hangs on others, each from its frame on; its anchor is then given.
+    group: str = ""  # path of the innermost group around the layer; "" outside all groups
+    # Keys of the parent, each valid from its frame on. An attached layer has an anchor.
     attachments: tuple[Attachment, ...] = ()
-    # By which it moves as a whole, a rigid motion after its map, while it hangs on nothing.
+    # Rigid motion of the whole layer, applied after the map while the layer has no parent.
     transform_keys: tuple[TransformKey, ...] = ()
     draw_order_keys: tuple[
         DrawOrderKey, ...
-    ] = ()  # before the first one it lies where it is in the document
+    ] = ()  # before the first key, the document's order holds
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -181,17 +180,16 @@ class Layer:
             self.variant in VARIANTS,
             f"The variant is one of {', '.join(VARIANTS)}, not {str(self.variant)!r}.",
         )
-        # A word from a file is as good as the variant itself.
+        # Files store the name of the variant.
         object.__setattr__(self, "variant", Variant(self.variant))
 
     @property
     def key_frames(self) -> frozenset[int]:
-        """The frames that have a key."""
         return frozenset(key.frame for key in self.keys)
 
     @property
     def keyed_range(self) -> tuple[int, int]:
-        """The first and the last frame of what is keyed, or repeats."""
+        """The first and the last frame of all keys and cycles."""
         frames = [key.frame for key in self.keys]
         frames += [key.frame for track in self.tracks for key in track.keys]
         frames += [key.frame for key in self.transform_keys]
@@ -201,19 +199,19 @@ class Layer:
         return min(frames), max(frames)
 
     def cycle_at(self, frame: float) -> Cycle | None:
-        """Return the cycle that a frame is in, be it in its stretch or in its repeats."""
-        # One may end where the next one begins.
+        """Return the cycle around a frame, its repeats included."""
+        # A cycle may end at the first frame of the next cycle.
         count = bisect_right(self.cycles, frame, key=lambda cycle: cycle.first)
         near = self.cycles[max(count - 2, 0) : count]
         return next((cycle for cycle in near if cycle.covers(frame)), None)
 
     def cycle_containing(self, frame: float) -> Cycle | None:
-        """Return the cycle in whose stretch itself a frame is."""
+        """Return the cycle whose own frames, without repeats, contain a frame."""
         count = bisect_right(self.cycles, frame, key=lambda cycle: cycle.first)
         return next((cycle for cycle in self.cycles[:count][-1:] if cycle.contains(frame)), None)
 
     def source_of(self, frame: int) -> int:
-        """Return the frame at which what a frame shows is keyed: another one where it repeats."""
+        """Return the keyed frame that this frame shows; an earlier one in repeats of a cycle."""
         cycle = self.cycle_at(frame)
         return (
             frame if cycle is None or frame in self.key_frames else int(cycle.source_frame(frame))
@@ -221,7 +219,7 @@ class Layer:
 
     @property
     def pivot(self) -> complex:
-        """The point around which its movement turns it: its anchor, or the middle of its shape."""
+        """Centre of the layer's rotation: its anchor, or the centre of the shape's bounding box."""
         if self.anchor is not None:
             return self.anchor
         x, y = self.domain.outline.real, self.domain.outline.imag
@@ -229,12 +227,12 @@ class Layer:
 
     @property
     def poses(self) -> tuple[Pose, ...]:
-        """Those of the keys, then those of the library."""
+        """Poses of the keys, then of the library."""
         return (*(key.pose for key in self.keys), *(kept.pose for kept in self.library))
 
     @property
     def axis(self) -> float:
-        """Where the upright axis crosses the picture at which flipped poses are mirrored."""
+        """The vertical mirror axis for flipped poses, in pixels."""
         if self.mirror is not None:
             return self.mirror
         paired = mirrored_handles_by_name(self.handles, SIDES)
@@ -244,7 +242,7 @@ class Layer:
         return sum(places) / len(places)
 
     def with_poses(self, poses: Iterable[Pose], **changes: Any) -> "Layer":
-        """Return the layer with others for its `poses`, in their order, and with other changes."""
+        """Return the layer with other `poses`, in the same order, and with other changes."""
         given = tuple(poses)
         if len(given) != len(self.poses):
             raise LissomError(POSE_COUNT.format(count=len(self.poses), given=len(given)))
@@ -254,50 +252,46 @@ class Layer:
         return replace(self, keys=keys, library=library, **changes)
 
     def covers(self, points: Complexes, *, tolerance: float = 0.0) -> Booleans:
-        """Tell of each point whether it lies on the shape, or within so many pixels of it."""
+        """Return for each point whether it lies on the shape or within `tolerance` pixels."""
         outline, *holes = self.domain.loops
         return contains(outline, points, holes=holes, tolerance=tolerance)
 
     def library_pose(self, name: str) -> LibraryPose:
-        """Return the pose of the library with this name."""
         for kept in self.library:
             if kept.name == name:
                 return kept
         raise LissomError(f"There is no pose {name!r} in the library.")
 
     def handle(self, identity: int) -> Handle:
-        """Return the handle with this id."""
         for handle in self.handles:
             if handle.id == identity:
                 return handle
         raise LissomError(NO_HANDLE.format(identity=identity))
 
     def grouped_handles(self, identity: int) -> frozenset[int]:
-        """Return the ids of the handles that are taken together with one, its own among them."""
+        """Return the ids of all handles in the handle's group, its own included."""
         groups = {handle.id: handle.group for handle in self.handles}
         own = groups.get(identity)
         return frozenset({identity, *(i for i, group in groups.items() if own and group == own)})
 
     def track_of(self, identity: int) -> Track | None:
-        """Return the track of the handle with this id, if it has one."""
         return next((track for track in self.tracks if identity in track.handles), None)
 
     def spring_of(self, identity: int) -> Spring | None:
-        """Return the spring by which the handle with this id follows, if it does."""
         return next((spring for spring in self.springs if spring.handle == identity), None)
 
     @property
     def has_parent(self) -> bool:
-        """Whether it hangs on another layer at some time."""
+        """Whether the layer has a parent at some frame."""
         return any(joint.parent is not None for joint in self.attachments)
 
     def attachment_key_at(self, frame: int) -> Attachment | None:
-        """Return the joint that says what holds at a frame; None before the first."""
+        """Return the attachment in effect at a frame; None before the first."""
         at = self.joint_frame(frame)
         return next((joint for joint in reversed(self.attachments) if joint.frame <= at), None)
 
     def joint_frame(self, frame: int) -> int:
-        """Return the frame at which it is said what holds at a frame: another one in repeats."""
+        """Return the frame whose attachment holds at this frame; in repeats, an earlier frame."""
         for cycle in self.cycles:
             in_repeats = cycle.last <= frame and cycle.covers(frame) and frame != cycle.until
             if in_repeats and all(
@@ -309,9 +303,9 @@ class Layer:
 
     @property
     def sprung_handles(self) -> frozenset[int]:
-        """The ids of the handles that follow by springs, which poses are not held by.
+        """The ids of the handles that springs move; poses do not hold them.
 
-        A track of a handle comes first, and so does the joint where it sits.
+        A track of the handle, or a joint at its position, overrides the spring.
         """
         joint = self.anchor if self.has_parent else None
         held = {handle.id for handle in self.handles if handle.position == joint}
@@ -319,22 +313,19 @@ class Layer:
         return frozenset(each.handle for each in self.springs if each.enabled) - held
 
     def is_locked(self, identity: int) -> bool:
-        """Tell whether there is a handle with this id that is locked."""
         return any(handle.locked for handle in self.handles if handle.id == identity)
 
     def key(self, frame: int) -> Keyframe:
-        """Return the key at this frame."""
         for key in self.keys:
             if key.frame == frame:
                 return key
         raise LissomError(NO_KEY.format(frame=frame))
 
     def nearest_key(self, frame: int) -> Keyframe:
-        """Return the key that is nearest to a frame, of two the earlier one."""
+        """Return the key nearest to a frame; the earlier one of two."""
         return min(self.keys, key=lambda key: abs(key.frame - frame))
 
     def map_of(self, pose: Pose) -> HarmonicMap:
-        """Return the map of a pose."""
         return HarmonicMap(
             cage=self.domain.cage,
             phi=pose.phi,
@@ -344,17 +335,18 @@ class Layer:
         )
 
     def is_proven(self, pose: Pose) -> bool:
-        """Tell whether a pose is proven to keep the bounds of now."""
+        """Return whether the pose is proven to satisfy the current limits."""
         proven = pose.certificate
-        # The solver proves a pose for the limits of its time, which it may have had to widen.
+        # The solver proves a pose for the limits at that time, which the person may have changed
+        # since.
         return proven.is_certified and self.bounds.allow(
             k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
     def target_errors(self, pose: Pose) -> Mapping[int, float]:
-        """Return by how many pixels each handle, by its id, falls short of its target.
+        """Return the distance in pixels of each handle, by its id, from its target.
 
-        A pose that is shown may be older than the newest handles: those are left out.
+        A displayed pose may be older than the newest handles, which are left out.
         """
         reached = self.map_of(pose)(np.array([handle.position for handle in self.handles], complex))
         return {
@@ -385,13 +377,7 @@ class Layer:
         self.require_on_shape(places)
 
     def require_on_shape(self, places: Mapping[str, complex]) -> None:
-        """Refuse places, by the names of what is there, of which one is not on the shape.
-
-        Raises
-        ------
-        LissomError
-            For the first of these.
-        """
+        """Raise a `LissomError` for the first of these named points outside the shape."""
         points = np.array(list(places.values()), dtype=np.complex128)
         inside = self.covers(points, tolerance=ON_OUTLINE * diameter(self.domain.outline))
         for (name, place), is_inside in zip(places.items(), inside, strict=True):
@@ -473,7 +459,7 @@ def _with_pose(each: Posed, pose: Pose) -> Posed:
 
 
 def rest_pose(domain: MeshedDomain, handles: Iterable[Handle]) -> Pose:
-    """Return the pose of a drawing as it was drawn, with its handles where they grip."""
+    """Return the undeformed pose; the target of each handle is its position."""
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     targets = {each.id: Target(position=each.position) for each in handles}
     undistorted = Certificate(k=0.0, sigma_a=1.0, sigma_b=1.0, winding=0, is_certified=True)
@@ -483,7 +469,7 @@ def rest_pose(domain: MeshedDomain, handles: Iterable[Handle]) -> Pose:
 def new_layer(
     picture: PictureFile, domain: MeshedDomain, meshing: Meshing, cut_out: CutOut = CutOut()
 ) -> Layer:
-    """Return the layer of a picture just opened: one key at frame 0, as it was drawn."""
+    """Return the layer of a newly opened picture, with one undeformed key at frame 0."""
     pose = rest_pose(domain, ())
     return Layer(
         picture=picture,

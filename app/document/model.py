@@ -1,9 +1,8 @@
-"""The document: a scene of layers on one timeline, and how it plays and exports.
+"""The document: layers on one timeline, with settings for playback and export.
 
-Every value is frozen, and every document that exists is valid. Commands make new ones all the time,
-so that the constructors refuse what they can tell at once, and what takes longer is made sure of
-where it comes in: a domain is built by the engine or tested by it, a picture is told from its file,
-and a certificate is proven of its map, never read.
+Every value is frozen, and every existing document is valid. Commands make new documents often, so
+constructors check only what is cheap. Costly checks are made at the source: the engine builds or
+tests a domain, and certificates are proven after loading, never read.
 """
 
 from bisect import bisect_left, bisect_right
@@ -32,44 +31,42 @@ from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError
 
 NO_LAYER = "There is no layer with the id {identity}."
 PARENT_CIRCLE = "{name!r} would hang on itself{when}: {links}; detach one of them first."
-# Of all layers, in the repeats of their cycles, too.
+# Sum over all layers, repeats of cycles included.
 MAX_CHANGES = 100_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Document:
-    """Everything that a project file holds."""
+    """All contents of a project file."""
 
-    # From the one behind all others to the one in front; there is always one.
+    # From back to front, at least one.
     layers: tuple[Layer, ...]
-    frames: FrameRange = FrameRange(0, 48)  # all frames of the animation; every key lies in it
-    # The part of them that plays, to look at it; None plays everything. Exports do not heed it.
+    frames: FrameRange = FrameRange(0, 48)  # every key lies in this range
+    # Range of playback in the window; None plays all frames. Exports ignore the range.
     preview: FrameRange | None = None
-    switch_groups: tuple[
-        SwitchGroup, ...
-    ] = ()  # between layers that take turns; none is in two of them
-    markers: tuple[Marker, ...] = ()  # in the order of their frames, of which each has one at most
+    switch_groups: tuple[SwitchGroup, ...] = ()  # a layer is in at most one switch group
+    markers: tuple[Marker, ...] = ()  # in the order of their frames, at most one per frame
     fps: float = 24.0  # frames per second
-    # Whether the last frame leads back to the first one: both are the same moment.
+    # Whether the animation loops: the last frame equals the first.
     loop: bool = False
     export: ExportSettings = ExportSettings()
-    # Words in the names of layers and handles, or whole names, of which each is the other's side.
+    # Words or whole names of layers and handles that stand for the left and the right side.
     pairs: SidePairs = PAIRS
-    # Fields of the project file that this version does not know and hands on.
+    # Fields of the project file that this version does not know. Saving writes them unchanged.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
-    # Likewise its members, by their names.
+    # Members of the project file that this version does not know, by name.
     unknown_members: Mapping[str, bytes] = field(
         default_factory=lambda: NOTHING, repr=False, hash=False
     )
-    # Width and height of the canvas; None takes those of the picture behind all others.
+    # Width and height of the canvas; None takes the size of the rearmost picture.
     size: tuple[int, int] | None = None
-    # Each after the one that it is in.
+    # An outer group comes before the groups inside it.
     groups: tuple[Group, ...] = ()
-    # Keys of what frames show of the plane; without any, it is the canvas.
+    # Keys of the visible part of the scene. Without keys, the canvas is visible.
     camera: tuple[CameraKey, ...] = ()
-    # What was told when drawings on layers were brought in.
+    # Notices of all imports of layered drawings.
     import_log: ImportLog = EMPTY_IMPORT_LOG
-    # Layers by their ids, choices by those of their layers, groups by their paths.
+    # Layers by id, switch groups by the ids of their layers, groups by path.
     _layers: Mapping[int, Layer] = field(init=False, repr=False)
     _switch_groups: Mapping[int, SwitchGroup] = field(init=False, repr=False)
     _groups: Mapping[str, Group] = field(init=False, repr=False)
@@ -99,17 +96,17 @@ class Document:
 
     @property
     def played_frames(self) -> FrameRange:
-        """The frames that play: the preview range, or all."""
+        """The preview range, or all frames."""
         return self.preview or self.frames
 
     @property
     def canvas(self) -> tuple[int, int]:
-        """Width and height of the scene in pixels."""
+        """Width and height of the canvas in pixels."""
         return self.layers[0].picture.size if self.size is None else self.size
 
     @property
     def exported_layers(self) -> tuple[Layer, ...]:
-        """The layers that exports show at some time, from back to front."""
+        """The layers that exports show at some frame, from back to front."""
         return tuple(
             each
             for each in self.layers
@@ -118,45 +115,41 @@ class Document:
         )
 
     def is_in_hidden(self, layer: Layer) -> bool:
-        """Tell whether a group that a layer is in is hidden at all times."""
+        """Return whether a group around the layer is hidden at all frames."""
         return any(group.hidden for group in self.groups_around(layer.group))
 
     def group(self, path: str) -> Group:
-        """Return the group with this path."""
         if path not in self._groups:
             raise LissomError(f"There is no group {path!r}.")
         return self._groups[path]
 
     def groups_around(self, path: str) -> tuple[Group, ...]:
-        """Return the group with this path after those that it is in, the outermost first."""
+        """Return the group with this path and the groups around it, the outermost first."""
         return tuple(self.group(each) for each in ancestor_paths(path))
 
     def layer(self, identity: int) -> Layer:
-        """Return the layer with this id."""
         if identity not in self._layers:
             raise LissomError(NO_LAYER.format(identity=identity))
         return self._layers[identity]
 
     def switch_group(self, name: str) -> SwitchGroup:
-        """Return the choice with this name."""
         for choice in self.switch_groups:
             if choice.name == name:
                 return choice
         raise LissomError(f"There is no choice {name!r}.")
 
     def switch_group_of(self, identity: int) -> SwitchGroup | None:
-        """Return the choice that decides when the layer with this id is seen, if there is one."""
+        """Return the switch group of the layer with this id, if any."""
         return self._switch_groups.get(identity)
 
     def marker(self, frame: int) -> Marker:
-        """Return the marker at this frame."""
         for marker in self.markers:
             if marker.frame == frame:
                 return marker
         raise LissomError(f"There is no marker at frame {frame}.")
 
     def with_layer(self, changed: Layer) -> "Document":
-        """Return the document with another layer of the same id, and with room for its keys."""
+        """Return the document with another layer of the same id; its frames extend to all keys."""
         if changed is self.layer(changed.id):
             return self
         first, last = changed.keyed_range
@@ -165,15 +158,15 @@ class Document:
         return replace(self, layers=layers, frames=frames)
 
     def attachments_of(self, layer: Layer) -> tuple[Attachment, ...]:
-        """Return the joints of a layer, with those in the repeats of its cycles."""
+        """Return the attachments of a layer, repeated with its cycles."""
         if not (layer.cycles and layer.attachments):
-            return layer.attachments  # asked for often
+            return layer.attachments  # a fast path: this function is called often
         return repeated_joints(layer.attachments, layer.cycles, self.frames.last)
 
     def attachment_at(
         self, layer: Layer, frame: float, *, before: bool = False
     ) -> Attachment | None:
-        """Return the joint that holds at a frame, or until just before; None before the first."""
+        """Return the attachment in effect at a frame, or just before it; None before the first."""
         joints = self.attachments_of(layer)
         count = (bisect_left if before else bisect_right)(
             joints, frame, key=lambda each: each.frame
@@ -183,14 +176,9 @@ class Document:
     def parent_chain(
         self, identity: int, frame: float, *, before: bool = False
     ) -> tuple[Layer, ...]:
-        """Return the layer with this id, the one that it hangs on at a frame, and so on.
+        """Return the layer with this id, its parent at a frame, and further ancestors in order.
 
-        Parameters
-        ----------
-        identity : int
-        frame : float
-        before : bool
-            Whether what hangs just before the frame counts, and not from it on.
+        With `before`, the parents are those just before the frame.
         """
         frame = self.loop_frame(frame)
         layer = self.layer(identity)
@@ -206,7 +194,7 @@ class Document:
         return tuple(chain.values())
 
     def all_ancestors(self, identity: int) -> tuple[Layer, ...]:
-        """Return the others on which a layer hangs at some time, directly or by others."""
+        """Return all ancestors of a layer at any frame."""
         found = [self.layer(identity)]
         known = {identity}
         for layer in found:
@@ -217,7 +205,7 @@ class Document:
         return tuple(found[1:])
 
     def loop_frame(self, frame: float) -> float:
-        """Return a frame as it comes round in a loop; of what does not loop it is itself."""
+        """Return the frame within the range that a loop shows; without a loop, the same."""
         first, period = self.frames.first, self.frames.last - self.frames.first
         is_beyond = self.loop and period and frame not in self.frames
         return first + (frame - first) % period if is_beyond else frame
@@ -242,7 +230,7 @@ class Document:
             self._check_loop(layer)
 
     def _check_repeats(self) -> None:
-        """Refuse more changes than can be told in a moment, those in repeats among them."""
+        """Refuse documents with more visibility, order and attachment changes than MAX_CHANGES."""
         end, count = self.frames.last, 0
         for layer in self.layers:
             for changes in (layer.visibility_keys, layer.draw_order_keys, layer.attachments):
@@ -257,7 +245,7 @@ class Document:
         )
 
     def _check_attachments(self) -> None:
-        """Refuse layers that hang on each other in a circle at any frame."""
+        """Refuse layers that are attached to each other in a circle at any frame."""
         hung = [each for each in self.layers if each.attachments]
         links = {
             each.id: {
@@ -273,13 +261,14 @@ class Document:
             self._check_circles(hung)
 
     def _check_circles(self, hung: Sequence[Layer]) -> None:
-        """Refuse layers in a circle, where some hang on each other at different frames.
+        """Refuse a circle of layers whose attachments begin at different frames.
 
-        A circle begins where one of its layers is attached, from which it leads back.
+        A circle begins at a frame where one of its layers is attached, so only these frames are
+        tested.
         """
         first, last = self.frames.first, self.frames.last
         changes = sorted(
-            # What a loop has before its first frame holds there.
+            # In a loop, a key before the first frame holds at the first frame.
             (
                 max(joint.frame, first) if self.loop else joint.frame,
                 joint.frame,
@@ -296,7 +285,7 @@ class Document:
             parents |= attached
             if any(_leads_back(parents, identity) for identity in attached):
                 for layer in hung:
-                    self.parent_chain(layer.id, frame)  # tells the circle
+                    self.parent_chain(layer.id, frame)  # raises the error about the circle
 
     def _require_inside(self, frame: int) -> None:
         require(
@@ -326,7 +315,7 @@ class Document:
                 taken[identity] = choice.name
 
     def _refuse_circle(self, circle: Sequence[Layer], frame: float) -> NoReturn:
-        """Refuse layers each of which hangs on the next one, the last one being the first."""
+        """Refuse a circle of layers, each with the next as parent; the last equals the first."""
         links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
         changes = any(joint.frame > 0 for layer in circle for joint in layer.attachments)
         when = f" at frame {frame:g}" if changes else ""
@@ -348,7 +337,7 @@ class Document:
             )
 
     def _check_loop(self, layer: Layer) -> None:
-        """Refuse what does not come round in a loop."""
+        """Refuse cycles, tracks and springs that cannot repeat in a loop."""
         period = self.frames.last - self.frames.first
         for cycle in layer.cycles if self.loop and len(layer.keys) > 1 else ():
             require(
@@ -372,7 +361,7 @@ class Document:
 
 
 def _leads_back(parents: Mapping[int, int | None], identity: int) -> bool:
-    """Tell whether going from a layer to its parent, and on, comes to a layer again."""
+    """Return whether the chain of parents of a layer reaches a layer twice."""
     passed = {identity}
     above = parents.get(identity)
     while above is not None and above not in passed:

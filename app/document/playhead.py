@@ -1,4 +1,4 @@
-"""Where the animation stands, as a function of the clock's reading."""
+"""The current frame as a function of the clock."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,28 +7,28 @@ from typing import Self
 from app.document.model import Document
 from app.errors import LissomError
 
-# Of a frame: clocks read n / fps to within rounding, and that is frame n.
+# Frames. A clock reading of n / fps counts as frame n despite rounding.
 SLACK = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Playhead:
-    """A frame that stands, or runs since a reading of the clock."""
+    """A playhead that is stopped at a frame, or playing since a clock reading."""
 
-    frame: int = 0  # where it stands, or where it started
-    # Reading of the clock in seconds when it started; None while it stands.
+    frame: int = 0  # current frame if stopped, first frame if playing
+    # Clock reading in seconds at the start of playback; None while stopped.
     since: float | None = None
-    speed: float = 1.0  # times the document's own; negative runs backwards
+    speed: float = 1.0  # factor of the document's rate; negative plays backwards
 
     def __post_init__(self) -> None:
         if self.speed == 0 or not math.isfinite(self.speed):
             raise LissomError(f"The speed of play must be a number other than 0, not {self.speed}.")
 
     def frame_at(self, document: Document, now: float) -> int:
-        """Return the frame that is shown when the clock reads `now`.
+        """Return the frame that is shown at clock reading `now`.
 
-        A loop comes round: the whole of it without showing its last frame, which is its first one
-        again; a part of it with all its frames. Anything else stops at the end.
+        A loop of the whole animation skips the last frame, which equals the first. A loop of the
+        preview range shows all its frames. Without a loop, playback stops at the end.
         """
         if self.since is None:
             return self.frame
@@ -40,7 +40,7 @@ class Playhead:
         return played.first + (run - played.first) % max(1, length)
 
     def is_over(self, document: Document, now: float) -> bool:
-        """Tell whether it has run to the end, where nothing comes after."""
+        """Return whether playback without a loop has reached the end."""
         if self.since is None or document.loop:
             return False
         run = self.frame + self._gone(document, now)
@@ -51,7 +51,7 @@ class Playhead:
         )
 
     def play(self, document: Document, now: float) -> Self:
-        """Return the playhead that starts now, from the beginning if it stands at the end."""
+        """Return the playhead playing from `now`; it restarts if it is at the end."""
         played = document.played_frames
         begin, end = (played.first, played.last)[:: 1 if self.speed > 0 else -1]
         frame = self.frame_at(document, now)
@@ -59,15 +59,15 @@ class Playhead:
         return replace(self, frame=begin if starts_over else frame, since=now)
 
     def pause(self, document: Document, now: float) -> Self:
-        """Return the playhead that stands where it is now."""
+        """Return the playhead stopped at the current frame."""
         return replace(self, frame=self.frame_at(document, now), since=None)
 
     def seek(self, frame: int, now: float) -> Self:
-        """Return the playhead at a frame, running on from there if it runs."""
+        """Return the playhead at a frame, still playing if it plays."""
         return replace(self, frame=frame, since=None if self.since is None else now)
 
     def at_speed(self, speed: float, document: Document, now: float) -> Self:
-        """Return the playhead that goes on from where it is at another speed."""
+        """Return the playhead at the current frame with another speed."""
         frame = self.frame_at(document, now)
         return replace(self.seek(frame, now), speed=speed)
 

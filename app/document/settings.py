@@ -1,4 +1,4 @@
-"""What is chosen once for a document: stretch, frames, interpolation, meshing, export."""
+"""Settings of a document: limits, frames, variants, meshing, export."""
 
 import re
 from dataclasses import dataclass, field, replace
@@ -24,17 +24,17 @@ FRAMINGS: tuple[Framing, ...] = get_args(Framing)
 
 
 class DistortionLimitPreset(NamedTuple):
-    """How far a drawing gives in to a pull, as a person chooses it: a word for three bounds."""
+    """A named preset of the three limits on distortion."""
 
     name: str
     bounds: Bounds
     hint: str
 
 
-# Measured on the samples and on drawn heads, limbs and layers. Natural ones let limbs bend by a
-# right angle, be they a third as thick as long; with three handles on a head, a fourth that is
-# pulled by a third of its width moves what is around it, and the head stays a head, while at
-# σ_a ≤ 2.5 already it follows as a whole. Stiff ones let limbs bend that are a seventh as thick.
+# Measured on the samples and on drawn heads, limbs and layers. Natural: limbs up to a third as
+# thick as long bend by a right angle. A head with three handles keeps its shape when a fourth
+# handle is dragged by a third of its width; at σ_a ≤ 2.5 already the whole head follows. Stiff:
+# limbs up to a seventh as thick as long bend by a right angle.
 STIFF: Final = DistortionLimitPreset(
     name="Stiff",
     bounds=Bounds(k=0.35, sigma_a=1.5, sigma_b=0.67),
@@ -54,12 +54,12 @@ LIMIT_PRESETS: Final = (STIFF, NATURAL, RUBBERY)
 
 
 def find_limit_preset(bounds: Bounds) -> DistortionLimitPreset | None:
-    """Return the word for some bounds, if there is one."""
+    """Return the preset with exactly these limits, if any."""
     return next((stretch for stretch in LIMIT_PRESETS if stretch.bounds == bounds), None)
 
 
 def relax_limits(bounds: Bounds) -> Bounds | None:
-    """Return the next wider bounds; None where they allow all that the widest do."""
+    """Return the next wider limits; None if no preset is wider."""
     for stretch in LIMIT_PRESETS:
         wider = Bounds(
             k=max(bounds.k, stretch.bounds.k),
@@ -73,12 +73,12 @@ def relax_limits(bounds: Bounds) -> Bounds | None:
 
 SLOWEST, FASTEST = 1 / 60, 1000.0  # frames per second
 FRAME_NAMES = "frame_####"
-# What some system or other takes for more than a character of a name.
+# Excludes characters that some system does not allow in a file name.
 _LITERAL = r'[^#/\\:*?"<>|\x00-\x1f\ud800-\udfff]{0,100}'
 
 
 def require_fps(fps: float, what: str) -> None:
-    """Raise a `LissomError` unless so many frames a second can be shown."""
+    """Raise a `LissomError` unless the rate is from SLOWEST to FASTEST."""
     require(
         SLOWEST <= fps <= FASTEST,
         f"{what} is from 1/60 to {FASTEST:,.0f} frames per second, not {fps:g}.",
@@ -87,8 +87,6 @@ def require_fps(fps: float, what: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class FrameRange:
-    """The frames from `first` to `last`, both included."""
-
     first: int
     last: int
 
@@ -103,13 +101,13 @@ class FrameRange:
         return self.first <= frame <= self.last
 
     def clamp(self, frame: int) -> int:
-        """Return the frame of the range that is nearest to `frame`."""
+        """Return the nearest frame in the range."""
         return min(max(frame, self.first), self.last)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Marker:
-    """A name for a frame, such as the beat of a song, maybe beyond the end of the animation."""
+    """A name for a frame, such as a beat; the frame may lie after the end of the animation."""
 
     frame: int
     name: str
@@ -122,7 +120,7 @@ class Marker:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureSettings:
-    """What the pictures of a format are like that was chosen before: size and background."""
+    """Picture size and background that were last used with a format."""
 
     format: str
     size: tuple[int, int] | None
@@ -148,27 +146,14 @@ def _require_pictures(name: str, size: tuple[int, int] | None, background: str) 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSettings(FormatSettings):
-    """What the person last chose for exports.
+    """Settings of the last export.
 
-    Parameters
-    ----------
-    format : str
-        One of `EXPORT_FORMATS`.
-    size : tuple of int, optional
-        Width and height in pixels; None takes what the framing needs at the drawing's own size.
-    background : str
-        "transparent" or "#rrggbb".
-    framing : str
-        "fit" shows all of the motion, "canvas" the picture's own frame.
-    frames : FrameRange, optional
-        None exports everything.
-    names : str
-        Of the files of frames, without their ending: "#" for each digit of the frame's number, and
-        "{name}" for that of the project.
-    earlier : tuple of PictureSettings
-        What other formats had when they were chosen last.
-    sheet, shapes
-        What single formats ask.
+    `size` is in pixels; None takes the framing at the drawing's own size. `background` is
+    "transparent" or "#rrggbb". The framing "fit" shows all of the motion, "canvas" the canvas.
+    Without `frames`, all frames are exported.
+
+    `names` are file names of frames without their ending. Each "#" is a digit of the frame number,
+    and "{name}" is the project's name. `earlier` are the last settings of other formats.
     """
 
     format: str = "png"
@@ -194,10 +179,10 @@ class ExportSettings(FormatSettings):
         )
 
     def in_format(self, name: str) -> Self:
-        """Return the settings for another format, with the pictures that it had last.
+        """Return the settings with another format and its last size and background.
 
-        One that is chosen for the first time takes over what this one has, but for a background
-        that this one needs alone.
+        A format without earlier settings takes the current ones. An opaque background that only the
+        current format needs is not taken.
         """
         if name == self.format:
             return self
@@ -221,7 +206,7 @@ class ExportSettings(FormatSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Meshing:
-    """How closely the domain follows its subject: as `engine.domain.build.build_domain` has it."""
+    """Parameters of `engine.domain.build.build_domain`."""
 
     detail: Detail = "normal"
     triangles: int = 100_000

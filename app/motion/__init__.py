@@ -1,7 +1,7 @@
-"""The motion of a layer on a mesh: one frame, prepared, and as series in time.
+"""The motion of a layer on a mesh: single frames, prepared in-betweens, and time series.
 
-In: a clip (a layer in its scene's time) and a frame.
-Out: where the vertices are, and how far they reach.
+In: a clip (a layer on its document's timeline) and a frame.
+Out: positions of the vertices, and their bounding boxes.
 Imports: `app.document`.
 """
 

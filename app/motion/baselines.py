@@ -1,4 +1,4 @@
-"""In-betweens by the methods that the layers' own variants are compared with, on a mesh."""
+"""In-betweens on a mesh by rival methods, for comparison with the layer's variant."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from engine.domain import MeshedDomain
 
 
 class MemoizedFrames:
-    """In-betweens of two keys whose frames are worked out once: some methods take long for one."""
+    """In-betweens of two keys with computed frames kept, since some methods are slow."""
 
     def __init__(self, inbetweens: MeshInbetweens) -> None:
         self._inbetweens = inbetweens
@@ -16,7 +16,7 @@ class MemoizedFrames:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of the frames."""
+        """Bytes of the kept frames."""
         return sum(
             array.nbytes
             for frame in list(self._frames.values())
@@ -24,7 +24,6 @@ class MemoizedFrames:
         )
 
     def frame(self, time: float) -> MeshFrame:
-        """Return the in-between at a time in [0, 1]."""
         if time not in self._frames:
             self._frames[time] = self._inbetweens.frame(time)
         return self._frames[time]
@@ -33,15 +32,10 @@ class MemoizedFrames:
 def compute_baseline(
     clip: Clip, baseline: Baseline, interval: int, domain: MeshedDomain
 ) -> MemoizedFrames:
-    """Return a clip's in-betweens by a baseline, with those of all whole frames worked out.
+    """Return in-betweens by a rival method, with all whole frames computed.
 
-    The mesh of the domain is the one that is shown. Through keys the motion has corners: none of
-    these methods passes them at one velocity.
-
-    Raises
-    ------
-    EngineError
-        If the method is not for these keys.
+    The domain's mesh is the displayed mesh. The motion has corners at keys, since these methods
+    blend two keys only. Raises an `EngineError` if the method cannot handle these keys.
     """
     keys = [clip.keys[index] for index in segment_keys(clip)[interval]]
     prepared = prepare_baseline(

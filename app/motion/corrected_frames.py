@@ -1,4 +1,4 @@
-"""The corrections of a clip's frames in a window: what is there, and what a worker finds next."""
+"""The corrections of a clip's frames in a window, and the jobs that compute them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -15,14 +15,14 @@ from app.motion.inbetweens import (
 )
 from app.motion.parenting import find_parent_motion
 
-BATCH = 2  # frames that are solved before a worker looks for more urgent work
-BASE_FRAMES_AT_ONCE = 6  # the same of frames of which only the ground is wanted
+BATCH = 2  # corrected frames per job, so that the worker soon takes more urgent jobs
+BASE_FRAMES_AT_ONCE = 6  # base frames per job
 
 Found = Mapping[int, SecondaryCorrection | None]
 
 
 class CorrectionUpdate(NamedTuple):
-    """What a worker has found: corrections and grounds by their frames, and by what."""
+    """Result of a job: corrections and base frames by frame, and their corrector."""
 
     corrections: FrameCorrector
     exact: Found
@@ -30,13 +30,9 @@ class CorrectionUpdate(NamedTuple):
 
 
 class CorrectedFrames:
-    """The corrections of a clip's whole frames; of the main thread alone.
+    """The corrections of a clip's whole frames; for the main thread only.
 
-    Until a frame's own is there, what an earlier clip of the layer had there stands in for it.
-
-    Attributes
-    ----------
-    clip : Clip
+    Until a frame's own correction is computed, the correction of an earlier clip replaces it.
     """
 
     def __init__(self, clip: Clip, earlier: "CorrectedFrames | None" = None) -> None:
@@ -46,13 +42,13 @@ class CorrectedFrames:
         self._exact: dict[int, SecondaryCorrection | None] = {}
         self._rough: dict[int, SecondaryCorrection | None] = {}
         self._grounds: dict[int, BaseMotionFrame] = {}
-        # Of the frame that was watched last.
+        # Of the last displayed frame.
         self._latest: SecondaryCorrection | None = None
         if earlier is not None:
             self._take_over(earlier)
 
     def _take_over(self, earlier: "CorrectedFrames") -> None:
-        """Take what an earlier clip's frames have as what stands in for these."""
+        """Take the frames of an earlier clip as replacements."""
         if have_same_base_frames(self.clip, earlier.clip):
             self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
             if earlier._corrections is not None:  # noqa: SLF001
@@ -62,48 +58,48 @@ class CorrectedFrames:
         self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
 
     def at(self, clip: Clip, frame: int) -> SecondaryCorrection | None:
-        """Return the best that is known of a frame of a clip; of another one there is nothing."""
+        """Return the best known correction of a frame; None for another clip."""
         if clip != self.clip or not self._is_asked:
             return None
         return self._exact[frame] if frame in self._exact else self._rough.get(frame)
 
     def corrects(self, clip: Clip) -> bool:
-        """Tell whether frames of a clip may be corrected."""
+        """Return whether the clip's frames may have corrections."""
         return clip == self.clip and self._is_asked
 
     def is_exact(self, clip: Clip, frame: int) -> bool:
-        """Tell whether that is what the frame has."""
+        """Return whether `at` returns the frame's own correction."""
         if clip != self.clip or not self._is_asked:
             return True
         return frame in self._exact
 
     def ground(self, frame: int) -> BaseMotionFrame | None:
-        """Return what tracks are relative to at a frame, if that is known."""
+        """Return the base frame that tracks are relative to, if computed."""
         return self._grounds.get(frame)
 
     @property
     def is_begun(self) -> bool:
-        """Whether what takes longest is done: a frame comes in moments from now on."""
+        """Whether the slow preparation is done, so that a frame takes only moments."""
         return self._corrections is not None
 
     @property
     def nbytes(self) -> int:
-        """Bytes of what frames are found with."""
+        """Bytes of the data from which frames are computed."""
         return 0 if self._corrections is None else self._corrections.nbytes
 
     def rest(self) -> None:
-        """Let go of what frames are found with, where all are there, until the next edit."""
+        """Drop the data from which frames are computed, once all frames are known."""
         if self.is_whole:
             self._corrections = None
 
     @property
     def count_grounds(self) -> int:
-        """Of how many frames that is known."""
+        """Number of known base frames."""
         return len(self._grounds)
 
     @property
     def is_whole(self) -> bool:
-        """Whether all frames of the clip are there."""
+        """Whether all frames of the clip are computed."""
         return not self._is_asked or len(self._exact) >= len(self._frames)
 
     @property
@@ -112,7 +108,7 @@ class CorrectedFrames:
 
     @property
     def misses(self) -> Mapping[int, Mapping[int, float]]:
-        """By how many pixels handles, by their ids, miss their tracks' wishes, by frames."""
+        """Distances in pixels of handles from their track targets, by frame and handle id."""
         return {
             frame: each.target_errors
             for frame, each in self._exact.items()
@@ -120,14 +116,14 @@ class CorrectedFrames:
         }
 
     def lead(self, frame: int) -> None:
-        """Let what was found last of tracks stand in at a frame until its own is there."""
+        """Use the last displayed correction at a frame until its own is computed."""
         if self._latest is not None and frame not in self._exact:
             self._rough[frame] = self._latest
 
     def missing(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
     ) -> Callable[[], CorrectionUpdate] | None:
-        """Return what finds the corrections that are wanted next, the nearest to a frame first."""
+        """Return the next job for corrections, with the frames nearest to `frame` first, if any."""
         if self.is_whole or not self._is_known(siblings):
             return None
         lacking = [each for each in self._frames if each not in self._exact]
@@ -138,7 +134,7 @@ class CorrectedFrames:
     def missing_here(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
     ) -> Callable[[], CorrectionUpdate] | None:
-        """Return what finds the correction of one frame, whatever else is missing."""
+        """Return the job for the correction of one frame, if needed."""
         if self.is_exact(self.clip, frame) or not self._is_known(siblings):
             return None
         begin = partial(_prepare, self._corrections, document, self.clip, siblings)
@@ -147,9 +143,9 @@ class CorrectedFrames:
     def missing_ground(
         self, document: Document, frame: int, siblings: Mapping[int, PoseSampler]
     ) -> Callable[[], CorrectionUpdate] | None:
-        """Return what finds the grounds that are wanted next, the nearest to a frame first.
+        """Return the next job for base frames, the nearest to `frame` first, if any.
 
-        Without handles there is nothing that could be recorded.
+        A layer without handles needs no base frames, since nothing can be recorded.
         """
         lacking = [each for each in self._frames if each not in self._grounds]
         if not (lacking and self.clip.layer.handles and self._is_known(siblings)):
@@ -159,16 +155,16 @@ class CorrectedFrames:
         return lambda: _find(begin(), [], lacking[:BASE_FRAMES_AT_ONCE])
 
     def _is_known(self, siblings: Mapping[int, PoseSampler]) -> bool:
-        """Tell whether the window knows the outline.
+        """Return whether the outline's data is computed.
 
-        Its first in-betweens find out about it what is needed here, too.
+        The first in-betweens of the window compute it.
         """
         return self.clip.layer.id in siblings or len(self.clip.keys) == 1
 
     def take(self, found: CorrectionUpdate, *, is_newest: bool = False) -> None:
-        """Take in what a worker has found; what is of an earlier clip stands in for this one's.
+        """Take the result of a job; a result for an earlier clip becomes a replacement.
 
-        It is the newest where it is of the frame that a person watches.
+        `is_newest` marks the frame that is displayed.
         """
         clip = found.corrections.clip
         if not have_same_base_frames(self.clip, clip):
@@ -188,7 +184,6 @@ def _prepare(
     clip: Clip,
     siblings: Mapping[int, PoseSampler],
 ) -> FrameCorrector:
-    """Return a clip's corrections, the earlier ones if there are any."""
     if earlier is not None:
         return earlier
     layer = clip.layer
@@ -202,7 +197,7 @@ def _prepare(
 def _find(
     corrections: FrameCorrector, frames: Sequence[int], grounds: Sequence[int] = ()
 ) -> CorrectionUpdate:
-    """Find the corrections of some frames with their grounds, and the grounds of others."""
+    """Compute corrections with base frames for some frames, and base frames for others."""
     exact = {frame: corrections.correction_at(frame) for frame in frames}
     known = {frame: corrections.base_frame_at(frame) for frame in (*frames, *grounds)}
     return CorrectionUpdate(corrections, exact, known)
@@ -211,7 +206,7 @@ def _find(
 def reuse_corrections(
     document: Document, layer: int, earlier: CorrectedFrames | None
 ) -> CorrectedFrames:
-    """Return the corrections of a layer's clip; the earlier ones where the motion is the same."""
+    """Return the corrections of a layer's clip; the earlier object if the motion is the same."""
     clip = clip_of(document, layer)
     if earlier is not None and earlier.clip == clip:
         return earlier

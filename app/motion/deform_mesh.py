@@ -1,4 +1,4 @@
-"""A mesh on the screen: it takes any pose to the places of its vertices, and points with it."""
+"""A mesh that a pose deforms, and points located on the mesh."""
 
 from dataclasses import dataclass, field, replace
 
@@ -12,37 +12,37 @@ from engine.domain import MeshedDomain
 from engine.domain.meshing import Mesh, copy_draw_order, triangulate
 from engine.maps import Span
 
-# Triangles of the meshes, of all layers together, that are shown while the full ones would be too
-# slow; and of each, however many share them.
+# Triangles of the coarse meshes of all layers together, used while the full meshes are too slow,
+# and the smallest number per layer.
 COARSE_TRIANGLES = 12_000
 FEWEST_TRIANGLES = 4_000
-# How many times finer a layer's own mesh is at least where it has a coarse one beside it: all that
-# is prepared of a layer is prepared of both.
+# A layer has a coarse mesh only if its own is finer by this factor: everything prepared for a layer
+# is then prepared for both meshes.
 FINER = 2
-EDGE = 1e-6  # barycentric weights that rounding may lack of 0
+EDGE = 1e-6  # tolerance of barycentric weights for rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MeshPoints:
-    """Points that stick to a mesh, by the triangles they are in."""
+    """Points located on a mesh, by triangle and barycentric weights."""
 
     vertices: Integers  # int32 (p, 3)
-    # float64 (p, 3): Barycentric; one is clearly negative where a point is outside the mesh.
+    # float64 (p, 3): Barycentric; outside the mesh one weight is clearly negative.
     weights: Floats
 
     @property
     def is_inside(self) -> Booleans:
-        """Which of the points are in the mesh, (p,)."""
+        """Whether each point is in the mesh, (p,)."""
         inside: Booleans = self.weights.min(axis=1) >= -EDGE
         return inside
 
     def positions_on(self, positions: Complexes) -> Complexes:
-        """Return where the points are when the mesh's vertices are at these positions."""
+        """Return the positions of the points for these positions of the mesh's vertices."""
         places: Complexes = (self.weights * positions[self.vertices]).sum(axis=1)
         return places
 
     def rotations(self, rest: Complexes, positions: Complexes) -> Floats:
-        """Return by which angles the mesh turns around the points, arg f_z."""
+        """Return the rotation angles of the mesh at the points, arg f_z."""
         before, after = rest[self.vertices], positions[self.vertices]
         u, v = before[:, 1] - before[:, 0], before[:, 2] - before[:, 0]
         p, q = after[:, 1] - after[:, 0], after[:, 2] - after[:, 0]
@@ -53,42 +53,27 @@ class MeshPoints:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DeformMesh:
-    """A mesh of a domain, with what takes any pose to the places of its vertices.
+    """A mesh of a domain, with the coordinates by which any pose deforms it."""
 
-    Parameters
-    ----------
-    domain : MeshedDomain
-        With the mesh that is shown, which may be coarser than the layer's own.
-    source : MeshedDomain
-        The layer's.
-    coordinates : complex64, shape (v, n)
-        Values at the vertices of the functions that maps are made of: single precision is plenty
-        for a screen.
-
-    Attributes
-    ----------
-    order : TriangleOrder
-        In which order the mesh's triangles are painted.
-    """
-
-    domain: MeshedDomain
-    source: MeshedDomain
+    domain: MeshedDomain  # with the displayed mesh, which may be coarser than the layer's own
+    source: MeshedDomain  # the layer's own domain
+    # Complex64 (v, n): values of the basis functions of maps at the vertices. Single precision is
+    # enough for a screen.
     coordinates: npt.NDArray[np.complex64]
-    order: TriangleOrder = field(init=False)
+    order: TriangleOrder = field(init=False)  # drawing order of the mesh's triangles
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "order", TriangleOrder(self.domain.mesh))
 
     @classmethod
     def fine(cls, source: MeshedDomain) -> "DeformMesh":
-        """Return the layer's own mesh."""
         return cls(domain=source, source=source, coordinates=_coordinates(source))
 
     @classmethod
     def coarse(cls, source: MeshedDomain, *, among: int = 1) -> "DeformMesh":
-        """Return a coarse mesh of the same domain, or the layer's own if that is hardly finer.
+        """Return a coarse mesh of the domain, or the layer's own if that is not much finer.
 
-        The more layers are drawn (it is `among` them), the fewer triangles it has.
+        The triangle budget is divided by `among`, the number of drawn layers.
         """
         wanted = max(FEWEST_TRIANGLES, COARSE_TRIANGLES // among)
         if len(source.mesh.triangles) <= FINER * wanted:
@@ -98,9 +83,9 @@ class DeformMesh:
         return cls(domain=coarse, source=source, coordinates=_coordinates(coarse))
 
     def locate(self, points: Complexes, positions: Complexes) -> "MeshPoints":
-        """Find points (p,) in the mesh whose vertices are at `positions` (v,).
+        """Locate points (p,) in the mesh with vertices at `positions` (v,).
 
-        Those are the domain's own, or where a pose has them.
+        The positions may be undeformed, or of a pose.
         """
         corners = positions[self.domain.mesh.triangles]
         origin, side, other = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2]
@@ -112,7 +97,7 @@ class DeformMesh:
             v, w = _cross(offset, other) / area, _cross(side, offset) / area
             depth = np.minimum(np.minimum(v, w), 1.0 - v - w)
             inside = np.flatnonzero(depth >= -EDGE)
-            # Of triangles on top of each other the last one is painted over the others.
+            # Of overlapping triangles, the last is drawn on top.
             index = int(inside[-1]) if len(inside) else int(np.argmax(depth))
             found.append(index)
             weights.append((1.0 - v[index] - w[index], v[index], w[index]))
@@ -122,12 +107,12 @@ class DeformMesh:
         )
 
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
-        """Return f_z and f_z̄ at the vertices as the drawn triangles have them, each (v,)."""
+        """Return f_z and f_z̄ of the drawn triangles at the vertices, each (v,)."""
         return _mean_derivatives(self.domain.mesh, positions)
 
     def pose_vertices(self, pose: Pose) -> Complexes:
-        """Return where a pose takes the vertices, (v,)."""
-        # Relative to the identity, so that few digits are lost far from the origin.
+        """Return the positions (v,) of the vertices in a pose."""
+        # Relative to the identity, to lose fewer digits far from the origin.
         span = _span(self.domain)
         phi = np.concatenate([pose.phi, pose.logs]) - span.identity()
         psi = np.concatenate([pose.psi, pose.logs.conj()])
@@ -138,12 +123,12 @@ class DeformMesh:
 
 
 def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Complexes]:
-    """Return the means, by area, of the affine maps of the triangles around each vertex."""
+    """Return area-weighted means of the affine maps of the triangles at each vertex."""
     rest, after = mesh.vertices[mesh.triangles], positions[mesh.triangles]
     u, v = rest[:, 1] - rest[:, 0], rest[:, 2] - rest[:, 0]
     p, q = after[:, 1] - after[:, 0], after[:, 2] - after[:, 0]
-    # p = a u + b conj(u) and q = a v + b conj(v); the determinant is −2i times twice the area, so
-    # that sums of a and b times it are sums by area.
+    # p = a u + b conj(u) and q = a v + b conj(v). The determinant is −2i times twice the area, so
+    # sums of a and b times the determinant are area-weighted.
     determinant = u * v.conj() - v * u.conj()
     parts = (p * v.conj() - q * u.conj(), u * q - v * p, determinant)
     sums = [_gather(part, mesh) for part in parts]
@@ -151,7 +136,7 @@ def _mean_derivatives(mesh: Mesh, positions: Complexes) -> tuple[Complexes, Comp
 
 
 def _gather(values: Complexes, mesh: Mesh) -> Complexes:
-    """Add up at each vertex what its triangles have."""
+    """Sum the values of its triangles at each vertex."""
     corners = mesh.triangles.ravel()
     count = len(mesh.vertices)
     real = np.bincount(corners, np.repeat(values.real, 3), minlength=count)

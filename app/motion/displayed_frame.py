@@ -1,4 +1,4 @@
-"""What is on the screen: which pose of a layer, on which mesh."""
+"""The displayed frame of a layer: its pose or in-between on a mesh."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,30 +30,30 @@ from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DisplayedFrame:
-    """A frame as it is drawn, and what it was made from."""
+    """A frame of a layer as drawn, and the data that it was made from."""
 
     clip: Clip
     frame: int
-    pose: Pose | None  # the pose that is shown; None for an in-between
+    pose: Pose | None  # the displayed pose; None for an in-between
     mesh: DeformMesh
-    vertices: Vertices  # the mesh's
-    handles: MeshPoints  # of the layer's handles in the mesh
-    # What is shown instead until the in-between is there: one of its two keys, or another of their
-    # in-betweens; or what was drawn of another domain.
+    vertices: Vertices  # of the mesh
+    handles: MeshPoints  # the layer's handles, located in the mesh
+    # Displayed until the in-between is computed: one of its two keys, another of their in-betweens,
+    # or the last frame of another domain.
     placeholder: Pose | SingleFrame | MeshedDomain | None = None
-    correction: SecondaryCorrection | None = None  # what tracks and springs add
-    is_approximate: bool = False  # whether that only stands in for the frame's own
-    # Where the layer is in the scene; all else is where it is by itself.
+    correction: SecondaryCorrection | None = None  # of tracks and springs
+    is_approximate: bool = False  # whether the correction is that of an earlier clip
+    # Rigid motion from the layer to the scene. All other fields are in the layer's space.
     placement: RigidMotion = IDENTITY_MOTION
 
     @property
     def is_current(self) -> bool:
-        """Whether it shows what it should, and nothing that stands in for it."""
+        """Whether the frame itself is displayed, and no placeholder."""
         return self.placeholder is None and not self.is_approximate
 
     @property
     def positions(self) -> Complexes:
-        """Where the mesh's vertices are, (v,)."""
+        """Positions of the mesh's vertices, (v,)."""
         return self.vertices.positions
 
     @property
@@ -65,10 +65,7 @@ class DisplayedFrame:
         return self.mesh.derivatives(self.positions) if streamed is None else streamed
 
     def pivot_frame_at(self, place: complex) -> PivotFrame:
-        """Return about where a point of the layer is by itself, and by what it is turned there.
-
-        As exact as the triangles are small.
-        """
+        """Return position and rotation of a point in the layer's space, as exact as the mesh."""
         rest = self.mesh.domain.mesh.vertices
         found = self.mesh.locate(np.array([place]), rest)
         positions = self.positions
@@ -77,12 +74,12 @@ class DisplayedFrame:
 
     @property
     def handle_positions(self) -> Complexes:
-        """Where the handles are, (h,)."""
+        """Positions of the handles, (h,)."""
         return self.handles.positions_on(self.positions)
 
     @property
     def handle_rotations(self) -> list[float]:
-        """By how much the shape turns at the handles, in radians."""
+        """Rotations of the shape at the handles, in radians."""
         turns = self.handles.rotations(self.mesh.domain.mesh.vertices, self.positions)
         return [float(turn) for turn in turns]
 
@@ -95,23 +92,14 @@ def show(
     earlier: DisplayedFrame | None,
     corrected: CorrectedFrames | None = None,
 ) -> DisplayedFrame:
-    """Return the best there is to draw; the earlier one itself if nothing changed.
+    """Return the best available frame; the earlier object itself without a change.
 
-    Until an in-between is there, the nearest in time of its two keys and of what is known of their
-    in-betweens stands in: exact, and never the pose of another key. What was drawn of another
-    domain stays until there is a mesh of this one.
+    Until an in-between is computed, the nearest in time of its two keys and of their known
+    in-betweens replaces it. Any replacement is exact for its own time. After a change of the
+    domain, the last frame stays until there is a mesh.
 
-    Parameters
-    ----------
-    frame : int
-    pose : Pose, optional
-        Shown instead of what the layer has at the frame.
-    stores : sequence of InbetweenCache
-        Where to look for it, the preferred one first; at least one.
-    earlier : DisplayedFrame, optional
-        What was drawn before.
-    corrected : CorrectedFrames, optional
-        Of the clip's frames; a pose that is shown instead has what tracks add to the frame.
+    A given `pose` is displayed in place of the layer's own, with the clip's corrections. `stores`
+    has at least one cache, the preferred first.
     """
     domain, moment = clip.layer.domain, segment_time_at(clip, frame)
     correction, is_rough = None, False
@@ -162,19 +150,11 @@ def hang_shown(
     poses: Mapping[int, Pose],
     earlier: ParentTransforms | None = None,
 ) -> dict[int, DisplayedFrame]:
-    """Return what is drawn of each layer, where its scene has it.
+    """Return the displayed frames with the layers' placements in the scene.
 
-    Parameters
-    ----------
-    shown : mapping of int to Shown
-        By the ids of layers.
-    joints : ParentTransforms or None
-        Of the document; without them places are as exact as the triangles are small.
-    poses : mapping of int to Pose
-        Shown though the document does not have them.
-    earlier : ParentTransforms, optional
-        Of another document, which tell where layers that keep their places are held until `joints`
-        are there.
+    `shown` and `poses` have layer ids as keys; `poses` are displayed poses that are not in the
+    document. Without the document's `joints`, placements have the accuracy of the meshes. Until
+    they exist, the transforms of an earlier document serve attachments with `keep_world_transform`.
     """
     hung = {}
     for identity, each in shown.items():
@@ -197,7 +177,7 @@ def hang_shown(
 def _earlier_transform(
     earlier: ParentTransforms | None, frame: float, layer: Layer, joint: Attachment
 ) -> RigidMotion:
-    """Return how a layer was held by a joint in an earlier document, if it was."""
+    """Return the transform that an attachment kept in an earlier document, else the identity."""
     known = {each.id: each for each in earlier.document.layers} if earlier else {}
     was = known.get(layer.id)
     if earlier is None or was is None or joint not in earlier.document.attachments_of(was):

@@ -1,4 +1,4 @@
-"""All in-betweens of a layer on one mesh, by their content: what is there, and what is missing."""
+"""Cache of all in-betweens of a layer on one mesh, by content, and the next jobs."""
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
@@ -39,33 +39,32 @@ from app.motion.vertices import StreamedVertices, VertexArray, Vertices
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, InteriorKnot
 
-BUDGET = 2**30  # bytes of one store
-SPARE = 64  # the part of it that may be taken by what no present clip needs: a 64th
-EXPECTED = 100  # bytes a vertex that a series is thought to take before one is built
-# Of what is made of a clip.
+BUDGET = 2**30  # bytes per cache
+SPARE = 64  # segments that no present clip needs may take this fraction: a 64th
+EXPECTED = 100  # assumed bytes per vertex of a series before the first is built
+# Parts of a clip that a job computes.
 InbetweenPart = Literal["frame", "in-betweens", "fine", "series", "correction"]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
 class InbetweenCache:
-    """The in-betweens of a layer on a mesh; of the main thread alone.
+    """The in-betweens of a layer on a mesh; for the main thread only.
 
-    They are known by their content (`SegmentKey`), so that undo, a copied key or another method
-    that is tried again find what was made for them before. Of an interval there is nothing, one
-    frame, all of it prepared, or that as series. Workers are handed frozen input; what they
-    find is taken in whenever it comes, also where nothing asks for it any more.
+    The content (`SegmentKey`) identifies a segment. Undo, copied keys and a variant tried again
+    thus find earlier results. A segment has nothing, one frame, prepared in-betweens, or a series.
+    Workers get frozen input; their results are taken whenever they arrive.
 
-    All is kept within the budget: first what no clip needs makes room, the longest unwanted first;
-    then that to which undo and redo lead, then series, those farthest from the playhead first. What
-    is prepared of present clips stays.
+    Beyond the budget, segments that no clip needs are dropped first, the least recently used first.
+    Then follow segments for undo and redo. Then follow series, the farthest from the playhead
+    first. Prepared in-betweens of present clips stay.
     """
 
     mesh: DeformMesh
     budget: int = BUDGET  # in bytes
-    sampler: PoseSampler | None = None  # of the workers; None as long as nothing moves
-    whole: Clip | None = None  # the document's newest one all of whose in-betweens were there
-    build: SeriesBuild | None = None  # a series in the making, while no worker is at it
-    # By when they were wanted, the latest last; beside them their bytes, and the largest so far.
+    sampler: PoseSampler | None = None  # of the workers; None until a key or a track moves
+    whole: Clip | None = None  # the newest clip of the document with complete in-betweens
+    build: SeriesBuild | None = None  # an unfinished series while no worker builds it
+    # In the order of last use, with sizes in bytes, and the largest sizes so far.
     _known: dict[SegmentKey, CachedSegment] = field(init=False, default_factory=dict)
     _sizes: dict[SegmentKey, tuple[int, int, int]] = field(init=False, default_factory=dict)
     _largest: list[int] = field(init=False, default_factory=lambda: [0, 0, 0])
@@ -75,15 +74,14 @@ class InbetweenCache:
         init=False, default_factory=set
     )
     _frame: float = field(init=False, default=0)
-    # By how much a correction moves the vertices: of the one that was asked for last.
+    # Displacement of the vertices by the last requested correction.
     _moved: tuple[SecondaryCorrection, Complexes] | None = field(init=False, default=None)
 
     def segment(self, clip: Clip, number: int) -> CachedSegment | None:
-        """Return what is known of one of a clip's intervals."""
         return self._known.get(segment_key(clip, number))
 
     def prepared(self, clip: Clip) -> tuple[AnyInbetweens, ...] | None:
-        """Return the in-betweens of all of a clip's intervals; None where some are missing."""
+        """Return the prepared in-betweens of all segments; None if one is missing."""
         if clip.layer.domain is not self.mesh.source:
             return None
         known = [self._known.get(pair) for pair in self._segment_keys(clip)]
@@ -91,7 +89,7 @@ class InbetweenCache:
         return tuple(every) if len(every) == len(known) else None
 
     def has(self, clip: Clip) -> bool:
-        """Tell whether all in-betweens of a clip can be shown."""
+        """Return whether all frames of a clip can be shown."""
         if clip.layer.domain is not self.mesh.source:
             return False
         if self.lacks_sampler(clip):
@@ -100,11 +98,11 @@ class InbetweenCache:
         return all(each is not None and _shows(each, clip) for each in known)
 
     def lacks_sampler(self, clip: Clip) -> bool:
-        """Tell whether frames of a clip cannot be corrected yet."""
+        """Return whether a clip needs corrections and the sampler for them is missing."""
         return self.sampler is None and needs_correction(clip)
 
     def is_exact(self, clip: Clip, frame: float) -> bool:
-        """Tell whether what belongs to a frame is there, and nothing has to stand in for it."""
+        """Return whether the frame's own in-between is available."""
         return self._find(clip, segment_time_at(clip, frame)) is not None
 
     def vertices(
@@ -114,16 +112,7 @@ class InbetweenCache:
         instead: Pose | SingleFrame | None = None,
         correction: SecondaryCorrection | None = None,
     ) -> Vertices | None:
-        """Return where the vertices are at a frame, or what is shown instead; None if not there.
-
-        Parameters
-        ----------
-        clip : Clip
-        frame : float
-        instead : Pose or SingleFrame, optional
-        correction : SecondaryCorrection, optional
-            Of the frame.
-        """
+        """Return the vertices at a frame, or of `instead`; None if not computed."""
         if correction is not None and instead is None:
             return self._corrected(clip, frame, correction)
         vertices = self._uncorrected(clip, frame, instead)
@@ -151,9 +140,9 @@ class InbetweenCache:
         return VertexArray(positions=moved.positions, triangles=triangles)
 
     def _displacement(self, clip: Clip, frame: float, correction: SecondaryCorrection) -> Complexes:
-        """Return by how much a correction moves the vertices of its own frame, (v,).
+        """Return the displacement (v,) of the vertices by a correction at its own frame.
 
-        It stands in for that of a pose which is still under the hand.
+        It approximates the correction of a pose that is being dragged.
         """
         if self._moved is None or self._moved[0] is not correction:
             after, before = (self._corrected(clip, frame, correction), self.vertices(clip, frame))
@@ -184,7 +173,7 @@ class InbetweenCache:
         return VertexArray(positions=positions, triangles=triangles)
 
     def _find(self, clip: Clip, moment: SegmentTime) -> Pose | SingleFrame | CachedSegment | None:
-        """Return what shows a moment exactly."""
+        """Return the pose, frame or segment that shows this time exactly, if any."""
         if clip.layer.domain is not self.mesh.source:
             return None
         if self.lacks_sampler(clip):
@@ -204,12 +193,11 @@ class InbetweenCache:
     def positions(
         self, clip: Clip, frame: float, correction: SecondaryCorrection | None = None
     ) -> Complexes | None:
-        """Return the same, worked out."""
         vertices = self.vertices(clip, frame, correction=correction)
         return None if vertices is None else vertices.positions
 
     def nearest_pose(self, clip: Clip, moment: SegmentTime) -> Pose | SingleFrame:
-        """Return which known pose between two keys, theirs included, is nearest to a moment."""
+        """Return the known pose nearest in time within the segment, its keys included."""
         after = moment.weight > 0.5
         distance = 1.0 - moment.weight if after else moment.weight
         known = self.segment(clip, moment.segment)
@@ -219,9 +207,9 @@ class InbetweenCache:
         return clip.keys[segment_keys(clip)[moment.segment][after]].pose
 
     def velocity_shares(self, clip: Clip) -> Mapping[int, float]:
-        """Return how much of its velocity the bounds leave to the motion at keys, by their frames.
+        """Return the share of its velocity that the limits allow at smooth keys, by frame.
 
-        From 0, a stop, to 1; of those that it passes through, as far as that is known.
+        From 0, a stop, to 1; only for computed segments.
         """
         found: dict[int, float] = {}
         for number, transit in enumerate(pose_segments(clip)):
@@ -237,19 +225,19 @@ class InbetweenCache:
 
     @property
     def nbytes(self) -> int:
-        """Bytes of all that is known."""
+        """Bytes of all cached segments."""
         return sum(map(sum, self._sizes.values()))
 
     def snapshot(self) -> "InbetweenCache":
-        """Return what a worker may read while this goes on."""
+        """Return a copy that a worker may read while this cache changes."""
         copied = copy(self)
         copied._known = dict(self._known)  # noqa: SLF001 - its own
         return copied
 
     def missing_segments(self, clip: Clip, frame: float, *, is_edited: bool = True) -> list[int]:
-        """Return the numbers of intervals to prepare, the nearest first, and each pair once.
+        """Return the numbers of segments to prepare, nearest first, each content once.
 
-        Of a layer that is not edited, those of which the series leaves nothing out need not be.
+        For a layer that is not edited, a complete series is enough.
         """
         pairs, nearest = self._segment_keys(clip), dict[SegmentKey, int]()
         for number in _by_nearness(clip, frame):
@@ -262,34 +250,33 @@ class InbetweenCache:
     def segments_job(
         self, clip: Clip, wanted: Sequence[int], sibling: PoseSampler | None = None
     ) -> Callable[[], CacheUpdate]:
-        """Return what prepares some of a clip's intervals."""
         sampler, keep = self.sampler or sibling, self._poses()
         return partial(compute_segments, clip, wanted, self.mesh, sampler, keep=keep)
 
     def frame_job(self, clip: Clip, frame: float) -> Callable[[], CacheUpdate] | None:
-        """Return what makes the in-between at a frame alone; None where it is there or cannot be.
+        """Return the job for a single in-between; None if it is known or not possible.
 
-        It cannot before the first in-betweens of a layer, which take longer.
+        A single frame is not possible before the first in-betweens of a layer, which take longer.
         """
         layer, sampler = clip.layer, self.sampler
         if layer.domain is not self.mesh.source or self.is_exact(clip, frame):
             return None
         if needs_correction(clip):
-            # Its corrections need the whole interval.
+            # Corrections need the whole segment.
             return None
         if sampler is None or sampler.anchor != layer.anchor:
             return None
         return partial(compute_frame, clip, frame, self.mesh, sampler, keep=self._poses())
 
     def has_room(self) -> bool:
-        """Tell whether one more interval of the present clips can be prepared in the budget."""
+        """Return whether one more segment of the present clips fits into the budget."""
         return self._needed() + self._largest[0] <= self.budget
 
     def next_build(self, clip: Clip, frame: float, *, heat: bool) -> SeriesBuild | None:
-        """Hand out the series that is in the making, or is wanted next; None where all is there.
+        """Return the unfinished or next series to build, if any.
 
-        The intervals nearest to the frame come first; those beyond the budget stay without. Those
-        of the distortions are wanted where `heat` is shown.
+        Segments nearest to the frame come first. Segments beyond the budget get no series. With
+        `heat`, series of the distortions are built too.
         """
         build, self.build = self.build, None
         if not self.has(clip):
@@ -312,10 +299,7 @@ class InbetweenCache:
     def set_needed_clips(
         self, present: Sequence[Clip], nearby: Sequence[Clip], frame: float
     ) -> None:
-        """Take note of the clips that are needed now, the document's first, and of the playhead.
-
-        Undo and redo lead to those nearby.
-        """
+        """Set the playhead, the present clips, and the clips after undo and redo."""
         self._frame = frame
         if not (self._present.keys() == set(present) and self._nearby.keys() == set(nearby)):
             pinned = self._needed_keys()
@@ -330,7 +314,7 @@ class InbetweenCache:
             self.whole = present[0]
 
     def add(self, found: CacheUpdate) -> None:
-        """Take in what a worker has found, for whichever clip that was."""
+        """Add the result of a job for any clip."""
         anchors, sampler = {clip.layer.anchor for clip in self._present}, found.sampler
         if sampler is not None and (not anchors or sampler.anchor in anchors):
             self.sampler = sampler
@@ -340,7 +324,7 @@ class InbetweenCache:
         self._make_room()
 
     def add_build(self, build: SeriesBuild) -> None:
-        """Take a series back, finished or not."""
+        """Take back a series, finished or not."""
         self.build = build if build.series is None else None
         if build.series is not None:
             positions, distortions = (
@@ -350,7 +334,7 @@ class InbetweenCache:
             self.add(CacheUpdate(None, {build.segment_key: built}))
 
     def releasable_bytes(self, clip: Clip) -> int:
-        """Return how many bytes `rest` lets go once series show a clip, all of which is there."""
+        """Return the bytes that `release_intermediates` frees once series show a complete clip."""
         if not self.has(clip) or needs_correction(clip):
             return 0
         passing = [
@@ -364,7 +348,7 @@ class InbetweenCache:
         return own + sum(self._sizes[pair][0] for pair in passing)
 
     def release_intermediates(self) -> None:
-        """Let go of what is prepared where series leave nothing out."""
+        """Free the prepared in-betweens of segments with a complete series."""
         for pair, known in list(self._known.items()):
             if known.inbetweens is not None and known.is_streamed:
                 self._set(pair, known._replace(inbetweens=None, single_frame=None))
@@ -374,12 +358,12 @@ class InbetweenCache:
             self.sampler.forget_extension()
 
     def mark_failed(self, part: InbetweenPart, clip: Clip) -> None:
-        """Take note that a part of a clip cannot be made, as long as its keys are present."""
+        """Record that a part of a clip cannot be computed, until its keys change."""
         if self._segment_keys(clip) in self._present.values():
             self._failures.add((part, self._segment_keys(clip)))
 
     def has_failed(self, clip: Clip, part: InbetweenPart = "in-betweens") -> bool:
-        """Tell whether a part of a clip is known to be impossible."""
+        """Return whether a part of a clip is known to be impossible."""
         return (part, self._segment_keys(clip)) in self._failures
 
     def _set(self, pair: SegmentKey, interval: CachedSegment) -> None:
@@ -387,7 +371,7 @@ class InbetweenCache:
         self._largest = list(map(max, self._largest, interval.sizes))
 
     def _make_room(self) -> None:
-        """Drop what is needed least, until the rest is within the budget."""
+        """Drop the least needed segments until the rest fits into the budget."""
         present, pinned = self._needed_keys(self._present), self._needed_keys()
         spare = [pair for pair in self._known if pair not in pinned]
         excess = sum(sum(self._sizes[pair]) for pair in spare) - self.budget // SPARE
@@ -404,36 +388,35 @@ class InbetweenCache:
                     self._set(pairs[number], known._replace(series=None, distortions=None))
 
     def _needed(self) -> int:
-        """Return the bytes of what the present clips need, without series."""
+        """Return the bytes that the present clips need, without series."""
         return sum(
             self._sizes[pair][0] for pair in self._known.keys() & self._needed_keys(self._present)
         )
 
     def _segment_keys(self, clip: Clip) -> tuple[SegmentKey, ...]:
-        """Return the keys by which a clip's intervals are stored."""
         known = self._present.get(clip) or self._nearby.get(clip)
         return known or tuple(
             segment_key(clip, number) for number in range(len(segment_keys(clip)))
         )
 
     def _needed_keys(self, *clips: Mapping[Clip, tuple[SegmentKey, ...]]) -> set[SegmentKey]:
-        """Return the pairs of some clips, by default of all that are present or nearby."""
+        """Return the segment keys of some clips, by default of all present and nearby clips."""
         every = clips or (self._present, self._nearby)
         return set(chain(*(pairs for each in every for pairs in each.values())))
 
     def _poses(self) -> frozenset[Pose]:
-        """Return the poses whose samples are of use."""
+        """Return the poses whose samples are needed."""
         prepared = (known.poses for known in self._known.values() if known.inbetweens)
         present = (key.pose for clip in self._present for key in clip.keys)
         return frozenset(chain(*prepared, present))
 
 
 def _shows(known: CachedSegment, clip: Clip) -> bool:
-    """Tell whether frames of a clip can be shown; corrections need what is prepared."""
+    """Return whether a clip's frames can be shown; corrections need prepared in-betweens."""
     return known.inbetweens is not None if needs_correction(clip) else known.is_ready
 
 
 def _by_nearness(clip: Clip, frame: float) -> list[int]:
-    """Return the numbers of a clip's intervals, that at the frame first."""
+    """Return the segment numbers of a clip, nearest to the frame first."""
     current = segment_time_at(clip, frame).segment
     return sorted(range(len(segment_keys(clip))), key=lambda i: (abs(i - current), i < current))

@@ -1,4 +1,4 @@
-"""In-betweens of one interval on a mesh: their key in a store, and how a worker makes them."""
+"""Cached in-betweens of a segment on a mesh, and the jobs that compute them."""
 
 from collections.abc import Generator, Mapping, Sequence
 from typing import NamedTuple
@@ -18,16 +18,16 @@ from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, SampledDomain
 from engine.streaming import Distortions, MotionComponents, Positions, Series, build_series
 
-# All in-betweens of two keys, ready to be evaluated.
+# All in-betweens of two keys, ready for evaluation.
 AnyInbetweens = Inbetweens | MemoizedFrames
 
-# Vertices times steps of a series that the worker takes before it looks for more urgent work: some
-# hundredths of a second.
+# Vertices times steps of a series per job, some hundredths of a second, so that the worker soon
+# takes more urgent jobs.
 BATCH = 400_000
 
 
 class SingleFrame(NamedTuple):
-    """One in-between alone, at a time between the two keys in [0, 1]."""
+    """One in-between, at a time in [0, 1] between the two keys."""
 
     segment_key: SegmentKey
     weight: float
@@ -35,11 +35,11 @@ class SingleFrame(NamedTuple):
 
 
 class CachedSegment(NamedTuple):
-    """What is known of the in-betweens of some poses.
+    """The computed in-betweens of a segment.
 
-    It keeps the poses alive, so that the identities by which their in-betweens are known stay
-    theirs. `kept` tells how much of its velocity the motion has at both ends; methods that are not
-    streamed have no sites. The series are of the positions, and of f_z and f_z̄.
+    `poses` keeps the poses alive, since their ids are in the segment key. `velocity_shares` are the
+    shares of the velocity at both ends. Rival methods have no sites. The series are of the
+    positions, and of f_z and f_z̄.
     """
 
     poses: tuple[Pose, ...]
@@ -52,34 +52,34 @@ class CachedSegment(NamedTuple):
 
     @property
     def is_ready(self) -> bool:
-        """Whether all of it can be shown: it is prepared, or its series leaves nothing out."""
+        """Whether the whole segment can be shown, prepared or by a complete series."""
         return self.inbetweens is not None or self.is_streamed
 
     @property
     def is_streamed(self) -> bool:
-        """Whether the series of the positions has all of it."""
+        """Whether the series of the positions is complete."""
         return self.series is not None and self.series.is_whole
 
     @property
     def sizes(self) -> tuple[int, int, int]:
-        """Bytes of what is prepared, with the samples of one key, and of both series."""
+        """Bytes of the prepared in-betweens with the samples of one key, and of both series."""
         own = 0 if self.single_frame is None else self.single_frame.positions.nbytes
         if self.inbetweens is not None:
             own += self.inbetweens.nbytes
         if isinstance(self.inbetweens, Inbetweens):
-            # Those of the other key are its neighbour's.
+            # The samples of the other key count for the neighbour segment.
             own += self.inbetweens.keyframe_blend.ends[0].nbytes
         streamed = [each.nbytes if each else 0 for each in (self.series, self.distortions)]
         return own, streamed[0], streamed[1]
 
     def joined(self, newer: "CachedSegment") -> "CachedSegment":
-        """Return what is known by both."""
+        """Return the union of both; newer values win."""
         pairs = zip(newer, self, strict=True)
         return CachedSegment._make(new if new is not None else old for new, old in pairs)
 
 
 class CacheUpdate(NamedTuple):
-    """What a worker has found of some intervals, and by which sampler, where that took one."""
+    """Computed segments, and the sampler that computed them, if any."""
 
     sampler: PoseSampler | None
     segments: Mapping[SegmentKey, CachedSegment]
@@ -93,18 +93,10 @@ def compute_segments(
     *,
     keep: frozenset[Pose] = frozenset(),
 ) -> CacheUpdate:
-    """Prepare the in-betweens of some of a clip's intervals; on a worker thread.
+    """Prepare the in-betweens of the segments with these numbers; on a worker thread.
 
-    Parameters
-    ----------
-    wanted : sequence of int
-        Numbers of the intervals.
-    mesh : DeformMesh
-    sampler : PoseSampler, optional
-        Of the mesh and the layer's anchor, or else one whose knowledge of the outline is used
-        again, if it is of the same.
-    keep : frozenset of Pose
-        Whose samples are kept beside those of the clip.
+    A sampler of the mesh and the layer's anchor is used; another sampler of the same outline is
+    reused in part. Samples of the poses `keep` stay, besides those of the clip's poses.
     """
     layer, every = clip.layer, pose_segments(clip)
     if clip.baseline is not None:
@@ -134,7 +126,7 @@ def compute_segments(
     }
     sampler.keep_only(keep.union(key.pose for key in clip.keys))
     if needs_correction(clip):
-        # Here, so that the first corrected frame does not wait for it.
+        # Prepared here, so that the first corrected frame does not wait for it.
         _ = sampler.basis
     return CacheUpdate(sampler=sampler, segments=intervals)
 
@@ -147,10 +139,10 @@ def compute_frame(
     *,
     keep: frozenset[Pose] = frozenset(),
 ) -> CacheUpdate:
-    """Work out the in-between at a frame, exactly as its interval will have it; on a worker thread.
+    """Compute the exact in-between at a frame; on a worker thread.
 
-    The sampler is of the mesh and the layer's anchor. Where the whole interval takes no longer, it
-    is prepared instead.
+    The sampler is of the mesh and the layer's anchor. If the whole segment takes no longer, the
+    segment is prepared instead.
     """
     moment, layer = segment_time_at(clip, frame), clip.layer
     if not sampler.makes_single_frames(layer.variant):
@@ -164,15 +156,7 @@ def compute_frame(
 
 
 class SeriesBuild:
-    """A series in the making; only the worker takes its steps.
-
-    Parameters
-    ----------
-    interval : CachedSegment
-        Prepared.
-    distortions : bool
-        Whether f_z and f_z̄ are streamed, and not the positions.
-    """
+    """A series of positions, or of f_z and f_z̄, under construction; only the worker advances it."""
 
     def __init__(self, pair: SegmentKey, interval: CachedSegment, *, distortions: bool) -> None:
         inbetweens, sites = interval.inbetweens, interval.sites

@@ -1,4 +1,4 @@
-"""What of a layer is painted over what, at any frame."""
+"""Drawing order of a mesh's triangles at any frame."""
 
 from functools import lru_cache, partial
 from typing import Final
@@ -9,11 +9,11 @@ from app.document import Clip, DepthPoint, depth_points_at
 from engine.arrays import Floats, Integers
 from engine.domain.meshing import Mesh, sort_by_depth, spread_depth
 
-_KEPT: Final = 8  # of a mesh, of the points that are in front: as many as an animation goes between
+_KEPT: Final = 8  # cached sets of depths per mesh: about as many as an animation alternates between
 
 
 class TriangleOrder:
-    """The order in which the triangles of a mesh are painted; what was worked out last is kept."""
+    """The drawing order of a mesh's triangles; the last results are cached."""
 
     def __init__(self, mesh: Mesh) -> None:
         self._mesh = mesh
@@ -21,15 +21,12 @@ class TriangleOrder:
         self._depths = lru_cache(maxsize=_KEPT)(partial(_depths, mesh))
 
     def triangles(self, clip: Clip, frame: float) -> Integers:
-        """Return the triangles, int32 (m, 3), from back to front as they are at a frame.
-
-        The same array as long as nothing comes to the front or goes behind.
-        """
+        """Return the triangles, int32 (m, 3), back to front; the same array for same depths."""
         fronts = depth_points_at(clip, frame)
         return self._ordered(fronts) if fronts else self._mesh.triangles
 
     def depths(self, clip: Clip, frame: float) -> Floats:
-        """Return how far in front each vertex (v,) is at a frame, −1 to 1."""
+        """Return the depth of each vertex (v,) at a frame, −1 to 1."""
         return self._depths(depth_points_at(clip, frame))
 
 

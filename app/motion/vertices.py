@@ -1,4 +1,4 @@
-"""Where the vertices of a layer are in a frame, known or by a series, and what lies over what."""
+"""Vertex positions of a layer in a frame, given or by a series, and their drawing order."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,27 +11,18 @@ from engine.streaming import Series
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class VertexArray:
-    """Vertices whose positions are worked out already."""
+    """Vertices with computed positions."""
 
     positions: Complexes  # complex128 (v,)
-    # int32 (m, 3): Of the mesh, in the order in which they are painted: where they overlap, the
-    # last is seen.
+    # int32 (m, 3): In the drawing order: of overlapping triangles, the last is on top.
     triangles: Integers
 
 
 class StreamedVertices:
-    """Vertices as a series places them; a graphics card can do that without the processor.
+    """Vertices given by a series, which a graphics card can evaluate itself.
 
-    Parameters
-    ----------
-    series : Series
-        Of the positions.
-    distortions : Series or None
-        Of f_z and f_z̄, where they are wanted.
-    time : float
-        In [0, 1].
-    triangles : int32, shape (m, 3)
-        In the order in which they are painted.
+    The time is in [0, 1]. `distortions` is the series of f_z and f_z̄, if wanted. `triangles` are
+    int32 (m, 3), in the drawing order.
     """
 
     def __init__(
@@ -44,12 +35,12 @@ class StreamedVertices:
 
     @cached_property
     def positions(self) -> Complexes:
-        """The positions (v,), worked out when they are first asked for."""
+        """The positions (v,), computed on first use."""
         return _complexes(self.series, self.time)
 
     @cached_property
     def derivatives(self) -> tuple[Complexes, Complexes] | None:
-        """f_z and f_z̄ at the vertices, each (v,); None where they are not streamed."""
+        """f_z and f_z̄ at the vertices, each (v,); None without a series."""
         if self.distortions is None or not self.distortions.covers(self.time):
             return None
         fz, fzbar = _complexes(self.distortions, self.time).reshape(2, -1)

@@ -1,6 +1,6 @@
-"""Poses from handles: drags, keys that are solved again, pose scripts and ready motions.
+"""Poses from targets: drags, repeated solving of keys, pose scripts and motion presets.
 
-In: a layer, and where handles are wanted.
+In: a layer, and targets of handles.
 Out: certified poses.
 Imports: `app.motion`, `app.storage`.
 """

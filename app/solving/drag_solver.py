@@ -1,4 +1,4 @@
-"""Poses from handles: drags that go on step by step, and poses to begin them with."""
+"""The solver of a drag, step by step, and poses at which a drag begins."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -24,27 +24,22 @@ from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles, Ha
 from engine.errors import EngineError
 from engine.maps import Boundary, Certificate, HarmonicMap, certify
 
-# A pose that the present bounds do not allow is the start of a drag back into them: its own
-# distortion is allowed, and this much more of what is left.
+# A drag may start at a pose outside the current limits. Its own distortion is then allowed, and
+# this fraction of the remaining room.
 LEEWAY = 0.02
-# How strongly a joint holds; handles usually weigh 1.
+# Weight of a joint; handles usually have weight 1.
 PIN = 10.0
-# The joints of bones stay where they are with at most such a force, per the shape's diameter, when
-# a hand pulls beyond them.
+# Largest force, over the shape's diameter, with which joints of bones keep their places against a
+# drag beyond them.
 JOINT_PULL = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rig:
-    """What solving poses needs of a layer.
+    """The solver's data of a layer.
 
-    Parameters
-    ----------
-    handles : tuple of Handle
-        Those of the layer by which poses are held, in their order. What follows by a spring goes
-        where the body carries it, unless it is pulled at itself.
-    deformer : Deformer
-        For these, and for the layer's anchor where it hangs by that: a joint holds like a pin.
+    `handles` are those that hold poses, in the layer's order. Sprung handles are left out unless
+    dragged. The deformer is for these handles, and for the fixed anchor of an attached layer.
     """
 
     layer: Layer
@@ -58,9 +53,9 @@ class Rig:
         earlier: "Rig | None" = None,
         pulled: Collection[int] = (),
     ) -> Self:
-        """Return the rig of a layer; what did not change is taken from an earlier one.
+        """Return the rig of a layer; unchanged parts come from an earlier rig.
 
-        `pulled` are the ids of handles that are pulled at even where they follow.
+        `pulled` are the ids of dragged handles. They are included even with springs.
         """
         domain, pins = layer.domain, _pins(layer)
         carried = layer.sprung_handles.difference(pulled)
@@ -78,14 +73,14 @@ class Rig:
             places = [*(handle.position for handle in held), *pins]
             pulls = [*(handle.effective_weight for handle in held), *(PIN for _ in pins)]
             handles = Handles.place(boundary, np.array(places, dtype=np.complex128), pulls)
-        # Where it is stiff, new poses give way less.
+        # Stiff parts deform less in new poses.
         bounds = layer.bounds.scaled_by_stiffness(boundary)
         deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
         return cls(layer=layer, handles=held, deformer=deformer)
 
     @property
     def pins(self) -> tuple[complex, ...]:
-        """The points of the layer that a drag holds where they are."""
+        """Points of the layer that a drag keeps fixed."""
         return _pins(self.layer)
 
     def build_targets(
@@ -94,10 +89,10 @@ class Rig:
         pins: tuple[Target, ...],
         hands: Sequence[BoundedPull] = (),
     ) -> HandleTargets:
-        """Return where handles are wanted, as the deformer takes it.
+        """Return the targets in the form of the deformer.
 
-        Hands are told by the ids of the handles that they pull; those that are gone, or hold no
-        pose, are left out.
+        Each of `hands` refers to handles by id. Handles that no longer exist or hold no pose are
+        left out.
         """
         index = {handle.id: i for i, handle in enumerate(self.handles)}
         pulling = [
@@ -114,7 +109,7 @@ class Rig:
         )
 
     def _links(self, index: Mapping[int, int]) -> list[DistanceConstraint]:
-        """Return what keeps the ends of stiff bones in reach of each other."""
+        """Return the distance constraints between the ends of stiff bones."""
         links = []
         for bone in self.layer.bones:
             if bone.stiffness > 1 and index.keys() >= set(bone.ends):
@@ -130,9 +125,9 @@ class Rig:
         return links
 
     def find_yielding_joints(self, hands: Sequence[BoundedPull]) -> list[BoundedPull]:
-        """Return the joints that give in to hands that pull beyond them, each by itself.
+        """Return the joints that yield to a drag beyond them, one pull each.
 
-        They are those on the way along bones from a pulled handle to where the bones end or part.
+        They lie along bones from a dragged handle to the next end or branch.
         """
         pulled = {identity for hand in hands for identity in hand.handles}
         locked = {handle.id for handle in self.layer.handles if handle.locked}
@@ -151,7 +146,7 @@ class Rig:
     def make_pose(
         self, shape: HarmonicMap, targets: Mapping[int, Target], certificate: Certificate
     ) -> Pose:
-        """Return a map as a pose with these wishes; handles that do not hold it are where it is."""
+        """Return a map as a pose with these targets; other handles get their own positions."""
         held = {handle.id for handle in self.handles}
         carried = [handle for handle in self.layer.handles if handle.id not in held]
         places = shape(np.array([handle.position for handle in carried], dtype=np.complex128))
@@ -162,27 +157,23 @@ class Rig:
         return Pose.of(shape, {**targets, **here}, certificate)
 
     def start_at(self, shape: HarmonicMap) -> State:
-        """Return the solver's state at a map; where that folds, at rest, which leads everywhere."""
+        """Return the solver's state at a map, or at rest if the map folds."""
         try:
             return self.deformer.resume(shape)
         except EngineError:
             return self.deformer.start()
 
     def allow_pose(self, pose: Pose) -> Deformer:
-        """Return a deformer that allows a pose, be it outside the layer's present bounds."""
+        """Return a deformer that allows the pose even outside the layer's limits."""
         return self.deformer.widened_for(self.layer.map_of(pose), LEEWAY)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class DragSolver:
-    """A drag on its way, from certified map to certified map.
+    """The state of a drag; every map in between is certified.
 
-    Parameters
-    ----------
-    deformer : Deformer
-        Its bounds are the layer's, or as much wider as the pose at the start asked for.
-    pins : tuple of Target
-        What is held still.
+    The deformer has the layer's limits, widened if the first pose needs it. `pins` are the targets
+    of the fixed points.
     """
 
     rig: Rig
@@ -192,13 +183,7 @@ class DragSolver:
 
     @classmethod
     def begin(cls, rig: Rig, pose: Pose) -> Self:
-        """Return the drag that begins with a pose.
-
-        Raises
-        ------
-        EngineError
-            If the pose folds.
-        """
+        """Return the drag that begins with a pose; a folded pose raises an `EngineError`."""
         deformer = rig.allow_pose(pose)
         return cls(
             rig=rig,
@@ -221,7 +206,7 @@ class DragSolver:
     ) -> "DragSolver":
         """Return the drag after some steps towards the targets, or fewer if it comes to rest.
 
-        `pulled` are the ids of handles that are pulled at even where they follow.
+        `pulled` are the ids of dragged handles. They are included even with springs.
         """
         rig = Rig.of(self.rig.layer, self.rig, pulled)
         deformer = self.deformer
@@ -238,10 +223,10 @@ class DragSolver:
     def release(
         self, targets: Mapping[int, Target], hands: Sequence[BoundedPull]
     ) -> tuple["DragSolver", Mapping[int, Target]]:
-        """Return the drag after hands let go here, and the new targets of what these have pulled.
+        """Return the drag after release, and the new targets of the dragged handles.
 
-        Joints that gave in are among them. A pose at rest is at rest towards the new targets, too,
-        unless a bone at its limit pulls at a handle that stays.
+        Yielding joints get new targets too. A pose at rest is also at rest for the new targets,
+        unless a bone at its limit pulls at a fixed handle.
         """
         wish = self.rig.build_targets(targets, self.pins, hands)
         at = self.deformer.positions(self.state)
@@ -257,18 +242,18 @@ class DragSolver:
         return replace(self, state=self.deformer.release(self.state, wanted)), places
 
     def make_pose(self, targets: Mapping[int, Target]) -> Pose:
-        """Return where the drag is, as a pose with these wishes."""
+        """Return the current state as a pose with these targets."""
         return self.rig.make_pose(self.state.map, targets, self.state.certificate)
 
 
 def pins_of(layer: Layer, pose: Pose) -> tuple[Target, ...]:
-    """Return where a pose has what a drag holds still: the anchor of a layer that hangs."""
+    """Return the targets of the points that a drag keeps fixed: the anchor of an attached layer."""
     places = layer.map_of(pose)(np.array(_pins(layer), dtype=np.complex128))
     return tuple(Target(position=complex(place)) for place in places)
 
 
 def _pins(layer: Layer) -> tuple[complex, ...]:
-    """Return the points of a layer that are held where they are."""
+    """Return the points of a layer that a drag keeps fixed."""
     anchor = layer.anchor
     if not layer.has_parent or anchor is None:
         return ()
@@ -276,18 +261,11 @@ def _pins(layer: Layer) -> tuple[complex, ...]:
 
 
 def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | None = None) -> Pose:
-    """Return the pose that an animation shows at a frame, as near as one map can be to it.
+    """Return a single map that is nearest to the displayed frame, as a pose.
 
-    Of a key it is the key's own. In-betweens are no maps over the cage: their derivatives are
-    fitted on the outline, and should the fit not be certified, it is mixed with the nearer key.
-
-    Parameters
-    ----------
-    rig : Rig
-        Of the clip's layer.
-    frame : float
-    sibling : PoseSampler, optional
-        Of the layer's domain, for what it knows of the outline.
+    At a key it is the key's own pose. In-betweens are no maps over the cage, so their derivatives
+    are fitted on the outline. A fit without certificate is mixed with the nearer key. A sibling of
+    the layer's domain is reused for its data of the outline.
     """
     layer, boundary = rig.layer, rig.deformer.boundary
     moment = segment_time_at(clip, frame)
@@ -307,7 +285,7 @@ def fit_shown_pose(rig: Rig, clip: Clip, frame: float, sibling: PoseSampler | No
         mixed = own.changed(
             *(share * (new - old) for new, old in zip(fitted.columns, own.columns, strict=True))
         )
-        # What is shown may be older than what is stiff now.
+        # The displayed frame may be older than the current stiffness.
         certificate = certify(mixed, boundary, layer.bounds)
         if certificate.is_certified:
             break
@@ -329,26 +307,23 @@ def fit_map(
     *,
     inside: Booleans | None = None,
 ) -> HarmonicMap:
-    """Return the map over a cage that is nearest to another one, by its derivatives on the outline.
+    """Return the map over a cage whose derivatives on the outline are nearest to the given ones.
 
-    Parameters
-    ----------
-    fz, fzbar, positions : complex128, shape (s,)
-        f_z, f_z̄ and f of the other map at the boundary's samples.
-    inside : bool, shape (m,), optional
-        Which samples they are for, by default all.
+    `fz`, `fzbar` and `positions`, complex128 (s,), are those of the other map at the boundary's
+    samples, or at the samples chosen by `inside`, bool (m,).
     """
     chosen = slice(None) if inside is None else inside
     weights = boundary.lengths[chosen]
     root = np.sqrt(weights)[:, None]
-    # Constants have no derivative: they are left to the places of the outline.
+    # Constants have no derivative; the positions on the outline determine them.
     matrix = root * boundary.derivatives[chosen, 1:]
     wanted = root * np.column_stack([fz, fzbar.conj()])
     solved, *_ = np.linalg.lstsq(matrix, wanted, rcond=None)
     count = len(boundary.holes)
     logs: Complexes = np.empty(0, dtype=np.complex128)
     if count:
-        # Those of Ψ are the conjugates of those of Φ: with their mean the rest is fitted once more.
+        # The logarithms of Ψ are conjugates of those of Φ. With their mean, the rest is fitted once
+        # more.
         logs = np.asarray(solved[-count:, 0] + solved[-count:, 1].conj(), np.complex128) / 2
         wanted = wanted - matrix[:, -count:] @ np.column_stack([logs, logs.conj()])
         solved, *_ = np.linalg.lstsq(matrix[:, :-count], wanted, rcond=None)

@@ -1,4 +1,4 @@
-"""Flipped poses: what the left side does, the right side does, and the other way round."""
+"""Flipped poses: the left and the right side exchanged."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -18,24 +18,21 @@ from app.solving.pose_transfer import (
 def flip_poses(
     rig: Rig, poses: Sequence[Pose], axis: float, pairs: SidePairs = PAIRS
 ) -> list[Pose]:
-    """Return poses of a rig's layer mirrored at an upright axis, solved within its bounds.
-
-    The axis is told in pixels from the left.
-    """
+    """Return poses mirrored at a vertical axis, in pixels, solved within the limits."""
     return [_flip(rig, pose, axis, pairs) for pose in poses]
 
 
 def flip_targets(
     layer: Layer, pose: Pose, axis: float, pairs: SidePairs = PAIRS
 ) -> Mapping[int, Target]:
-    """Return where a flipped pose wants each handle.
+    """Return the target of each handle in a flipped pose.
 
-    A flipped pose would be R ∘ f ∘ R, with R(z) = 2a − conj(z) the reflection, were the drawing its
-    own mirror image. It hardly ever is: R takes a handle to a place beside its partner, and what
-    the pose does at that it does, mirrored, as `Likeness.moved` has it.
+    With R(z) = 2a − conj(z) the reflection, the flipped pose of a symmetric drawing is R ∘ f ∘ R.
+    Drawings are rarely symmetric: R maps a handle to a place near its partner.
+    `SimilarityTransform.transform_target` corrects for the offset.
 
-    Partners are told by the names of handles, then by their places; on a symmetric shape a handle
-    without either does what the shape does at its mirror image, and else it mirrors itself.
+    Partners are found by name, then by position. On a symmetric shape, a handle without a partner
+    takes the motion of the shape at its mirror image. Otherwise it mirrors its own motion.
     """
     shape, likeness = layer.map_of(pose), SimilarityTransform.reflection(axis)
     handles = {handle.id: handle for handle in layer.handles}

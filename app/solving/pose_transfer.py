@@ -1,4 +1,4 @@
-"""Poses that are carried from one layer to another, or to its own other side, by a similarity."""
+"""Transfer of poses by a similarity, to another layer or to the mirrored side."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,19 +13,19 @@ from engine.deform import StartingPoint
 from engine.geometry import contains, diameter
 from engine.maps import HarmonicMap, certify
 
-MOST_STEPS = 600  # for one pose
-# Of a shape that counts as like another one, the part at least that lies on that one's image.
+MOST_STEPS = 600  # per pose
+# Share of a shape that must lie on the image of another shape to count as similar.
 SIMILAR_SHARE = 0.9
-BESIDE = 0.005  # of the shape's diameter: so near to it is on it
-ENOUGH = 2_000  # vertices by which that is told
-# A part is drawn mirrored where its handles are this far from the likeness that mirrors nothing,
-# over their spread, and this many times nearer to the one that does.
+BESIDE = 0.005  # fraction of the shape's diameter: points this close are on the shape
+ENOUGH = 2_000  # vertices sampled for that test
+# A part is mirrored if the best similarity without mirroring has two large errors at the handles.
+# They exceed this fraction of the handles' spread, and this multiple of the mirrored error.
 ODD, CLEARER = 0.1, 4.0
 
 
 @dataclass(frozen=True, slots=True)
 class SimilarityTransform:
-    """A similarity S of the plane: z ↦ factor · z + shift, of conj(z) where it mirrors."""
+    """A similarity S of the plane: z ↦ factor · z + shift, or of conj(z) if it mirrors."""
 
     factor: complex = 1.0 + 0j
     shift: complex = 0j
@@ -33,22 +33,16 @@ class SimilarityTransform:
 
     @classmethod
     def reflection(cls, axis: float) -> Self:
-        """Return the reflection at an upright axis, R(z) = 2a − conj(z)."""
+        """Return the reflection at a vertical axis, R(z) = 2a − conj(z)."""
         return cls(-1.0 + 0j, complex(2 * axis), mirrors=True)
 
     @classmethod
     def fit(cls, places: Complexes, images: Complexes, *, mirrors: bool | None = None) -> Self:
-        """Return the likeness by which some places come next to others.
+        """Return the similarity that best maps places to images, each complex128 (n,), n ≥ 1.
 
-        Its scale is that of their spreads, so that the way back is its inverse. One place alone is
-        moved, and mirrored at an upright axis.
-
-        Parameters
-        ----------
-        places, images : complex128, shape (n,)
-            At least one.
-        mirrors : bool, optional
-            Whether it mirrors; by default only where the images clearly are mirrored.
+        Its scale is the ratio of their spreads, so that the fit of images to places is its inverse.
+        A single place is only translated, or mirrored at a vertical axis. By default S mirrors only
+        if the images clearly are mirrored.
         """
         if mirrors is not None:
             return cls._fit_nearest(places, images, mirrors=mirrors)
@@ -71,20 +65,19 @@ class SimilarityTransform:
         return cls(factor, complex(images.mean() - factor * points.mean()), mirrors)
 
     def apply(self, places: Complexes) -> Complexes:
-        """Return where places (n,) come to."""
+        """Return the images of places (n,)."""
         return self.factor * (places.conj() if self.mirrors else places) + self.shift
 
     def apply_to_point(self, place: complex) -> complex:
-        """Return where one place comes to."""
         return complex(self.apply(np.array([place]))[0])
 
     def apply_inverse(self, places: Complexes) -> Complexes:
-        """Return which places (n,) come to some."""
+        """Return the preimages of places (n,)."""
         points: Complexes = (places - self.shift) / self.factor
         return points.conj() if self.mirrors else points
 
     def transform_rotation(self, turn: complex) -> complex:
-        """Return by what the image of a shape turns that turns by this."""
+        """Return the rotation of the image of a shape with this rotation."""
         return turn.conjugate() if self.mirrors else turn
 
     def transform_target(
@@ -95,16 +88,15 @@ class SimilarityTransform:
         point: complex,
         turn: complex | None = None,
     ) -> complex:
-        """Return where a point goes if it moves as the image of a place with a target.
+        """Return the target of a point that moves like the image of a place with a target.
 
-        The image of the motion f is S ∘ f ∘ S⁻¹. A place p comes to one beside the point; what f
-        does at p is done to S(p), and the point is taken along as a rigid body would be:
+        The image of the motion f is S ∘ f ∘ S⁻¹. S maps the place p near to the point. The motion
+        of f at p is applied to S(p), and the point moves with it rigidly:
 
-            S(f(p)) + u (point − S(p)),  u the turn of the image at p
+            S(f(p)) + u (point − S(p)),  u the rotation of the image at p
 
-        or by another `turn` of f than that at the place. So the drawing at rest stays at rest
-        whatever the places are, a shape that is turned as a whole is turned alike, and the way back
-        changes nothing.
+        or with another rotation of f, `turn`. An undeformed drawing stays undeformed for all
+        places. A rotation of the whole shape is kept. The transfer back is the inverse.
         """
         if turn is None:
             (fz,), _ = shape.derivatives(np.array([place]))
@@ -116,25 +108,20 @@ class SimilarityTransform:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseTransfer:
-    """The way from one layer's poses to another's.
+    """A transfer of poses from one layer, as it was at the time of the poses, to another.
 
-    Parameters
-    ----------
-    source : Layer
-        As it was when its poses were.
-    pairs : mapping of int to int
-        Of the other layer's handles, those that take over, and from which of the source's.
-    likeness : SimilarityTransform
+    `pairs` maps handle ids of the target layer to handle ids of the source.
     """
 
     source: Layer
     pairs: Mapping[int, int]
     similarity: SimilarityTransform
-    # Whether sides exchange within one layer: what is far apart turns only as the whole does.
+    # Whether sides are exchanged within a layer. Distant parts then rotate only with the whole
+    # layer.
     is_within_layer: bool = False
 
     def transfer_targets(self, layer: Layer, pose: Pose) -> dict[int, Target]:
-        """Return where a layer's handles are wanted by a pose of the source, by their ids."""
+        """Return the targets of a layer's handles for a pose of the source, by handle id."""
         shape, carried = self.source.map_of(pose), {}
         whole = mean_rotation(self.source, shape) if self.is_within_layer else None
         for identity, other in self.pairs.items():
@@ -150,27 +137,22 @@ class PoseTransfer:
         return carried
 
     def transfer_pose(self, rig: Rig, pose: Pose, present: Pose | None = None) -> Pose:
-        """Return a pose of the source as one of a rig's layer, solved within its bounds.
+        """Return a pose of the source for the rig's layer, solved within its limits.
 
-        Parameters
-        ----------
-        rig : Rig
-        pose : Pose
-            Of the source.
-        present : Pose, optional
-            Where the handles stay that take nothing over; none is needed where all do.
+        Handles without a partner keep their targets in `present`, which is not needed if all have
+        one.
         """
         layer, targets = rig.layer, self.transfer_targets(rig.layer, pose)
         if present is not None:
             targets, pins = {**present.targets, **targets}, pins_of(layer, present)
             return solve_from_map(rig, layer.map_of(present), targets, pins)
         begin, ways = find_initial_map(rig, self.source, pose, self.similarity, targets)
-        # What follows by a spring needs a target, too, which is not heeded.
+        # Sprung handles need a target too; the solver ignores it.
         rest = {handle.id: Target(position=handle.position) for handle in layer.handles}
         return solve_from_map(rig, begin, {**rest, **targets}, self._transfer_pins(rig, pose), ways)
 
     def _transfer_pins(self, rig: Rig, pose: Pose) -> list[Target]:
-        """Return where the joints of a rig's layer are held, as is done next to them."""
+        """Return the targets of the rig's fixed points, from the motion of the nearest handles."""
         shape = self.source.map_of(pose)
         held = [self.source.handle(other).position for other in self.pairs.values()]
         if self.source.attachments and self.source.anchor is not None:
@@ -192,12 +174,12 @@ def solve_from_map(
     pins: Sequence[Target],
     ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
 ) -> Pose:
-    """Return the pose with these wishes that is found from a map, along some ways."""
+    """Return the pose for these targets, solved from a map with some starting points."""
     deformer, wish = rig.deformer, rig.build_targets(targets, tuple(pins))
     state, _ = deformer.settle(
         rig.start_at(begin), wish, ways=ways, at_most=MOST_STEPS, throw=False
     )
-    # Steps that walk into the bounds are proven for wider ones.
+    # Steps that lead into the limits are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
     return rig.make_pose(state.map, targets, proven)
 
@@ -209,10 +191,10 @@ def find_initial_map(
     likeness: SimilarityTransform,
     targets: Mapping[int, Target],
 ) -> tuple[HarmonicMap, tuple[StartingPoint, ...]]:
-    """Return the map with which the solver begins to look for the image of a pose, and its ways.
+    """Return the solver's first map for the image of a pose, and its starting points.
 
-    It is the map nearest to S ∘ f ∘ S⁻¹ where the two drawings are alike, and the pose the minimum
-    next to that; else the rest, turned as a whole as that is.
+    For similar drawings it is the map nearest to S ∘ f ∘ S⁻¹, and the pose is the nearest minimum.
+    Otherwise it is the undeformed map with the mean rotation of that image.
     """
     shape = source.map_of(pose)
     if is_similar(rig.layer, source, likeness):
@@ -227,16 +209,16 @@ def find_initial_map(
 
 
 def mean_rotation(layer: Layer, shape: HarmonicMap) -> complex:
-    """Return by what a layer is turned as a whole, of modulus 1."""
+    """Return the mean rotation of a layer, of modulus 1."""
     fz, _ = shape.derivatives(_some(layer.domain.mesh.vertices))
     turn = complex(fz.sum())
     return turn / abs(turn) if turn else 1.0 + 0j
 
 
 def is_similar(layer: Layer, source: Layer, likeness: SimilarityTransform) -> bool:
-    """Tell whether nearly all of a layer lies on another one's image."""
+    """Return whether nearly all of a layer lies on the image of another layer."""
     places = likeness.apply_inverse(_some(layer.domain.mesh.vertices))
-    # Many vertices of a coarse mesh are on its outline, and so beside the image of another one.
+    # Many vertices of a coarse mesh are on its outline, and thus slightly off the other's image.
     found = source.covers(places, tolerance=BESIDE * diameter(source.domain.outline))
     return bool(found.mean() >= SIMILAR_SHARE)
 
@@ -248,15 +230,15 @@ def _some(vertices: Complexes) -> Complexes:
 def _image(
     rig: Rig, source: Layer, shape: HarmonicMap, likeness: SimilarityTransform
 ) -> HarmonicMap:
-    """Return the map that is nearest to S ∘ f ∘ S⁻¹."""
+    """Return the map nearest to S ∘ f ∘ S⁻¹."""
     boundary = rig.deformer.boundary
     places = likeness.apply_inverse(boundary.points)
     cage, *inner = source.domain.cages
     inside = contains(cage, places, holes=inner)
     points = places[inside]
     fz, fzbar = shape.derivatives(points)
-    # With d S⁻¹ = dw/a, or its conjugate: (S ∘ f ∘ S⁻¹)_w = f_z, and its other derivative is
-    # f_z̄ a/conj(a), both conjugated before they are turned where S mirrors.
+    # With d S⁻¹ = dw/a or its conjugate: (S ∘ f ∘ S⁻¹)_w = f_z, and the other derivative is f_z̄
+    # a/conj(a). If S mirrors, both are conjugated before this rotation.
     if likeness.mirrors:
         fz, fzbar = fz.conj(), fzbar.conj()
     turned = likeness.factor / likeness.factor.conjugate()

@@ -1,4 +1,4 @@
-"""Another picture under the same handles, keys and joints."""
+"""Replacing a layer's picture under its handles, keys and attachments."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,19 +13,12 @@ from engine.maps import HarmonicMap
 
 
 def start_picture_replacement(before: Layer, made: Layer, canvas: tuple[int, int]) -> KeyResolver:
-    """Return a layer on its way to another picture.
+    """Return a resolver for a layer with another picture.
 
-    A picture of the same size lies where the old one did, and one of the canvas's size fills it;
-    else the middle of the new shape comes where that of the old one was. Handles and the anchor
-    stay where they are, or come to the nearest places of the new shape.
-
-    Parameters
-    ----------
-    before : Layer
-    made : Layer
-        The new picture, its lower left corner at 0, as a layer of its own.
-    canvas : tuple of int
-        Width and height of the scene.
+    `made` is a layer of the new picture, with its lower left corner at 0. A picture of the same
+    size has the old one's place, and one of the canvas's size fills the canvas. Otherwise the
+    centres of both shapes coincide. Handles and the anchor keep their places, or move to the
+    nearest points of the new shape.
     """
     corner = _corner(before, made, canvas)
     domain = made.domain.moved(corner)
@@ -52,7 +45,7 @@ def start_picture_replacement(before: Layer, made: Layer, canvas: tuple[int, int
 
 
 def _corner(before: Layer, made: Layer, canvas: tuple[int, int]) -> complex:
-    """Return where the lower left corner of the new picture comes, in whole pixels."""
+    """Return the lower left corner of the new picture, in whole pixels."""
     if made.picture.size == before.picture.size:
         return before.corner
     if made.picture.size == canvas:
@@ -67,7 +60,7 @@ def _middle(outline: Complexes) -> complex:
 
 
 def _places(before: Layer, domain: MeshedDomain) -> Mapping[complex, complex]:
-    """Return where handles and the anchor come, by where they were."""
+    """Return the new places of handles and anchor, by their old places."""
     old = [handle.position for handle in before.handles]
     if before.anchor is not None and before.anchor not in old:
         old.append(before.anchor)
@@ -77,7 +70,7 @@ def _places(before: Layer, domain: MeshedDomain) -> Mapping[complex, complex]:
 
 
 def _replanted(before: Layer, track: Track, places: Mapping[complex, complex]) -> Track:
-    """Return a track whose places in the picture are moved as its handle is."""
+    """Return a track whose scene-space positions move with its handle."""
     place = before.handle(track.handles[0]).position
     if not track.is_scene_space or places[place] == place:
         return track
@@ -93,7 +86,7 @@ def _replanted(before: Layer, track: Track, places: Mapping[complex, complex]) -
 def _at_rest(
     before: Layer, pose: Pose, domain: MeshedDomain, places: Mapping[complex, complex]
 ) -> Pose:
-    """Return a pose over the new domain, at rest, with its wishes moved as the handles are."""
+    """Return an undeformed pose over the new domain, with its targets moved as the handles are."""
     rest, shape = HarmonicMap.identity(domain.cage, domain.holes), before.map_of(pose)
     targets = {}
     for identity, target in pose.targets.items():

@@ -1,4 +1,4 @@
-"""Other bounds, another domain or picture under the same animation: its keys are solved again."""
+"""Solving keys again after a change of limits, domain or picture."""
 
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -22,47 +22,24 @@ from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Bounds, HarmonicMap, certify
 
-MOST_STEPS = 600  # for one key
-AT_REST = 1e-3  # pixels that coefficients of the drawing at rest may lack
+MOST_STEPS = 600  # per key
+AT_REST = 1e-3  # pixels: tolerance of coefficients of an undeformed drawing
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyResolver:
-    """A layer on its way to other bounds, another domain or another picture.
-
-    Parameters
-    ----------
-    before : Layer
-    bounds : Bounds
-        Of the poses to come.
-    meshing : Meshing, optional
-        What the domain of its picture is built anew with; None builds none.
-    pulls : bool
-        Whether poses that are within the bounds already are pulled to their targets again, too.
-    into : Layer, optional
-        The layer with the new domain, all poses at rest, once that is built.
-    replaces : bool
-        Whether that is another picture's.
-    rig : Rig, optional
-        None before the first key.
-    poses : tuple of Pose
-        Those that are solved, in the order of `Layer.poses`.
-    outside : tuple of str
-        Those that found no way into the bounds, and stay as they were, in words.
-    notices : tuple of str
-        What was remedied, in words.
-    """
+    """The state of solving a layer's poses again for other limits, domain or picture."""
 
     before: Layer
-    bounds: Bounds
-    meshing: Meshing | None = None
-    solves_all: bool = True
-    new_layer: Layer | None = None
-    replaces_picture: bool = False
-    rig: Rig | None = None
-    poses: tuple[Pose, ...] = ()
-    unsolved: tuple[str, ...] = ()
-    notices: tuple[str, ...] = ()
+    bounds: Bounds  # limits of the new poses
+    meshing: Meshing | None = None  # of a new domain; None keeps the domain
+    solves_all: bool = True  # also poses that already satisfy the limits
+    new_layer: Layer | None = None  # with the new domain and undeformed poses, once built
+    replaces_picture: bool = False  # whether `new_layer` has another picture
+    rig: Rig | None = None  # None before the first key
+    poses: tuple[Pose, ...] = ()  # solved, in the order of `Layer.poses`
+    unsolved: tuple[str, ...] = ()  # names of poses that could not satisfy the limits and stay
+    notices: tuple[str, ...] = ()  # of the domain builder
 
     @property
     def is_over(self) -> bool:
@@ -71,21 +48,21 @@ class KeyResolver:
 
     @property
     def progress(self) -> float:
-        """The part of its steps that is done, 0 to 1."""
+        """The finished share of the steps, 0 to 1."""
         builds = self.meshing is not None
         done = len(self.poses) + (builds and self.new_layer is not None)
         return done / (len(self.before.poses) + builds)
 
     @property
     def status_text(self) -> str:
-        """What the next step does, in words."""
+        """Description of the next step."""
         if self.meshing is not None and self.new_layer is None:
             return "Building the domain"
         return f"Solving pose {len(self.poses) + 1} of {len(self.before.poses)}"
 
     @property
     def command(self) -> Command:
-        """What makes one step of undo of all of it."""
+        """The command that applies everything as one undo step."""
         identity, into = self.before.id, self.new_layer
         if into is None:
             return shape_commands.set_limits(identity, self.bounds, self.poses)
@@ -97,7 +74,7 @@ class KeyResolver:
 
 
 def _joined(label: str, *commands: Command) -> Command:
-    """Return commands that are done after each other, as one."""
+    """Return a command that runs the others in order."""
 
     def change(document: Document) -> Document:
         return reduce(lambda before, command: command(before), commands, document)
@@ -106,15 +83,7 @@ def _joined(label: str, *commands: Command) -> Command:
 
 
 def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
-    """Take the next step: the domain, then one key after the other; on the worker thread.
-
-    Parameters
-    ----------
-    renewal : KeyResolver
-        One that is not over.
-    picture : uint8, shape (h, w, 4)
-        The layer's, decoded.
-    """
+    """Build the domain of the picture, or solve the next key; on the worker thread."""
     if renewal.meshing is not None and renewal.new_layer is None:
         return _with_domain(renewal, picture, renewal.meshing)
     rig = renewal.rig or Rig.of(replace(renewal.new_layer or renewal.before, bounds=renewal.bounds))
@@ -127,7 +96,7 @@ def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
 
 
 def _in_words(layer: Layer, index: int) -> str:
-    """Return where a pose of a layer is: at a key's frame, or under a name in the library."""
+    """Return the place of a pose: the frame of its key, or its name in the library."""
     count = len(layer.keys)
     if index < count:
         return f"at frame {layer.keys[index].frame}"
@@ -151,7 +120,7 @@ def _with_domain(renewal: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyR
 
 
 def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
-    """Return a pose over the rig's cage, within its bounds, pulled to its targets."""
+    """Return a pose over the rig's cage, within its limits, solved for its targets."""
     boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
     before, into = renewal.before, renewal.new_layer
     old = before.poses[index]
@@ -167,7 +136,7 @@ def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
     state, _ = rig.deformer.settle(rig.start_at(first), wish, at_most=MOST_STEPS, throw=False)
     certificate = certify(state.map, boundary, bounds)
     if into is not None and not certificate.is_certified:
-        # Where the new shape is larger, what was carried over may have no way back into the bounds.
+        # If the new shape is larger, the transferred map may not lead back into the limits.
         state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS, throw=False)
         certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.is_certified:
@@ -176,7 +145,7 @@ def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
 
 
 def transfer_target(target: Target, shape: HarmonicMap, place: complex, to: complex) -> Target:
-    """Return the target of a point that is moved at rest, turned as a pose is around it."""
+    """Return the target of a point that moves on the undeformed layer, with the pose's rotation."""
     if to == place:
         return target
     fz = complex(shape.derivatives(np.array([place]))[0][0])
@@ -184,9 +153,9 @@ def transfer_target(target: Target, shape: HarmonicMap, place: complex, to: comp
 
 
 def _carried_over(layer: Layer, pose: Pose, rig: Rig) -> HarmonicMap:
-    """Return the map over the rig's cage that is nearest to a pose over the layer's.
+    """Return the map over the rig's cage that is nearest to a pose of the layer.
 
-    The pose's map goes on from the old outline up to the old cage, where the new outline may lie.
+    The pose's map is defined from the old outline to the old cage, where the new outline may lie.
     """
     boundary, domain = rig.deformer.boundary, layer.domain
     shape, rest = layer.map_of(pose), HarmonicMap.identity(domain.cage, domain.holes)

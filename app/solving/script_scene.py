@@ -1,4 +1,4 @@
-"""From what a pose script says of its layers together to a scene."""
+"""Applying relations and channels of layers in a pose script to a document."""
 
 from dataclasses import replace
 
@@ -25,7 +25,6 @@ from app.solving.script import LayerScript, PoseScript, ScriptAttachment
 
 
 def find_layer(document: Document, name: str) -> Layer:
-    """Return the layer with a name."""
     names = {layer.name: layer for layer in document.layers}
     if name not in names:
         raise LissomError(f"there is no layer {name!r}; the layers are {join_names([*names])}")
@@ -33,9 +32,9 @@ def find_layer(document: Document, name: str) -> Layer:
 
 
 def with_attachments(document: Document, identity: int, part: LayerScript) -> Document:
-    """Return a document whose layer hangs on others as a script says, in the pose as drawn.
+    """Return a document with the script's attachments, on undeformed layers.
 
-    Where a joint has no point, it is the parent's point that is nearest to the layer's anchor.
+    A joint without a point is at the parent's point nearest to the layer's anchor.
     """
     layer = document.layer(identity)
     if not part.attach:
@@ -70,9 +69,9 @@ def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) ->
 
 
 def with_world_transforms(document: Document, script: PoseScript) -> Document:
-    """Return a posed document in which what is handed over goes on with the nearest point.
+    """Return a posed document; attachments without a point get the nearest point.
 
-    That is known only when all is posed.
+    The nearest point is known only after all layers are posed.
     """
     for part in script.layers:
         for joint in part.attach:
@@ -89,7 +88,6 @@ def with_world_transforms(document: Document, script: PoseScript) -> Document:
 
 
 def with_draw_order(document: Document, script: PoseScript) -> Document:
-    """Return a document whose layers lie beside others as a script says."""
     for part in script.layers:
         if part.layer is None or not part.order:
             continue
@@ -110,7 +108,7 @@ def with_draw_order(document: Document, script: PoseScript) -> Document:
 
 
 def with_switch_groups(document: Document, script: PoseScript) -> Document:
-    """Return a document whose layers take turns as a script says, whatever is hidden in it."""
+    """Return a document with the script's switch groups, whatever is hidden in the drawing."""
     for given in script.choices:
         try:
             identities = {name: find_layer(document, name).id for name in given.layers}
@@ -125,7 +123,7 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
 
 
 def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
-    """Tell of layers that a script moves as a whole, and that hang on others at all times."""
+    """Return notices of layers with transform keys that always have a parent."""
     frames = range(document.frames.first, document.frames.last + 1)
     notices = []
     for part in script.layers:
@@ -142,7 +140,7 @@ def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
 
 
 def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
-    """Tell of what a script lets repeat that has nothing to repeat, or does not come round."""
+    """Return notices of cycles without keys, and of channels that do not repeat in a cycle."""
     opacity = part.opacity if isinstance(part.opacity, tuple) else ()
     keyed = [key.frame for key in part.keys] + [switch.frame for switch in layer.visibility_keys]
     keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
@@ -179,7 +177,7 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
 
 
 def warn_unused_switches(document: Document) -> list[str]:
-    """Tell of choices whose turns are in a stretch that repeats for some of their layers only."""
+    """Return notices of switch groups whose cycle some of their layers lack."""
     notices = []
     for choice in document.switch_groups:
         layers = [document.layer(each) for each in choice.layers]
@@ -195,7 +193,7 @@ def warn_unused_switches(document: Document) -> list[str]:
 
 
 def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
-    """Tell of layers that a script poses, switches or chooses, and that are never seen so."""
+    """Return notices of layers in the script that are never visible."""
     first, last = document.frames.first, document.frames.last
     notices = []
     for part in script.layers:

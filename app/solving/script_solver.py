@@ -1,4 +1,4 @@
-"""From a new document and a pose script to an animation, solved as the window would solve it."""
+"""Solving a pose script on a new document, as the window does."""
 
 import json
 from collections.abc import Callable, Iterator, Sequence
@@ -40,39 +40,23 @@ from app.storage import make_still_layer
 from engine.deform import BoundedPull
 from engine.errors import EngineError
 
-# A drag that is not at rest by then creeps along a bound.
+# Largest number of steps; a drag that needs more moves slowly along a limit.
 MOST_STEPS = 1500
-SAME_PLACE = 1e-6  # pixels: a handle at rest is where the identity takes it, up to rounding
+SAME_PLACE = 1e-6  # pixels: tolerance for rounding
 
 
 def pose_document(
     document: Document, script: PoseScript, progress: Callable[[str], None]
 ) -> tuple[Document, tuple[str, ...]]:
-    """Give the layers of a new document the handles, keys and joints of a script.
+    """Return a document with the script's handles, keys and attachments, and notices.
 
-    Each key is solved by a drag from the key before, the first one from the drawing as it is. A
-    handle that a key does not name keeps its target of the key before. A script of one layer is
-    for the one in front that is seen; of one with several, layers that are not named stand still.
+    Each key is solved by a drag from the key before, the first one from the undeformed drawing. A
+    handle without a target in a key keeps its last target. A script of one layer poses the
+    frontmost visible layer. In a script of several, layers without an entry become still.
 
-    Parameters
-    ----------
-    document : Document
-        As it was drawn: `open_picture` and `open_layered` give it.
-    script : PoseScript
-    progress : callable
-        Told in words what is being solved.
-
-    Returns
-    -------
-    document : Document
-    notices : tuple of str
-        By how much handles fall short of their targets.
-
-    Raises
-    ------
-    LissomError, EngineError
-        If a layer is not there or hangs on itself, or a handle, a joint or the anchor lies outside
-        its shape.
+    The notices are target errors, and parts of the script without effect. `progress` receives the
+    description of each step. Raises a `LissomError` or `EngineError` if a layer is missing or
+    attached to itself, or if a point lies outside its shape.
     """
     named, notices = _by_layer(document, script), list[str]()
     document = replace(
@@ -111,7 +95,7 @@ def pose_document(
 
 @contextmanager
 def _whose(part: LayerScript) -> Iterator[None]:
-    """Name the layer in errors, where a script has several."""
+    """Name the layer in errors if the script has several."""
     try:
         yield
     except (LissomError, EngineError) as error:
@@ -122,7 +106,7 @@ def _whose(part: LayerScript) -> Iterator[None]:
 
 @contextmanager
 def _among(document: Document, identity: int, part: LayerScript) -> Iterator[None]:
-    """Tell in errors which layer a script took that names none, and how it names them."""
+    """Name in errors the layer that a script without layer names uses."""
     try:
         yield
     except (LissomError, EngineError) as error:
@@ -142,7 +126,6 @@ def _among(document: Document, identity: int, part: LayerScript) -> Iterator[Non
 
 
 def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
-    """Return what the script says of the layers, by their ids."""
     named = {}
     for part in script.layers:
         if part.layer is None:
@@ -162,7 +145,7 @@ def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
 
 
 def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
-    """Return the document with a layer's handles, settings and joint."""
+    """Return the document with a layer's handles, settings and attachments."""
     first = document.layer(identity).next_handle
     for name, handle in part.handles.items():
         added = document.layer(identity).next_handle
@@ -171,7 +154,7 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
         document = handle_commands.unpin_handles(identity, {added}, free=not handle.still)(document)
     layer = document.layer(identity)
     if part.visible is not None:
-        # What the script says holds, whatever is hidden in the drawing.
+        # The script's visibility overrides hidden layers of the drawing.
         document = layer_commands.show_layer(identity)(document)
         switches = tuple(VisibilityKey(frame, visible) for frame, visible in part.visible)
         layer = replace(document.layer(identity), visibility_keys=switches)
@@ -207,7 +190,7 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
 def _with_material(
     document: Document, identity: int, part: LayerScript
 ) -> tuple[Document, list[str]]:
-    """Return the document with a layer's stiff and soft parts; tell of those that reach none."""
+    """Return the document with a layer's stiffness, and notices of regions outside all outlines."""
     notices = []
     for each in part.parts:
         at, options = each.around, {"radius": each.radius, "amount": each.amount}
@@ -245,7 +228,7 @@ def _posed(
         again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
         is_alike = again is not None and _has_same_targets(rig, pose, again.pose)
         if again is not None and is_alike:
-            # The same moment again, to the last digit.
+            # The same pose to the last digit.
             pose, told = again.pose, []
         cycle = next((each for each in part.cycles if each.last == key.frame), None)
         if again is not None and cycle is not None and cycle.until != cycle.last:
@@ -269,7 +252,7 @@ def _posed(
 
 
 def _repeated(part: LayerScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyframe | None:
-    """Return the key of a cycle that is shown again at another key; None where there is none."""
+    """Return the earlier key of a cycle that repeats at this key, if any."""
     for cycle in part.cycles:
         if key.frame >= cycle.last and cycle.covers(key.frame):
             source = cycle.source_frame(key.frame)
@@ -278,7 +261,7 @@ def _repeated(part: LayerScript, keys: Sequence[Keyframe], key: PoseKey) -> Keyf
 
 
 def _has_same_targets(rig: Rig, pose: Pose, other: Pose) -> bool:
-    """Tell whether two poses are wanted alike where they are held."""
+    """Return whether two poses have the same targets for handles that hold poses."""
     return all(
         abs(pose.targets[held.id].position - other.targets[held.id].position) <= SAME_PLACE
         and pose.targets[held.id].rotation == other.targets[held.id].rotation
@@ -316,7 +299,7 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
     pose = drag.step_towards(left, MOST_STEPS).make_pose(left)
-    # Joints of bones give way: nobody asked them to stay.
+    # Joints of bones may yield, since the script does not hold them.
     joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
     notices += [
         f"frame {key.frame}: {layer.handle(identity).name!r} is {lag:.1f} px short of "

@@ -1,4 +1,4 @@
-"""Commands: changes of a document as values, with the words that undo and redo show.
+"""Commands: changes of a document as values, with labels for undo and redo.
 
 In: a document, or a layer of it, and arguments.
 Out: the changed document.

@@ -1,17 +1,16 @@
-"""Commands: changes of a document as values, with the words that undo and redo show.
+"""Commands: changes of a document as values, with labels for undo and redo.
 
-A command is defined as a pure function of a document and arguments; called with the arguments
-alone it gives a `Command` that waits for its document:
+A command is written as a pure function of a document and arguments. A call with the arguments alone
+returns a `Command` that can be applied to a document:
 
     history.do(set_fps(12.0))
 
-Most commands change one layer. They are defined as pure functions of a layer, and are told by its
-id which one they are for:
+Most commands change one layer. They are written as pure functions of a layer, and the call takes
+the layer's id first:
 
     history.do(rename_handle(layer.id, 3, "nose"))
 
-A command raises a `LissomError` where it is not possible, and returns the very same document where
-it changes nothing.
+An impossible command raises a `LissomError`. A command without effect returns the same document.
 """
 
 import functools
@@ -26,7 +25,7 @@ Arguments = ParamSpec("Arguments")
 
 
 def with_number(name: str, taken: Collection[str], number: int) -> str:
-    """Return a name with the first number, from one on, with which it is not taken."""
+    """Return the name with the first free number, from `number` on."""
     while f"{name} {number}" in taken:
         number += 1
     return f"{name} {number}"
@@ -34,13 +33,12 @@ def with_number(name: str, taken: Collection[str], number: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A pure function from document to document, and what it does in words."""
+    """A pure function from document to document, with its label."""
 
     label: str
     change: Callable[[Document], Document]
 
     def __call__(self, document: Document) -> Document:
-        """Return the changed document."""
         return self.change(document)
 
 
@@ -62,7 +60,7 @@ def command(
 
 
 def combine_commands(label: str, commands: Iterable[Command]) -> Command:
-    """Return the command that runs others one after the other, as one step."""
+    """Return a command that runs the others in order, as one undo step."""
     given = tuple(commands)
 
     def change(document: Document) -> Document:
@@ -81,7 +79,7 @@ def layer_command(
 ]:
     """Turn a function `(layer, *arguments) → layer` into one `(layer_id, *arguments) → Command`.
 
-    The animation grows where keys of the layer would lie beyond its ends.
+    The document's frames are extended to all keys of the layer.
     """
 
     def make(

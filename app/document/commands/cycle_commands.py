@@ -1,4 +1,4 @@
-"""Commands on cycles: which stretches repeat, until when, and their repeats made into keys."""
+"""Commands on cycles: create, delete, and bake repeats into keys."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -21,7 +21,7 @@ from app.document.queries import (
 from app.document.timing import Cycle, Track, TrackKey
 from app.errors import LissomError
 
-# By how much the ends of a track may differ, in pixels and radians, that wants nothing there.
+# Pixels and radians. A track with smaller values at its ends does not move the handle there.
 SAME_POSE_DISTANCE = 1e-6
 
 Moving = TypeVar("Moving", TransformKey, OpacityKey)
@@ -33,15 +33,11 @@ TWO_POSES_SHOWN = (
 
 @layer_command("Repeat stretch")
 def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> Layer:
-    """Let a stretch of time repeat, until a frame or the end of the scene.
+    """Create a cycle that repeats until a frame, or until the end of the document.
 
-    It takes the place of what repeated from its first frame on. A key at its end that is like the
-    one at its beginning is that moment again, and goes.
-
-    Raises
-    ------
-    LissomError
-        If it overlaps another one, or keys are in its way.
+    The cycle replaces one with the same first frame. A key at `last` with the pose of the first key
+    is removed, since it repeats the first key. Raises a `LissomError` if the cycle overlaps another
+    cycle, or keys are in the way of its repeats.
     """
     cycle = Cycle(first=first, last=last, until=until)
     keys = layer.keys
@@ -55,9 +51,9 @@ def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> 
 
 @command("Stop repeating")
 def delete_cycle(document: Document, identity: int, first: int) -> Document:
-    """Let the stretch that begins at a frame be there once; it still ends as it began.
+    """Delete the cycle that begins at a frame; its range still ends as it began.
 
-    So do turns of a choice that repeated with it.
+    Switch keys that repeat with the cycle stop repeating too.
     """
     cycle = cycle_starting_at(document.layer(identity), first)
     document = _with_baked_switch(document, identity, cycle, cycle.last)
@@ -85,25 +81,12 @@ def _without_cycle(layer: Layer, first: int) -> Layer:
 
 @command("Make repeats into keys")
 def bake_cycle(document: Document, identity: int, first: int, end: int) -> Document:
-    """Make the repeats of the stretch that begins at a frame into keys of their own.
+    """Replace the repeats of the cycle that begins at a frame with keys.
 
-    Only what leads to the stretch and on from it may pass its ends otherwise then. Less than a
-    whole repeat at the end goes on repeating the one before. Turns of a choice that repeated with
-    it are at frames of their own then.
-
-    Parameters
-    ----------
-    document : Document
-    identity : int
-        Of the layer.
-    first : int
-    end : int
-        The last frame of the scene, where the repeats end there.
-
-    Raises
-    ------
-    LissomError
-        If a track acts in a part of the stretch only, and neither comes from nor leads to nothing.
+    Only the tangents into and out of the range may change. An incomplete repeat at the end stays a
+    repeat of the one before. Repeats without an end stop at `end`, the document's last frame.
+    Repeated switch keys are baked too. Raises a `LissomError` if a track acts in a part of the
+    cycle only, and is not zero at its ends.
     """
     cycle = cycle_starting_at(document.layer(identity), first)
     document = _with_baked_switch(
@@ -113,7 +96,7 @@ def bake_cycle(document: Document, identity: int, first: int, end: int) -> Docum
 
 
 def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
-    """Return a document in which what repeats of a layer's choice with a cycle is said in full."""
+    """Return a document with the repeats of a layer's switch group in a cycle as switch keys."""
     choice = document.switch_group_of(identity)
     if choice is None or switch_cycle(document, choice) != cycle:
         return document
@@ -123,7 +106,6 @@ def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int
 
 
 def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
-    """Return a layer with the repeats of a stretch as keys."""
     cycle = cycle_starting_at(layer, first)
     until = max(cycle.last, end if cycle.until is None else cycle.until)
     own = [key for key in layer.keys if cycle.contains(key.frame)]
@@ -157,12 +139,10 @@ def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
 
 
 def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
-    """Return until when a stretch can repeat: whole times if it can, or to the end of the scene.
+    """Return the last frame of a cycle's repeats: whole repeats if possible; None is no end.
 
-    Raises
-    ------
-    LissomError
-        If there is no room for a repeat before the next key, or another cycle begins within.
+    Raises a `LissomError` if the next key leaves no room for a repeat, or another cycle begins
+    within the range.
     """
     for cycle in layer.cycles:
         if first < cycle.first < last:
@@ -188,9 +168,9 @@ def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
 
 
 def nearest_cycle_end(layer: Layer, cycle: Cycle, frame: int, end: int) -> int | None:
-    """Return the frame next to another one until which a cycle can repeat; None is for ever.
+    """Return the possible last frame of the repeats that is nearest to a frame; None is no end.
 
-    It is one at which a key of the stretch is shown, or the end of the scene.
+    A possible last frame shows a key of the cycle.
     """
     after = [each for each in layer.key_frames if each >= cycle.last]
     after += [other.first for other in layer.cycles if other.first > cycle.first]
@@ -205,7 +185,7 @@ def nearest_cycle_end(layer: Layer, cycle: Cycle, frame: int, end: int) -> int |
 
 
 def with_cycle_end(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
-    """Return a cycle with its end next to a frame, behind its keys; it repeats as often."""
+    """Return a cycle with its last frame near a frame, after its keys, and as many repeats."""
     own = [each for each in layer.key_frames if cycle.contains(each)]
     last = max([frame, cycle.first + 1, *(each + 1 for each in own)])
     until = cycle.until
@@ -216,7 +196,6 @@ def with_cycle_end(layer: Layer, cycle: Cycle, frame: int) -> Cycle:
 
 
 def cycle_starting_at(layer: Layer, first: int) -> Cycle:
-    """Return the cycle of a layer that begins at a frame."""
     for cycle in layer.cycles:
         if cycle.first == first:
             return cycle
@@ -228,7 +207,7 @@ def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
 
 
 def _with_depths(layer: Layer, cycle: Cycle, copy: Keyframe) -> Keyframe:
-    """Return a copy of a key; where a repeat begins, it takes back what the last one ended with."""
+    """Return a copy of a key; at the start of a repeat, the copy resets the depths."""
     own = [key for key in layer.keys if cycle.contains(key.frame)]
     if not own or (copy.frame - own[0].frame) % cycle.period:
         return copy
@@ -241,7 +220,7 @@ def _with_depths(layer: Layer, cycle: Cycle, copy: Keyframe) -> Keyframe:
 
 
 def _copied(layer: Layer, row: Keys[Moving], cycle: Cycle, until: int) -> Keys[Moving]:
-    """Return keys of a movement or an opacity in each repeat until a frame, if they repeat."""
+    """Return transform or opacity keys with copies in each repeat until a frame, if they repeat."""
     if repeating_cycle(layer, row) is not cycle:
         return row
     first, last = row[0], row[-1]
@@ -251,7 +230,7 @@ def _copied(layer: Layer, row: Keys[Moving], cycle: Cycle, until: int) -> Keys[M
         for key in row[:-1] if is_whole else row:
             copy = replace(key, frame=key.frame + at)
             if is_whole and isinstance(first, TransformKey) and isinstance(last, TransformKey):
-                # What turns round and round goes on turning.
+                # A rotation that grows from repeat to repeat keeps growing.
                 copy = replace(copy, turn=copy.turn + count * (last.turn - first.turn))
             copies += [copy] if copy.frame <= until else []
     return sorted_by_frame(copies)
@@ -269,7 +248,7 @@ def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Tr
             "act from "
             f"frame {cycle.first} to {cycle.last}, or begin and end where the pose has the handle."
         )
-    # Where it fills the stretch, its last key is its first one again.
+    # If the track fills the cycle, its last key equals its first.
     own = track.keys[:-1] if is_whole else track.keys
     keys: list[TrackKey] = []
     for at in (cycle.first, *starts):

@@ -1,4 +1,4 @@
-"""Commands on handles. None of them changes a map: whatever is shown stays as it is."""
+"""Commands on handles. No command here changes a map, so the drawing stays the same."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
@@ -17,16 +17,10 @@ from app.document.layer import Layer
 def add_handle(
     layer: Layer, position: complex, *, name: str | None = None, weight: float = 1.0
 ) -> Layer:
-    """Add a handle at a point of the picture; each key's target is where its map takes the point.
+    """Add a handle at a point of the picture; its target in each key is the point's image.
 
-    Parameters
-    ----------
-    position : complex
-        In pixels of the picture at rest, y up, on the shape.
-    name : str, optional
-        "handle 1" and so on by default. The new handle's id is `layer.next_handle`.
-    weight : float
-        How strongly it pulls, relative to others.
+    The position is on the shape, in pixels of the picture at rest, y up. The default name is
+    "handle 1" and so on. The new handle's id is `layer.next_handle`.
     """
     handle = Handle(
         id=layer.next_handle,
@@ -40,7 +34,7 @@ def add_handle(
 
 @layer_command("Add handles")
 def add_handles(layer: Layer, handles: Sequence[Handle]) -> Layer:
-    """Add several handles at once; their ids are given anew, from `layer.next_handle` on."""
+    """Add several handles; they get new ids from `layer.next_handle` on."""
     for number, handle in enumerate(handles, start=layer.next_handle):
         added = replace(handle, id=number)
         _require_on_shape(layer, added)
@@ -50,7 +44,7 @@ def add_handles(layer: Layer, handles: Sequence[Handle]) -> Layer:
 
 @layer_command("Move handle")
 def move_handle(layer: Layer, identity: int, position: complex) -> Layer:
-    """Put a handle elsewhere on the picture; its targets become where that point is now."""
+    """Move a handle on the picture; its targets become the images of its new position."""
     if layer.handle(identity).position == position:
         return layer
     handle = replace(layer.handle(identity), position=position)
@@ -62,7 +56,7 @@ def move_handle(layer: Layer, identity: int, position: complex) -> Layer:
 
 @layer_command("Delete handle")
 def remove_handles(layer: Layer, identities: Collection[int]) -> Layer:
-    """Remove handles by their ids, with their springs, tracks and bones. The poses stay."""
+    """Delete handles with their springs, tracks and bones. The poses keep their shapes."""
     gone = {layer.handle(identity).id for identity in identities}
     if not gone:
         return layer
@@ -86,36 +80,34 @@ def remove_handles(layer: Layer, identities: Collection[int]) -> Layer:
 
 @layer_command("Rename handle")
 def rename_handle(layer: Layer, identity: int, name: str) -> Layer:
-    """Give a handle another name."""
     return with_handles(layer, {identity}, name=name)
 
 
 @layer_command("Set handle weight")
 def set_handle_weight(layer: Layer, identities: Collection[int], weight: float) -> Layer:
-    """Let handles pull more or less strongly in poses that are solved from now on."""
+    """Set the weight of handles in later solves."""
     return with_handles(layer, identities, weight=weight)
 
 
 @layer_command("Lock or unlock handles")
 def lock_handles(layer: Layer, identities: Collection[int], *, locked: bool) -> Layer:
-    """Lock handles in their places, or unlock them."""
     return with_handles(layer, identities, locked=locked)
 
 
 @layer_command("Free or keep still")
 def unpin_handles(layer: Layer, identities: Collection[int], *, free: bool) -> Layer:
-    """Let handles move as they like between keys that have them at one place, or keep them."""
+    """Turn auto-pin off or on for handles."""
     return with_handles(layer, identities, free=free)
 
 
 @layer_command("Group handles")
 def group_handles(layer: Layer, identities: Collection[int], group: str) -> Layer:
-    """Group handles under a name, to be selected and dragged together; with "", ungroup them."""
+    """Put handles in a group that is selected and dragged together; "" ungroups them."""
     return with_handles(layer, identities, group=group.strip())
 
 
 def with_handles(layer: Layer, identities: Collection[int], **changes: Any) -> Layer:
-    """Return the layer with some fields of some handles changed, itself if they have them."""
+    """Return the layer with changed handle fields, the same object without a change."""
     for identity in identities:
         layer.handle(identity)
     handles = tuple(
@@ -126,7 +118,7 @@ def with_handles(layer: Layer, identities: Collection[int], **changes: Any) -> L
 
 
 def _with_poses(layer: Layer, change: Callable[[Pose], Pose], handles: tuple[Handle, ...]) -> Layer:
-    """Return the layer with other handles, and every pose of it changed."""
+    """Return the layer with other handles and with every pose changed."""
     return layer.with_poses(
         map(change, layer.poses),
         handles=handles,
@@ -135,12 +127,12 @@ def _with_poses(layer: Layer, change: Callable[[Pose], Pose], handles: tuple[Han
 
 
 def _require_on_shape(layer: Layer, handle: Handle) -> None:
-    """Refuse a handle that poses cannot take anywhere."""
+    """Refuse a handle outside the shape, where the map is not defined."""
     layer.require_on_shape({f"handle {handle.name!r}": handle.position})
 
 
 def _follow(layer: Layer, handle: Handle, pose: Pose) -> Pose:
-    """Return a pose with the handle's target where its map takes the handle."""
+    """Return a pose whose target for the handle is the handle's image under the map."""
     old = pose.targets.get(handle.id)
     (place,) = layer.map_of(pose)(np.array([handle.position], dtype=np.complex128))
     position = complex(place)
@@ -149,6 +141,5 @@ def _follow(layer: Layer, handle: Handle, pose: Pose) -> Pose:
 
 
 def next_handle_name(layer: Layer) -> str:
-    """Return a name that no handle has, for the next handle."""
     taken = {handle.name for handle in layer.handles}
     return with_number("handle", taken, layer.next_handle + 1)

@@ -1,4 +1,4 @@
-"""Commands on keys: posing, inserting, and moving them about in time."""
+"""Commands on pose keys: pose, insert, delete, and move in time."""
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
@@ -21,24 +21,23 @@ Held = TypeVar("Held", VisibilityKey, DrawOrderKey)
 
 @layer_command("Pose")
 def replace_key_pose(layer: Layer, frame: int, pose: Pose) -> Layer:
-    """Give the key at a frame another pose."""
     return replace_keys(layer, {frame: replace(layer.key(frame), pose=pose)})
 
 
 @layer_command("Insert key")
 def insert_key(layer: Layer, frame: int, pose: Pose, *, easing: Easing = LINEAR) -> Layer:
-    """Insert a key at a frame that has none.
+    """Insert a key at a frame without a key.
 
-    A key that divides an interval takes its easing. Ways that are new get `easing`: that from a
-    new first or last key, and that from the key that was last, unless it was given one. The
-    animation grows where the frame lies beyond its ends; so it does in all commands here.
+    A key within a segment takes the easing of the segment. New segments take `easing`: the segment
+    from a new first key, or the segment from the former last key if its easing is linear. The
+    document's frames grow to contain the key, as in all commands here.
     """
     return _inserted(layer, frame, pose, easing)
 
 
 @layer_command("Paste pose")
 def insert_pose(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
-    """Give the key at a frame a pose; where there is none, insert one."""
+    """Set the pose of the key at a frame, or insert a key."""
     if frame not in layer.key_frames:
         return _inserted(layer, frame, pose, easing)
     old = layer.key(frame)
@@ -47,26 +46,25 @@ def insert_pose(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
 
 @layer_command("Paste keys")
 def insert_keys(layer: Layer, keys: Sequence[Keyframe]) -> Layer:
-    """Put keys at their frames, where they replace those that are there."""
+    """Put keys at their frames, in place of existing keys."""
     return _with_keys(layer, retime.with_overwritten_keys(layer.keys, keys))
 
 
 @layer_command("Move keys")
 def move_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
-    """Move the keys at some frames; cycles and ready motions go with their keys."""
+    """Move the keys at some frames, with their cycles and motion presets."""
     keys = retime.with_moved_keys(layer.keys, frames, by)
     return _rearranged(layer, keys, frames, lambda frame: frame + by)
 
 
 @layer_command("Copy keys")
 def copy_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
-    """Repeat the keys at some frames a number of frames later, or earlier."""
     return _with_keys(layer, retime.with_copied_keys(layer.keys, frames, by))
 
 
 @layer_command("Delete keys")
 def delete_keys(layer: Layer, frames: Collection[int]) -> Layer:
-    """Delete the keys at some frames; one key must remain. What has no keys repeats no longer."""
+    """Delete the keys at some frames; one key must remain. Cycles without keys are deleted."""
     keys = retime.without_keys(layer.keys, frames)
     if not keys:
         raise LissomError("An animation has at least one key; pose the last one instead.")
@@ -80,15 +78,7 @@ def delete_keys(layer: Layer, frames: Collection[int]) -> Layer:
 def reverse_keys(
     layer: Layer, frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Layer:
-    """Let the keys at some frames, and the motion between them, run backwards.
-
-    Parameters
-    ----------
-    frames : collection of int
-    span : tuple of int, optional
-        The first and the last frame of what runs backwards, where other layers do so together with
-        this one; by default those of the keys.
-    """
+    """Reverse the keys at some frames within `span`, by default the range of the keys."""
     return _with_keys(layer, retime.with_reversed_keys(layer.keys, frames, span))
 
 
@@ -96,15 +86,7 @@ def reverse_keys(
 def scale_keys(
     layer: Layer, frames: Collection[int], factor: float, first: int | None = None
 ) -> Layer:
-    """Move the keys at some frames apart or together in time.
-
-    Parameters
-    ----------
-    frames : collection of int
-    factor : float
-    first : int, optional
-        The frame that stays; by default that of the first key.
-    """
+    """Scale the frames of some keys around `first`, by default the first of the keys."""
     keys = retime.with_scaled_keys(layer.keys, frames, factor, first)
     stays = min(frames, default=0) if first is None else first
     return _rearranged(layer, keys, frames, TimeScale(stays, factor))
@@ -112,7 +94,6 @@ def scale_keys(
 
 @layer_command("Make last key equal first")
 def match_loop_ends(layer: Layer) -> Layer:
-    """Give the last key the pose of the first one, so that a loop has no jump."""
     first, last = layer.keys[0], layer.keys[-1]
     if first is last:
         raise LissomError("A loop needs two keys; insert a second one first.")
@@ -123,19 +104,19 @@ def match_loop_ends(layer: Layer) -> Layer:
 
 @layer_command("Set easing")
 def set_easing(layer: Layer, frames: Collection[int], easing: Easing) -> Layer:
-    """Set how time runs from the keys at some frames to the next ones."""
+    """Set the easing from the keys at some frames to the next keys."""
     return _with_keys(layer, retime.with_easing(layer.keys, frames, easing))
 
 
 @layer_command("Set passing")
 def set_tangent_mode(layer: Layer, frames: Collection[int], passing: TangentMode) -> Layer:
-    """Set how the motion passes the keys at some frames; one that held its pose does no longer."""
+    """Set the tangent mode of the keys at some frames; a hold ends."""
     return _with_keys(layer, retime.with_tangent_mode(layer.keys, frames, passing))
 
 
 @layer_command("Set turns")
 def set_revolutions(layer: Layer, frames: Collection[int], turns: int) -> Layer:
-    """Set how often the shape turns round on the way from the keys at some frames."""
+    """Set the additional full turns after the keys at some frames."""
     keys = retime.keys_at_frames(layer.keys, frames)
     return replace_keys(
         layer,
@@ -149,7 +130,7 @@ def _inserted(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
 
 
 def replace_keys(layer: Layer, changed: dict[int, Keyframe]) -> Layer:
-    """Return the layer with others for the keys at some frames, itself if there are none."""
+    """Return the layer with other keys at some frames, the same object without a change."""
     return _with_keys(layer, retime.with_replaced_keys(layer.keys, changed))
 
 
@@ -167,7 +148,7 @@ def _rearranged(
     frames: Collection[int],
     to: Callable[[int], int],
 ) -> Layer:
-    """Return the layer with the keys at some frames elsewhere, and what goes with them."""
+    """Return the layer with keys moved, and their cycles and motion presets moved with them."""
     if keys is layer.keys:
         return layer
     changed = replace(layer, keys=keys, cycles=_moved_cycles(layer, frames, to), motions=())
@@ -177,10 +158,10 @@ def _rearranged(
 def _carried_motions(
     layer: Layer, changed: Layer, frames: Collection[int], to: Callable[[int], int]
 ) -> tuple[AppliedMotion, ...]:
-    """Return a layer's ready motions, whose ends go with the keys there.
+    """Return a layer's motion presets with their ends moved with the keys.
 
-    A motion that would take in other keys or meet another motion is forgotten: to give it again
-    would delete what is not its own. One that is moved as a whole is still as it was given.
+    A motion preset that would contain other keys or overlap another preset is dropped, since
+    applying it again would delete these keys. A preset that moves as a whole stays unedited.
     """
     gone = {frame: to(frame) for frame in frames}
     motions: list[AppliedMotion] = []
@@ -208,7 +189,7 @@ def _carried_motions(
 def _moved_cycles(
     layer: Layer, frames: Collection[int], to: Callable[[int], int]
 ) -> tuple[Cycle, ...]:
-    """Return a layer's cycles; those of which all keys are among some go with them."""
+    """Return a layer's cycles; a cycle moves if all its keys move."""
     cycles = []
     for cycle in layer.cycles:
         own = {frame for frame in layer.key_frames if cycle.contains(frame)}
@@ -217,7 +198,7 @@ def _moved_cycles(
 
 
 def with_scaled_time(layer: Layer, scale: TimeScale) -> Layer:
-    """Return the layer with all of its time scaled; springs go on swinging in seconds."""
+    """Return the layer with all of its frames scaled; springs keep their frequencies in seconds."""
     of_layer = f"of {layer.name!r}"
     return replace(
         layer,

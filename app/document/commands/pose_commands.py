@@ -1,4 +1,4 @@
-"""Commands on a layer's library of poses, and on the axis at which poses are flipped."""
+"""Commands on a layer's pose library, and on the mirror axis of poses."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,13 +10,13 @@ from app.document.keyframe import LibraryPose, Pose, Target
 from app.document.layer import Layer
 from app.document.model import Document
 
-# Of a layer and a pose of it: the pose to which that one has gone on.
+# For a layer and its pose: the pose that replaces it.
 PoseReplacement = Callable[[Layer, Pose], Pose]
 
 
 @layer_command("Keep pose")
 def save_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
-    """Put a pose into the library, by default under a name that no other one has."""
+    """Add a pose to the library, by default under a free name."""
     taken = {kept.name for kept in layer.library}
     free = with_number("Pose", taken, len(taken) + 1)
     kept = LibraryPose(name=free if name is None else name, pose=pose)
@@ -25,7 +25,6 @@ def save_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
 
 @layer_command("Rename pose")
 def rename_pose(layer: Layer, name: str, to: str) -> Layer:
-    """Give a pose of the library another name."""
     renamed = layer.library_pose(name)
     if to == name:
         return layer
@@ -35,23 +34,23 @@ def rename_pose(layer: Layer, name: str, to: str) -> Layer:
 
 @layer_command("Delete pose")
 def delete_pose(layer: Layer, name: str) -> Layer:
-    """Take a pose out of the library; keys that were made of it stay."""
+    """Delete a pose from the library; keys made from it stay."""
     gone = layer.library_pose(name)
     return replace(layer, library=tuple(kept for kept in layer.library if kept is not gone))
 
 
 @layer_command("Move mirror axis")
 def set_mirror(layer: Layer, mirror: float | None) -> Layer:
-    """Set where the axis crosses the picture at which poses are flipped; None finds its middle."""
+    """Set the vertical mirror axis of poses; None takes the default axis."""
     return layer if mirror == layer.mirror else replace(layer, mirror=mirror)
 
 
 def with_replaced_pose(
     document: Document, old: Pose, new: PoseReplacement, known: dict[Layer, Layer] | None = None
 ) -> Document:
-    """Return a document in which another pose stands wherever one with the map of `old` does.
+    """Return a document in which a new pose replaces every pose with the map of `old`.
 
-    Layers that several documents share are changed once, where `known` holds what became of them.
+    `known` keeps the changed layers, so that layers shared by several documents are changed once.
     """
     known = {} if known is None else known
     for layer in document.layers:
@@ -64,7 +63,7 @@ def with_replaced_pose(
 
 
 def with_all_targets(layer: Layer, pose: Pose) -> Pose:
-    """Return a pose with a target for each handle of a layer: its own, or where it is."""
+    """Return a pose with a target for each handle of the layer: its own, or the handle's image."""
     places = layer.map_of(pose)(
         np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     )

@@ -1,6 +1,6 @@
-"""Keys moved about in time, be they of poses or of a track: pure functions of rows of keys.
+"""Moving keys in time: pure functions on rows, the keys of a channel.
 
-A row is in the order of its frames, and has at most one key at each.
+A row is in the order of its frames, with at most one key per frame.
 """
 
 from collections import Counter
@@ -21,11 +21,11 @@ Keys = tuple[Key, ...]
 
 
 class AtFrame(Protocol):
-    """A key of any kind, or a marker."""
+    """A key of any channel, or a marker."""
 
     @property
     def frame(self) -> int:
-        """The frame that it stands at."""
+        """Frame of the key."""
 
 
 Timed = TypeVar("Timed", bound=AtFrame)
@@ -39,7 +39,7 @@ BAD_TIME_FACTOR = "Time can be scaled by more than 0 and up to 1000, not by {fac
 
 @dataclass(frozen=True, slots=True)
 class TimeScale:
-    """Time stretched or shortened around a frame that stays."""
+    """Scales frames around a fixed frame."""
 
     stays: int
     factor: float
@@ -49,20 +49,20 @@ class TimeScale:
             raise LissomError(BAD_TIME_FACTOR.format(factor=self.factor))
 
     def __call__(self, frame: int) -> int:
-        """Return where a frame comes, never before frame 0."""
+        """Return the scaled frame, at least 0."""
         return max(self.stays + nearest_frame((frame - self.stays) * self.factor), 0)
 
     def paced(self, keys: Iterable[Key], named: str) -> Keys[Key]:
-        """Return keys at their new frames, and the motion through them as much faster."""
+        """Return keys at their scaled frames, with velocities scaled accordingly."""
         return self.retimed(keys, named, lambda key, at: key.retimed(at, 1 / self.factor))
 
     def retimed(
         self, keys: Iterable[Timed], named: str, at_frame: Callable[[Timed, int], Timed]
     ) -> tuple[Timed, ...]:
-        """Return keys, in their order, at their new frames, as a function has one at a frame.
+        """Return keys at their scaled frames; `at_frame` moves one key.
 
-        Two that meet are refused. Of those that hold before the frame that stays, where nothing is
-        seen, the last one counts.
+        Two keys at one frame are refused. Before the fixed frame, where no frame is shown, the last
+        of them counts.
         """
         placed: dict[int, Timed] = {}
         for key in keys:
@@ -75,9 +75,9 @@ class TimeScale:
 
 
 def nearest_frame(time: float) -> int:
-    """Return the frame nearest to a time, of two the later one, so that no two steps differ.
+    """Return the nearest frame, the later one of two, so that scaled steps are equal.
 
-    `round` takes the even one, so that times .5, 1.5 and 2.5 come to frames 0, 2 and 2.
+    `round` takes the even one: times .5, 1.5 and 2.5 would become frames 0, 2 and 2.
     """
     return floor(time + 0.5)
 
@@ -92,7 +92,7 @@ def keys_at_frames(keys: Keys[Key], frames: Iterable[int]) -> list[Key]:
 
 
 def sorted_by_frame(keys: Iterable[Key]) -> Keys[Key]:
-    """Return a row of keys."""
+    """Return keys as a row; two keys at one frame are refused."""
     ordered = tuple(sorted(keys, key=lambda key: key.frame))
     for frame, count in Counter(key.frame for key in ordered).items():
         if count > 1:
@@ -101,16 +101,16 @@ def sorted_by_frame(keys: Iterable[Key]) -> Keys[Key]:
 
 
 def with_replaced_keys(keys: Keys[Key], changed: Mapping[int, Key]) -> Keys[Key]:
-    """Return a row with others for the keys at some frames, itself if they are the same."""
+    """Return the row with some keys replaced; the same object without a change."""
     row = sorted_by_frame(changed.get(key.frame, key) for key in keys)
     return keys if row == keys else row
 
 
 def with_inserted_key(keys: Keys[Key], new: Key) -> Keys[Key]:
-    """Return a row with one more key.
+    """Return the row with one more key.
 
-    A key that divides an interval takes its easing. Else the new way, that from a new first or last
-    key, has the new key's, and so has that from the key that was last, unless it was given one.
+    A key within a segment takes the easing of the segment. Otherwise the new segment takes the new
+    key's easing; the former last key keeps an easing that is not linear.
     """
     row: list[Key] = list(keys)
     before = [key for key in row if key.frame < new.frame]
@@ -123,14 +123,14 @@ def with_inserted_key(keys: Keys[Key], new: Key) -> Keys[Key]:
 
 
 def with_overwritten_keys(keys: Keys[Key], others: Iterable[Key]) -> Keys[Key]:
-    """Return a row with other keys at their frames, in place of those that are there."""
+    """Return the row with other keys at their frames, in place of existing keys."""
     return sorted_by_frame(
         ({key.frame: key for key in keys} | {key.frame: key for key in others}).values()
     )
 
 
 def with_moved_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
-    """Return a row with the keys at some frames moved by a number of frames."""
+    """Return the row with the keys at some frames moved by a number of frames."""
     chosen = keys_at_frames(keys, frames)
     return with_replaced_keys(
         keys, {key.frame: replace(key, frame=key.frame + by) for key in chosen if by}
@@ -138,13 +138,13 @@ def with_moved_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[K
 
 
 def with_copied_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
-    """Return a row with the keys at some frames repeated a number of frames later, or earlier."""
+    """Return the row with copies of the keys at some frames, moved by a number of frames."""
     copies: list[Key] = [replace(key, frame=key.frame + by) for key in keys_at_frames(keys, frames)]
     return sorted_by_frame(chain(keys, copies)) if copies else keys
 
 
 def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
-    """Return a row without the keys at some frames; it may be empty."""
+    """Return the row without the keys at some frames; it may be empty."""
     gone = keys_at_frames(keys, frames)
     return tuple(key for key in keys if key not in gone) if gone else keys
 
@@ -152,16 +152,13 @@ def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
 def with_reversed_keys(
     keys: Keys[Key], frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Keys[Key]:
-    """Return a row in which the keys at some frames, and the motion between them, run backwards.
-
-    By default they do so between the first of them and the last one, else within the span.
-    """
+    """Return the row with keys and motion reversed in `span`, by default the range of the keys."""
     chosen = keys_at_frames(keys, frames)
     ends = sum(span) if span else chosen[0].frame + chosen[-1].frame if chosen else 0
     if len(chosen) < 2 and all(2 * key.frame == ends for key in chosen):
         return keys
-    # A way belongs to the interval after its key: those between the keys turn round with them, and
-    # those after the last key stay where they are.
+    # A key stores the easing of the segment after it. Easings between the keys are reversed with
+    # them, and the easing after the last key stays there.
     turned = {chosen[0].frame: chosen[0].with_easing_of(chosen[-1])}
     for before, key in pairwise(chosen):
         turned[key.frame] = key.with_easing_of(before, backwards=True)
@@ -173,7 +170,7 @@ def with_reversed_keys(
 def with_scaled_keys(
     keys: Keys[Key], frames: Collection[int], factor: float, first: int | None = None
 ) -> Keys[Key]:
-    """Return a row with the keys at some frames moved apart or together around one that stays."""
+    """Return the row with the keys at some frames scaled around a fixed frame."""
     chosen = keys_at_frames(keys, frames)
     stays = min(frames, default=0) if first is None else first
     scale = TimeScale(stays, factor)
@@ -184,13 +181,13 @@ def with_scaled_keys(
 
 
 def with_easing(keys: Keys[Key], frames: Collection[int], easing: Easing) -> Keys[Key]:
-    """Return a row in which time runs so from the keys at some frames to the next ones."""
+    """Return the row with this easing after the keys at some frames."""
     chosen = [key for key in keys_at_frames(keys, frames) if key.easing != easing]
     return with_replaced_keys(keys, {key.frame: replace(key, easing=easing) for key in chosen})
 
 
 def with_tangent_mode(keys: Keys[Key], frames: Collection[int], passing: TangentMode) -> Keys[Key]:
-    """Return a row whose keys at some frames are passed so; what was held is no longer."""
+    """Return the row with this tangent mode at some frames; a hold ends."""
     changed = {}
     for key in keys_at_frames(keys, frames):
         if key.shown_tangent_mode is passing:

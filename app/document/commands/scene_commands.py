@@ -1,4 +1,4 @@
-"""Commands on the scene: how long it is, what of it plays and is exported, and its markers."""
+"""Commands on the document's frames, playback, export settings, canvas and markers."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -22,13 +22,12 @@ KEY_OUTSIDE = (
 
 @command("Set frames per second")
 def set_fps(document: Document, fps: float) -> Document:
-    """Set how fast the animation plays."""
     return document if fps == document.fps else replace(document, fps=float(fps))
 
 
 @command("Set frames")
 def set_frames(document: Document, frames: FrameRange) -> Document:
-    """Set the first and last frame, which cut the ranges in them; no key may be left outside."""
+    """Set the first and last frame and clip all ranges to them; a key outside is refused."""
     if frames == document.frames:
         return document
     ends = [frame for layer in document.layers for frame in layer.keyed_range]
@@ -51,7 +50,7 @@ def _with_ranges(
     to: Callable[[FrameRange], FrameRange | None],
     **changes: Any,
 ) -> Document:
-    """Return a document with other frames, each range in them where a function has it."""
+    """Return a document with other frames, and with its ranges mapped by a function."""
 
     def moved(part: FrameRange | None) -> FrameRange | None:
         return None if part is None else to(part)
@@ -63,37 +62,35 @@ def _with_ranges(
 
 @command("Set preview range")
 def set_preview(document: Document, preview: FrameRange | None) -> Document:
-    """Set the part of the frames that plays, or None for all of them; exports do not heed it."""
+    """Set the range of playback; None plays all frames. Exports ignore the range."""
     return document if preview == document.preview else replace(document, preview=preview)
 
 
 @command("Set loop")
 def set_loop(document: Document, *, loop: bool) -> Document:
-    """Set whether the end leads back to the beginning."""
     return document if loop == document.loop else replace(document, loop=loop)
 
 
 @command("Set export")
 def set_export(document: Document, export: ExportSettings) -> Document:
-    """Set what the next export makes."""
     return document if export == document.export else replace(document, export=export)
 
 
 @command("Set pairs of names")
 def set_mirror_names(document: Document, pairs: SidePairs) -> Document:
-    """Set which words, or whole names, tell layers and handles of the two sides apart."""
+    """Set the words or names for the two sides of layers and handles."""
     return document if pairs == document.pairs else replace(document, pairs=pairs)
 
 
 @command("Set canvas")
 def set_canvas(document: Document, size: tuple[int, int]) -> Document:
-    """Set width and height of the canvas, which begins at the origin; layers stay in place."""
+    """Set the size of the canvas, whose lower left corner is the origin; layers stay in place."""
     return document if size == document.canvas else replace(document, size=size)
 
 
 @command("Scale time")
 def scale_time(document: Document, factor: float) -> Document:
-    """Make the whole animation longer or shorter: keys, markers and all ranges of frames."""
+    """Scale all keys, markers and ranges around the first frame."""
     scale = TimeScale(document.frames.first, factor)
     if factor == 1:
         return document
@@ -126,7 +123,7 @@ def scale_time(document: Document, factor: float) -> Document:
 
 @command("Add marker")
 def add_marker(document: Document, frame: int, name: str | None = None) -> Document:
-    """Mark a frame, by default under a name that no other marker has."""
+    """Add a marker, by default under a free name."""
     taken = {marker.name for marker in document.markers}
     free = with_number("Marker", taken, len(document.markers) + 1)
     marker = Marker(frame=frame, name=free if name is None else name)
@@ -135,19 +132,16 @@ def add_marker(document: Document, frame: int, name: str | None = None) -> Docum
 
 @command("Rename marker")
 def rename_marker(document: Document, frame: int, name: str) -> Document:
-    """Give the marker at a frame another name."""
     return _with_marker(document, frame, replace(document.marker(frame), name=name))
 
 
 @command("Move marker")
 def move_marker(document: Document, frame: int, to: int) -> Document:
-    """Move the marker at a frame to another one."""
     return _with_marker(document, frame, replace(document.marker(frame), frame=to))
 
 
 @command("Delete marker")
 def delete_marker(document: Document, frame: int) -> Document:
-    """Take the marker at a frame away."""
     gone = document.marker(frame)
     return _with_markers(document, (marker for marker in document.markers if marker is not gone))
 
@@ -173,14 +167,7 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
 
 @command("Give a motion")
 def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
-    """Put a layer with a motion in its place; where nothing moved yet, the scene becomes its loop.
-
-    Parameters
-    ----------
-    moved : Layer
-        The layer with the keys that were made, `given` among its motions.
-    given : AppliedMotion
-    """
+    """Replace a layer by one with a motion preset; a document without motion becomes its loop."""
     is_new = not _moves(document)
     document = document.with_layer(moved)
     if is_new and given.first == document.frames.first:
@@ -191,7 +178,7 @@ def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Docu
 
 
 def _moves(document: Document) -> bool:
-    """Tell whether anything of a scene has a time."""
+    """Return whether any part of a document has motion."""
     has_time = bool(document.preview or document.markers or document.camera)
     has_time |= any(choice.keys[1:] for choice in document.switch_groups)
     return has_time or any(

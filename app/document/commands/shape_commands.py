@@ -1,4 +1,4 @@
-"""Commands on a layer's solver and in-betweens, and on the domain under its keys."""
+"""Commands on a layer's solver settings, cut-out and domain."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,32 +15,24 @@ from engine.variant import Variant
 
 @layer_command("Set interpolation")
 def set_variant(layer: Layer, variant: Variant) -> Layer:
-    """Set how the in-betweens are made."""
     return layer if variant == layer.variant else replace(layer, variant=variant)
 
 
 @layer_command("Set anchor")
 def set_anchor(layer: Layer, anchor: complex | None) -> Layer:
-    """Set the point whose place and turn are blended directly; None lets the engine choose."""
+    """Set the point whose position and rotation are interpolated directly; None is automatic."""
     return layer if anchor == layer.anchor else replace(layer, anchor=anchor)
 
 
 @layer_command("Set stillness")
 def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
-    """Let handles that two keys have at one place stay there in between, or move as they like."""
+    """Turn auto-pin of a layer on or off."""
     return layer if stillness == layer.has_auto_pins else replace(layer, has_auto_pins=stillness)
 
 
 @layer_command("Set bounds")
 def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
-    """Set the distortion that is allowed.
-
-    Parameters
-    ----------
-    poses : sequence of Pose, optional
-        One for each of the layer's, solved within the new bounds; without them all poses stay as
-        they are.
-    """
+    """Set the limits of distortion; `poses` are all poses solved within them, if they change."""
     if poses is not None:
         return layer.with_poses(poses, bounds=bounds)
     return layer if bounds == layer.bounds else replace(layer, bounds=bounds)
@@ -48,21 +40,21 @@ def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None
 
 @layer_command("Brush")
 def cut_with_brush(layer: Layer, stroke: Stroke) -> Layer:
-    """Keep or remove a part of the picture; the domain stays until it is replaced."""
+    """Keep or remove a part of the picture; the domain stays stale until it is rebuilt."""
     strokes = (*layer.cut_out.strokes, stroke)
     return replace(layer, cut_out=replace(layer.cut_out, strokes=strokes), is_stale=True)
 
 
 @layer_command("Cut by the knife")
 def cut_with_line(layer: Layer, slit: CutLine) -> Layer:
-    """Part what touches along a line; the domain stays until it is replaced."""
+    """Separate touching parts along a line; the domain stays stale until it is rebuilt."""
     slits = (*layer.cut_out.cut_lines, slit)
     return replace(layer, cut_out=replace(layer.cut_out, cut_lines=slits), is_stale=True)
 
 
 @layer_command("Change cut-out")
 def set_cut_out(layer: Layer, cut_out: CutOut) -> Layer:
-    """Set what tells the subject from its picture; the domain stays until it is replaced."""
+    """Set the cut-out of the subject; the domain stays stale until it is rebuilt."""
     if cut_out == layer.cut_out:
         return layer
     return replace(layer, cut_out=cut_out, is_stale=True)
@@ -72,16 +64,10 @@ def set_cut_out(layer: Layer, cut_out: CutOut) -> Layer:
 def replace_domain(
     layer: Layer, domain: MeshedDomain, meshing: Meshing, poses: Sequence[Pose]
 ) -> Layer:
-    """Put another domain under the same handles and keys.
+    """Replace the domain under the same handles and keys.
 
-    Parameters
-    ----------
-    domain : MeshedDomain
-        That of the layer's cut-out; it must contain every handle and the anchor.
-    meshing : Meshing
-        What it was built with.
-    poses : sequence of Pose
-        One for each of the layer's, solved again over the new cage.
+    The domain is built from the layer's cut-out and contains every handle and the anchor. All poses
+    are solved over its cage.
     """
     unknown = {name: value for name, value in layer.unknown.items() if name != "domain"}
     return layer.with_poses(

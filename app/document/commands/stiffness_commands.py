@@ -1,4 +1,4 @@
-"""Commands on what a layer is made of. None of them changes a pose: later ones are solved so."""
+"""Commands on a layer's stiffness. They change no pose; later solves use the new stiffness."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -33,7 +33,7 @@ def paint_stiffness(
     amount: float,
     softness: float = 0.5,
 ) -> Layer:
-    """Paint along a stroke, as `brushed_stiffness` has it."""
+    """Paint stiffness along a stroke by `brushed_stiffness`."""
     require_stiffness_amount(amount)
     require(radius > 0, f"The radius of a brush is above 0, not {radius:g}.")
     require(0 <= softness <= 1, f"A brush is soft from 0 to 1, not {softness:g}.")
@@ -45,13 +45,13 @@ def paint_stiffness(
 
 @layer_command("Clear stiffness")
 def clear_stiffness(layer: Layer) -> Layer:
-    """Take back all that is painted; bones stay."""
+    """Delete all painted stiffness; bones stay."""
     return layer if layer.stiffness is None else replace(layer, stiffness=None)
 
 
 @layer_command("Add bone")
 def add_bone(layer: Layer, ends: tuple[int, int], amount: float = DEFAULT_BONE_STIFFNESS) -> Layer:
-    """Add a bone between two handles, which must not leave the drawing on its way."""
+    """Add a bone between two handles; the straight bone must stay inside the drawing."""
     bone = Bone(ends=ends, stiffness=amount)
     names = [layer.handle(identity).name for identity in ends]
     if any(other.is_between(ends) for other in layer.bones):
@@ -62,14 +62,12 @@ def add_bone(layer: Layer, ends: tuple[int, int], amount: float = DEFAULT_BONE_S
 
 @layer_command("Delete bone")
 def remove_bone(layer: Layer, ends: tuple[int, int]) -> Layer:
-    """Remove the bone between two handles."""
     gone = _bone(layer, ends)
     return replace(layer, bones=tuple(bone for bone in layer.bones if bone is not gone))
 
 
 @layer_command("Set bone strength")
 def set_bone_stiffness(layer: Layer, ends: tuple[int, int], amount: float) -> Layer:
-    """Set how stiff the bone between two handles is."""
     old = _bone(layer, ends)
     if old.stiffness == amount:
         return layer
@@ -79,17 +77,17 @@ def set_bone_stiffness(layer: Layer, ends: tuple[int, int], amount: float) -> La
 
 @layer_command("Show or hide bones")
 def set_bones_visible(layer: Layer, *, shown: bool) -> Layer:
-    """Show all bones of a layer or none; they act either way."""
+    """Show or hide all bones of a layer; hidden bones act too."""
     bones = tuple(replace(bone, is_shown=shown) for bone in layer.bones)
     return layer if bones == layer.bones else replace(layer, bones=bones)
 
 
 @layer_command("Mirror material")
 def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
-    """Give both sides of a layer what one of them has.
+    """Make the stiffness of a layer symmetric.
 
-    Where the drawing at the mirror image of a place differs more from the usual material, it is
-    taken over. Bones are mirrored to the partners of their handles, by name.
+    At each point, the value farther from 1 of the point and its mirror image wins. Bones are copied
+    to the partners of their handles by name.
     """
     stiffness, domain = layer.stiffness, layer.domain
     if stiffness is not None:

@@ -1,6 +1,6 @@
-"""Commands on tracks and springs, the clocks of single handles.
+"""Commands on tracks and springs.
 
-A track is told by any of its handles. Its keys are at frames of its own, without its delay.
+Any handle of a track identifies the track. Its keys are at their own frames, without the delay.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -22,13 +22,12 @@ from app.errors import LissomError
 
 @layer_command("Set track")
 def put_track(layer: Layer, track: Track) -> Layer:
-    """Give handles a track; they leave those that they were in, which go where none is left."""
+    """Give handles a track; they leave their former tracks, and empty tracks are deleted."""
     return _with_track(layer, track)
 
 
 @layer_command("Delete track")
 def remove_tracks(layer: Layer, handles: Collection[int]) -> Layer:
-    """Remove the tracks of some handles, and of those that they move with."""
     gone = [_track(layer, handle) for handle in handles]
     return _with_tracks(layer, (track for track in layer.tracks if track not in gone))
 
@@ -45,20 +44,20 @@ def put_track_key(
     easing: Easing = LINEAR,
     planted: bool = False,
 ) -> Layer:
-    """Give the key of a handle's track at a frame a place; where there is none, insert one.
+    """Set the position of a track key at a frame, or insert a key or a track.
 
     Parameters
     ----------
     place : complex
-        As the track has it, beside the pose or in the picture.
+        In the space of the track: relative to the pose, or in the picture.
     turn : float, optional
-        In radians; None keeps that of the key, or is 0.
+        In radians. None keeps the key's own, or 0 for a new key.
     velocity : complex, optional
-        Of a new key, in pixels a frame; one that is there keeps its own.
+        Of a new key, in pixels per frame. An existing key keeps its own.
     easing : Easing
-        Of ways that are new, as `key_commands.insert_key` has it.
+        Of new segments, as in `key_commands.insert_key`.
     planted : bool
-        Of a new track, where the handle has none.
+        Whether a new track is in scene space.
     """
     track = layer.track_of(handle)
     if track is not None and frame in track.key_frames:
@@ -74,28 +73,25 @@ def put_track_key(
 
 @layer_command("Paste keys of track")
 def put_track_keys(layer: Layer, handle: int, keys: Sequence[TrackKey]) -> Layer:
-    """Put keys at their frames in a handle's track, in place of those that are there."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_overwritten_keys(track.keys, keys))
 
 
 @layer_command("Move keys of track")
 def move_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
-    """Move the keys of a track at some frames by a number of frames."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_moved_keys(track.keys, frames, by))
 
 
 @layer_command("Copy keys of track")
 def copy_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
-    """Repeat the keys of a track at some frames a number of frames later, or earlier."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_copied_keys(track.keys, frames, by))
 
 
 @layer_command("Delete keys of track")
 def delete_track_keys(layer: Layer, handle: int, frames: Collection[int]) -> Layer:
-    """Delete the keys of a track at some frames; with the last one the track goes."""
+    """Delete the keys of a track at some frames; a track without keys is deleted."""
     track = _track(layer, handle)
     keys = retime.without_keys(track.keys, frames)
     if not keys:
@@ -107,7 +103,7 @@ def delete_track_keys(layer: Layer, handle: int, frames: Collection[int]) -> Lay
 def reverse_track_keys(
     layer: Layer, handle: int, frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Layer:
-    """Let a track run backwards between some of its keys, or in a span of frames."""
+    """Reverse a track between some of its keys, or in a range of frames."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_reversed_keys(track.keys, frames, span))
 
@@ -116,17 +112,14 @@ def reverse_track_keys(
 def scale_track_keys(
     layer: Layer, handle: int, frames: Collection[int], factor: float, first: int | None = None
 ) -> Layer:
-    """Move keys of a track apart or together in time, around the first of them or a frame."""
+    """Scale the frames of some track keys around the first of them, or around a frame."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_scaled_keys(track.keys, frames, factor, first))
 
 
 @layer_command("Set easing")
 def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing: Easing) -> Layer:
-    """Set how time runs from the keys of a track at some frames to the next ones.
-
-    They are passed at no velocity of their own any more.
-    """
+    """Set the easing after some keys of a track, which lose their own velocities."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_easing(_unled(track, frames), frames, easing))
 
@@ -135,10 +128,7 @@ def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing:
 def set_track_passing(
     layer: Layer, handle: int, frames: Collection[int], passing: TangentMode
 ) -> Layer:
-    """Set how a track passes its keys at some frames; one that held its place does no longer.
-
-    None of them has a velocity of its own any more.
-    """
+    """Set the tangent mode of some track keys, which lose their own velocities; a hold ends."""
     track = _track(layer, handle)
     return _with_keys(
         layer, track, retime.with_tangent_mode(_unled(track, frames), frames, passing)
@@ -147,25 +137,24 @@ def set_track_passing(
 
 @layer_command("Set delay")
 def set_delay(layer: Layer, handle: int, delay: int) -> Layer:
-    """Set by how many frames a track is late."""
     return _with(layer, handle, delay=delay)
 
 
 @layer_command("Set reach")
 def set_reach(layer: Layer, handle: int, reach: float) -> Layer:
-    """Set how far around a track's handles the body gives, from 0 to 1."""
+    """Set how far a track's displacement spreads around its handles, from 0 to 1."""
     return _with(layer, handle, reach=float(reach))
 
 
 @layer_command("Set turning")
 def set_turning(layer: Layer, handle: int, *, turns: bool) -> Layer:
-    """Let a track turn the shape at its handles, or leave that free."""
+    """Set whether a track rotates the shape at its handles."""
     return _with(layer, handle, turns=turns)
 
 
 @layer_command("Switch track on or off")
 def enable_track(layer: Layer, handle: int, *, enabled: bool) -> Layer:
-    """Let a track act, or not; its keys stay."""
+    """Turn a track on or off; its keys stay."""
     return _with(layer, handle, enabled=enabled)
 
 
@@ -178,13 +167,10 @@ def plant_track(
     *,
     planted: bool,
 ) -> Layer:
-    """Let a track's keys be places in the picture, or beside the pose.
+    """Change a track to scene space, or back to pose space.
 
-    Parameters
-    ----------
-    places, velocities : sequences of complex
-        What the keys have then, in their order; `app.motion` knows it. Without velocities they have
-        none of their own any more.
+    `app.motion` computes `places` and `velocities`, the values of the keys in the new space.
+    Without velocities the keys lose their own.
     """
     track = _track(layer, handle)
     velocities = velocities or [None] * len(places)
@@ -199,29 +185,27 @@ def plant_track(
 
 @layer_command("Set handles of track")
 def set_track_handles(layer: Layer, handle: int, handles: Sequence[int]) -> Layer:
-    """Set which handles a track moves, the first of which its keys are of."""
+    """Set the handles of a track; its keys belong to the first."""
     track = _track(layer, handle)
     return _with_track(layer, track_for_handles(layer, track, tuple(handles)), instead=track)
 
 
 @layer_command("Copy track")
 def copy_track(layer: Layer, handle: int, to: int) -> Layer:
-    """Give another handle the track of a handle, so that it is moved alike from where it is."""
     return _with_track(layer, track_for_handles(layer, _track(layer, handle), (to,)))
 
 
 @layer_command("Copy track mirrored")
 def mirror_track(layer: Layer, handle: int, pairs: SidePairs = PAIRS) -> Layer:
-    """Give the handles on the other side the track of a handle, mirrored.
+    """Copy a handle's track, mirrored, to the handles on the other side.
 
-    A handle without a partner keeps its track, and does its mirror image.
+    The track of a handle without a partner is mirrored in place.
     """
     return _with_track(layer, mirrored_track(layer, _track(layer, handle), pairs))
 
 
 @layer_command("Set spring")
 def put_spring(layer: Layer, spring: Spring) -> Layer:
-    """Let a handle follow by a spring, in place of the one that it has."""
     if layer.spring_of(spring.handle) == spring:
         return layer
     others = tuple(each for each in layer.springs if each.handle != spring.handle)
@@ -230,7 +214,6 @@ def put_spring(layer: Layer, spring: Spring) -> Layer:
 
 @layer_command("Delete spring")
 def remove_springs(layer: Layer, handles: Collection[int]) -> Layer:
-    """Let handles follow no longer."""
     springs = tuple(spring for spring in layer.springs if spring.handle not in handles)
     return layer if springs == layer.springs else replace(layer, springs=springs)
 
@@ -243,7 +226,7 @@ def _track(layer: Layer, handle: int) -> Track:
 
 
 def _unled(track: Track, frames: Collection[int]) -> tuple[TrackKey, ...]:
-    """Return the keys of a track, those at some frames without a velocity of their own."""
+    """Return the keys of a track; the keys at some frames lose their own velocities."""
     chosen = retime.keys_at_frames(track.keys, frames)
     return retime.with_replaced_keys(
         track.keys, {key.frame: key.without_velocity() for key in chosen}
@@ -251,7 +234,7 @@ def _unled(track: Track, frames: Collection[int]) -> tuple[TrackKey, ...]:
 
 
 def _with_track(layer: Layer, track: Track, *, instead: Track | None = None) -> Layer:
-    """Return the layer with a track, in place of another one; its handles leave theirs."""
+    """Return the layer with a track added or replaced; its handles leave their former tracks."""
     for handle in track.handles:
         layer.handle(handle)
     same = (each for each in layer.tracks if each.handles == track.handles)
@@ -264,7 +247,7 @@ def _with_track(layer: Layer, track: Track, *, instead: Track | None = None) -> 
 
 
 def _with_tracks(layer: Layer, tracks: Iterable[Track]) -> Layer:
-    """Return the layer with these tracks, itself if it has them."""
+    """Return the layer with these tracks, the same object without a change."""
     given = tuple(tracks)
     return layer if given == layer.tracks else replace(layer, tracks=given)
 

@@ -1,4 +1,4 @@
-"""What becomes of tracks, springs and bones where handles go, are put elsewhere, or are others."""
+"""Updates of tracks, springs and bones after handles change."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -11,7 +11,7 @@ from app.document.timing import Track, TrackKey
 
 
 def without_handles(layer: Layer, gone: Collection[int]) -> Layer:
-    """Return the layer whose tracks, springs and bones have nothing of some handles any more."""
+    """Return the layer without tracks, springs and bones of deleted handles."""
     tracks = (track_without_handles(layer, track, gone) for track in layer.tracks)
     springs = (
         replace(spring, root=None) if spring.root in gone else spring
@@ -28,7 +28,7 @@ def without_handles(layer: Layer, gone: Collection[int]) -> Layer:
 
 
 def with_moved_handle(layer: Layer, identity: int, position: complex) -> Layer:
-    """Return the layer whose tracks want what they did of a handle that is put elsewhere."""
+    """Return the layer with scene-space tracks adjusted to a handle's new position."""
     old = layer.handle(identity).position
     tracks = (
         _rebased_track(layer, track, old, position) if track.handles[0] == identity else track
@@ -41,10 +41,10 @@ def mirrored_track(layer: Layer, track: Track, pairs: SidePairs) -> Track:
     """Return a track mirrored at the layer's axis, for the partners of its handles."""
     axis = layer.axis
     partners = mirrored_handles(layer.handles, axis, layer.domain.outline, pairs)
-    # Two that lie together may have one partner.
+    # Handles that lie close together may have the same partner.
     handles = tuple(dict.fromkeys(partners.get(handle, handle) for handle in track.handles))
     old, new = (layer.handle(each[0]).position for each in (track.handles, handles))
-    # A drawing is hardly its own mirror image: what the partner is beside that of the handle.
+    # A drawing is rarely symmetric: the offset of the partner from the mirror image of the handle.
     beside = new - _reflected(old, axis)
     keys = (
         replace(
@@ -65,23 +65,23 @@ def _reflected(place: complex, axis: float) -> complex:
 
 
 def track_without_handles(layer: Layer, track: Track, gone: Collection[int]) -> Track | None:
-    """Return what is left of a track without some handles."""
+    """Return a track without some handles; None if no handle is left."""
     handles = tuple(handle for handle in track.handles if handle not in gone)
     return track_for_handles(layer, track, handles) if handles else None
 
 
 def track_for_handles(layer: Layer, track: Track, handles: tuple[int, ...]) -> Track:
-    """Return a track that moves other handles alike."""
+    """Return a track with the same displacements for other handles."""
     changed = replace(track, handles=handles)
     old, new = (layer.handle(each.handles[0]).position for each in (track, changed))
     return _rebased_track(layer, changed, old, new)
 
 
 def _rebased_track(layer: Layer, track: Track, old: complex, new: complex) -> Track:
-    """Return a track that was for a point of the drawing for another one.
+    """Return a track of one point of the drawing, moved to another point.
 
-    A planted key's place comes to be as far from it as the two points are apart in the pose of the
-    layer's nearest key; what is beside the pose stays so.
+    The positions of a scene-space track shift by the distance of the two points in the pose of the
+    layer's nearest key. Displacements in pose space stay the same.
     """
     if not track.is_scene_space or old == new:
         return track

@@ -1,7 +1,7 @@
-"""How layers stand among each other: groups, what they hang on, when they are seen, and where.
+"""Relations and channels of layers: groups, attachments, visibility, switches, layer keys.
 
 In: ids of layers, and frames.
-Out: groups, joints, switches and choices; keys of the camera, and of layers as a whole.
+Out: groups, attachments, visibility keys, switch groups; keys of the camera and of whole layers.
 Imports: the values of `app.document`.
 """
 

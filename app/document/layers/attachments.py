@@ -1,4 +1,4 @@
-"""What a layer hangs on."""
+"""Keys of a layer's parent."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -21,29 +21,28 @@ from app.document.timing import Cycle, count_changes_within
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Attachment:
-    """The joint by which a layer hangs on another one from a frame on, or on nothing any more.
+    """A joint that attaches a layer to a parent from a frame on, or detaches it.
 
-    The anchor of the layer is where the point of its parent is, at every time: the one freedom
-    that the in-betweens leave (Section 7, "a user curve for the anchor"), so that the layer is no
-    more distorted than without.
+    The layer's anchor follows the point of the parent at every time. The in-betweens leave this
+    freedom open (Section 7, "a user curve for the anchor"), so attachment adds no distortion.
     """
 
-    parent: int | None  # the id of the parent; None lets the layer go
-    parent_point: complex = 0j  # the point of the parent, where it is drawn at rest
-    inherits_rotation: bool = True  # whether the layer turns with the parent around that point
+    parent: int | None  # layer id; None detaches the layer
+    parent_point: complex = 0j  # point of the undeformed parent
+    inherits_rotation: bool = True  # whether the layer rotates with the parent around the point
     rest_rotation: float = (
-        0.0  # the parent's turn, in radians, at which the layer is as it is by itself
+        0.0  # rotation of the parent, in radians, at which the layer has its own rotation
     )
-    frame: int = 0  # from which on it holds, until the next one
-    # Where the anchor is beside that point, as the parent is turned where the layer turns with it.
+    frame: int = 0  # first frame of the attachment
+    # Offset of the anchor from the point. It rotates with the parent if the layer does.
     offset: complex = 0j
-    # Whether nothing jumps at that frame: in place of `rest` and `offset`, the layer goes on as it
-    # is beside the point and turned then; one that is let go stays there.
+    # Whether the layer keeps its place in the scene at that frame; replaces `rest_rotation` and
+    # `offset`. A detached layer stays there.
     keep_world_transform: bool = False
-    # The frame at which it was as it is kept, where that is an earlier one; one that keeps only.
+    # The frame whose placement is kept, if earlier than `frame`. Needs `keep_world_transform`.
     kept_since: int | None = None
-    # Whether it goes over, from there, to where the next joint has the layer when that begins, so
-    # that nothing jumps then either; one that keeps only.
+    # Whether the layer blends to its placement under the next attachment, so that nothing jumps
+    # there. Needs `keep_world_transform`.
     blends_to_next: bool = False
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -64,17 +63,16 @@ class Attachment:
 
     @property
     def kept_from(self) -> int:
-        """The frame at which a layer is as a joint keeps it."""
+        """The frame whose placement the attachment keeps."""
         return self.frame if self.kept_since is None else self.kept_since
 
     def retimed(self, to: Callable[[int], int]) -> Self:
-        """Return the joint with its frames where a function has them."""
+        """Return the attachment with its frames mapped by a function."""
         since = None if self.kept_since is None else to(self.kept_since)
         return replace(self, frame=to(self.frame), kept_since=since)
 
 
 def require_attachments(joints: tuple[Attachment, ...]) -> None:
-    """Raise a `LissomError` unless each joint comes after the one before."""
     for before, after in pairwise(joints):
         require(
             before.frame < after.frame,
@@ -83,10 +81,10 @@ def require_attachments(joints: tuple[Attachment, ...]) -> None:
 
 
 def attachments_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:
-    """Tell whether what a layer hangs on changes within a cycle of it, and repeats with that.
+    """Return whether the parent of a layer changes within a cycle and repeats with the cycle.
 
-    It does where nothing of it is said in the repeats, and at the end of the stretch at most that
-    the layer hangs on what it hung on at the beginning. Else it has its own time.
+    The attachments repeat if no key lies in the repeats. A key at the end of the cycle may only
+    restore the attachment of the beginning.
     """
     begun = _begun(joints, cycle)
     return cycle.contains_changes(
@@ -98,11 +96,11 @@ def attachments_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:
 def repeated_joints(
     joints: tuple[Attachment, ...], cycles: tuple[Cycle, ...], end: int
 ) -> tuple[Attachment, ...]:
-    """Return joints with those of cycles in each repeat, up to the scene's last frame.
+    """Return attachments with copies in each repeat of the cycles, up to the last frame.
 
-    Each repeat, and what follows the last one, begins as the stretch does; the last joint before
-    leads there. One that keeps does so from its frame in each repeat, so that nothing jumps even
-    where what carries the layer goes on meanwhile.
+    Each repeat, and the time after the last, begins like the cycle; the attachment before it blends
+    to that state. With `keep_world_transform` each copy keeps the placement at its own frame.
+    Nothing then jumps, even if the parent moves on meanwhile.
     """
     for cycle in cycles:
         if not (
@@ -129,7 +127,7 @@ def repeated_joints(
                     again[at] = replace(joint, frame=at)
             start += cycle.period
         if cycle.until is None and start <= LAST_FRAME:
-            # To which a repeat leads that the scene's end cuts off.
+            # The last repeat, which the document's end cuts off, blends to this key.
             again[start] = replace(begun, frame=start, kept_since=since)
         again |= {joint.frame: joint for joint in others}
         joints = tuple(again[frame] for frame in sorted(again))
@@ -137,13 +135,13 @@ def repeated_joints(
 
 
 def _is_again(joint: Attachment, begun: Attachment, cycle: Cycle) -> bool:
-    """Tell whether a joint is at a cycle's end, and that with which the cycle begins."""
+    """Return whether the key at a cycle's end equals the attachment at its beginning."""
     same = replace(joint, frame=begun.frame, kept_since=None, blends_to_next=begun.blends_to_next)
     is_alike = joint.parent == begun.parent and (joint.keep_world_transform or same == begun)
     return joint.frame == cycle.last and is_alike
 
 
 def _begun(joints: Sequence[Attachment], cycle: Cycle) -> Attachment:
-    """Return the joint with which a cycle begins; before the first one a layer is by itself."""
+    """Return the attachment at a cycle's beginning; without one, an attachment to no parent."""
     before = [joint for joint in joints if joint.frame <= cycle.first]
     return before[-1] if before else Attachment(parent=None, frame=cycle.first)

@@ -1,34 +1,34 @@
-"""Groups of layers, and how colours meet."""
+"""Groups of layers, and blend modes."""
 
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 from app.document.checks import NOTHING, Unknown, require
 
-# How colours of what is in front meet those of what lies behind ("Compositing and Blending Level
+# How the colours of a layer are blended with the colours behind it ("Compositing and Blending Level
 # 1" of the W3C, Section 10).
 BlendMode = Literal["normal", "multiply", "screen"]
 BLENDS: tuple[BlendMode, ...] = get_args(BlendMode)
-# A group passes through where each of its layers meets all that lies behind it, as if there were
-# no group, and what comes of that is faded in; else they meet each other only, and then as one what
-# lies behind.
+# The layers of a pass-through group blend directly with the backdrop; the group's opacity is
+# applied to the result. The layers of any other group blend with each other first, and the result
+# blends with the backdrop.
 GroupBlend = Literal["pass-through", BlendMode]
 GROUP_BLENDS: tuple[GroupBlend, ...] = ("pass-through", *BLENDS)
-MAX_GROUP_DEPTH = 50  # groups in each other
+MAX_GROUP_DEPTH = 50  # nested groups
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Group:
-    """Layers that are painted together, faded and hidden as one.
+    """Layers that are composited, faded and hidden together.
 
-    Each run of them in the order of painting is composited by itself.
+    Each run of members in the draw order is composited separately.
     """
 
-    name: str  # with those of the groups around it, as "limbs/left"; unique in the document
+    name: str  # path with the groups around it, such as "limbs/left"; unique in the document
     opacity: float = 1.0  # in [0, 1]
-    hidden: bool = False  # whether none of its layers is seen at any time
+    hidden: bool = False  # whether its layers are hidden at all frames
     blend: GroupBlend = "pass-through"
-    clipped: bool = False  # as of a layer
+    clipped: bool = False  # as for a layer
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -41,7 +41,7 @@ class Group:
 
 
 def require_path(path: str) -> None:
-    """Raise a `LissomError` unless names are divided by single slashes, as in "limbs/left"."""
+    """Raise a `LissomError` unless the path is names separated by slashes, as in "limbs/left"."""
     names = path.split("/")
     require(
         all(name and name == name.strip() for name in names),
@@ -53,12 +53,12 @@ def require_path(path: str) -> None:
 
 
 def ancestor_paths(path: str) -> tuple[str, ...]:
-    """Return the paths of the groups around a group, the outermost first, and its own."""
+    """Return the paths of the groups around a group, the outermost first, and its own path."""
     names = path.split("/") if path else []
     return tuple("/".join(names[: depth + 1]) for depth in range(len(names)))
 
 
 def common_path(one: str, other: str) -> str:
-    """Return the path of the innermost group that has both of these in it, "" where none has."""
+    """Return the path of the innermost group around both; "" without one."""
     both = [a for a, b in zip(ancestor_paths(one), ancestor_paths(other), strict=False) if a == b]
     return both[-1] if both else ""

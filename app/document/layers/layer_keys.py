@@ -1,4 +1,4 @@
-"""Keys of the camera, and of layers moved as a whole, of their opacity and of their order."""
+"""Keys of the camera, and of a layer's transform, opacity and draw order."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,16 +10,16 @@ from app.document.checks import require, require_frame, require_point
 from app.document.timing import MAX_TRACK_ROTATION, BaseKey, TangentMode
 from app.errors import LissomError
 
-MAX_ZOOM: Final = 1000.0  # and as many times smaller
+MAX_ZOOM: Final = 1000.0  # largest zoom; its inverse is the smallest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CameraKey(BaseKey):
-    """What the camera shows at a frame: the canvas's rectangle, elsewhere, smaller and turned."""
+    """A rectangle with the canvas's proportions that the frame shows."""
 
-    centre: complex  # the point of the plane in the middle
-    zoom: float = 1.0  # how many times as large as on the canvas things are seen; blended by log
-    turn: float = 0.0  # by how much things are seen turned, counter-clockwise, in radians
+    centre: complex  # point of the scene in the centre of the frame
+    zoom: float = 1.0  # magnification relative to the canvas; interpolated by its logarithm
+    turn: float = 0.0  # rotation of the picture, counter-clockwise, in radians
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
@@ -33,10 +33,10 @@ class CameraKey(BaseKey):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransformKey(BaseKey):
-    """Where a whole layer is at a frame, beside where its poses have it."""
+    """A rigid motion of the whole layer, applied after its pose."""
 
     shift: complex = 0j  # pixels
-    turn: float = 0.0  # counter-clockwise around its pivot, in radians
+    turn: float = 0.0  # counter-clockwise around the pivot, in radians
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
@@ -46,7 +46,7 @@ class TransformKey(BaseKey):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OpacityKey(BaseKey):
-    """How opaque a layer is at a frame; by itself it fades evenly."""
+    """Opacity of a layer at a frame; the default tangent mode gives linear fades."""
 
     opacity: float  # in [0, 1]
     tangent_mode: TangentMode = TangentMode.CORNER
@@ -58,13 +58,10 @@ class OpacityKey(BaseKey):
 
 @dataclass(frozen=True, slots=True)
 class DrawOrderKey:
-    """From a frame on a layer is painted right in front of another one, or right behind it.
-
-    Beside nothing it is painted where it lies in the order of all layers.
-    """
+    """From a frame on, a layer is drawn next to another; None restores the document's order."""
 
     frame: int
-    beside: int | None  # the id of the other layer
+    beside: int | None  # id of the other layer
     in_front: bool = True
 
     def __post_init__(self) -> None:
@@ -72,7 +69,6 @@ class DrawOrderKey:
 
 
 def require_ascending_keys(keys: Sequence[BaseKey] | Sequence[DrawOrderKey], what: str) -> None:
-    """Raise a `LissomError` unless each of some keys comes after the one before."""
     for before, after in pairwise(key.frame for key in keys):
         if before >= after:
             raise LissomError(f"{what} has a key at frame {after} after that at frame {before}.")

@@ -1,4 +1,4 @@
-"""When layers are seen: each by itself, or one of several that take turns."""
+"""Visibility keys and switch groups."""
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from app.errors import LissomError
 
 @dataclass(frozen=True, slots=True)
 class VisibilityKey:
-    """From a frame on a layer is seen, or is not."""
+    """From a frame on, the layer is visible or hidden."""
 
     frame: int
     visible: bool
@@ -22,7 +22,6 @@ class VisibilityKey:
 
 
 def require_ascending_visibility_keys(switches: tuple[VisibilityKey, ...]) -> None:
-    """Raise a `LissomError` unless each switch comes after the one before."""
     for before, after in pairwise(switches):
         require(
             before.frame < after.frame,
@@ -31,7 +30,7 @@ def require_ascending_visibility_keys(switches: tuple[VisibilityKey, ...]) -> No
 
 
 class SwitchKey(NamedTuple):
-    """From a frame on one layer of a choice is seen, by its id."""
+    """From a frame on, the layer with this id is the visible one of its switch group."""
 
     frame: int
     layer: int
@@ -39,15 +38,15 @@ class SwitchKey(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SwitchGroup:
-    """Layers of one place that take turns, such as mouths: of these exactly one is seen.
+    """Layers of which exactly one is visible, such as mouths.
 
-    It alone decides whether they are seen, whatever is said of each of them.
+    The switch group alone decides their visibility; their own settings do not count.
     """
 
     name: str  # unique in the document
-    layers: tuple[int, ...]  # by their ids, at least two, in the order in which they are offered
-    # In the order of their frames; before the first one its layer is seen, and without any the
-    # first layer.
+    layers: tuple[int, ...]  # layer ids, at least two, in the order of the list
+    # In the order of their frames. The first key holds before its frame too; without keys, the
+    # first layer is visible.
     keys: tuple[SwitchKey, ...] = ()
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -70,10 +69,10 @@ class SwitchGroup:
                 )
 
     def layer_at(self, frame: float) -> int:
-        """Return the id of the layer that is seen at a frame."""
+        """Return the id of the visible layer at a frame."""
         count = self.count_keys_until(frame)
         return self.keys[max(count - 1, 0)].layer if self.keys else self.layers[0]
 
     def count_keys_until(self, frame: float) -> int:
-        """Return how many turns have begun at a frame."""
+        """Return the number of switch keys at or before a frame."""
         return bisect_right(self.keys, frame, key=attrgetter("frame"))

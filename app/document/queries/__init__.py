@@ -1,7 +1,7 @@
-"""What follows from a document: which keys a moment blends, where tracks are, what falls short.
+"""Values derived from a document: segments, tangents, tracks, target errors, layer states.
 
 In: layers, poses and handles.
-Out: answers; nothing is changed.
+Out: derived values; the document does not change.
 Imports: the values of `app.document`.
 """
 

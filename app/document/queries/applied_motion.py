@@ -1,4 +1,4 @@
-"""Whether motions that a layer was given are still as they were made."""
+"""Detection of edits to applied motion presets."""
 
 import hashlib
 
@@ -9,11 +9,10 @@ from app.document.rig import AppliedMotion
 
 
 def digest_keys(layer: Layer, first: int, last: int) -> str:
-    """Return a digest of what is keyed from one frame to another, both included.
+    """Return a digest of the keys from one frame to another, both included.
 
-    It is of what a person edits: where keys are, what they want of handles, how they are passed,
-    and what repeats. Poses that are solved anew, within other limits or on another mesh, change
-    nothing of it.
+    The digest covers what a person edits: frames, targets, easings, tangent modes, depths and
+    cycles. Solving the poses again within other limits or on another mesh does not change it.
     """
     digest = hashlib.sha256()
     for key in layer.keys:
@@ -26,12 +25,12 @@ def digest_keys(layer: Layer, first: int, last: int) -> str:
 
 
 def is_motion_unedited(layer: Layer, given: AppliedMotion) -> bool:
-    """Tell whether nothing of a motion was edited since it was given to a layer."""
+    """Return whether the keys are as the motion preset made them."""
     return digest_keys(layer, given.first, given.last) == given.digest
 
 
 def motion_notices(document: Document) -> tuple[str, ...]:
-    """Return a line for each layer of which the file has motions that are not shown."""
+    """Return a notice for each layer with motions that this version cannot read."""
     notices = []
     for layer in document.layers:
         unread = layer.unread_motions
@@ -45,7 +44,7 @@ def motion_notices(document: Document) -> tuple[str, ...]:
 
 
 def _key_content(key: Keyframe, first: int) -> tuple[object, ...]:
-    """Return what a person says of a key, as its digest takes it."""
+    """Return the editable values of a key for the digest."""
     wanted = [
         (identity, target.position, target.rotation)
         for identity, target in sorted(key.pose.targets.items())

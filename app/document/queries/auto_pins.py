@@ -15,46 +15,32 @@ from app.document.timing import HOLD
 from engine.arrays import Booleans, Floats, freeze
 from engine.variant import Baseline
 
-SAME_TARGET_DISTANCE = 0.5  # pixels between two targets that are at one place
+SAME_TARGET_DISTANCE = 0.5  # pixels between two targets that count as equal
 
 
 class PinnedSegment(NamedTuple):
-    """What is pinned from one key to the next.
+    """The pins of a segment."""
 
-    Parameters
-    ----------
-    is_pinned : bool, shape (h,)
-        Which handles stay.
-    fading : bool, shape (2, h)
-        Which of the others stay in the segment before, and in the one after.
-    beyond : tuple of int or None
-        The numbers of these segments, where something fades.
-    content : tuple
-        Equal where the pins are, as long as the poses are there.
-    poses : tuple of Pose
-        All that the pins follow from.
-    """
-
-    is_pinned: Booleans
-    fading: Booleans
-    neighbours: tuple[int | None, int | None]
-    content: tuple[object, ...]
-    poses: tuple[Pose, ...]
+    is_pinned: Booleans  # (h,): handles pinned throughout the segment
+    fading: Booleans  # (2, h): other handles, pinned in the segment before, and after
+    neighbours: tuple[int | None, int | None]  # their numbers, if a pin fades to or from them
+    content: tuple[object, ...]  # equal for equal pins, as long as the poses exist
+    poses: tuple[Pose, ...]  # all poses that determine the pins
 
     def weights(self, time: float) -> Floats:
-        """Return how much each handle is held at a time of the segment, from 0 to 1."""
+        """Return the pin weight of each handle at a time of the segment, from 0 to 1."""
         rest = 1.0 - time
         fading: Floats = rest**3 * self.fading[0] + time**3 * self.fading[1]
         return np.where(self.is_pinned, 1.0, fading)
 
 
 def pinned_handles(clip: Clip) -> Booleans:
-    """Return which handles (k, h) stay in which of a clip's segments."""
+    """Return a table (k, h): whether a handle is pinned in a segment of the clip."""
     return _pinned(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
 def pinned_segments(clip: Clip) -> tuple[PinnedSegment | None, ...]:
-    """Return what is pinned in each of a clip's segments; None where nothing is."""
+    """Return the pins of each segment of the clip; None without pins."""
     return _segments(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
@@ -73,7 +59,7 @@ def _pinned(
         return freeze(pinned)
     for number, span in enumerate(clip_segments(clip)):
         one, other = keys[span.first], keys[span.last]
-        # A whole turn between equal targets is meant: it would be unwound.
+        # Full turns between equal targets are intended; a pin would undo them.
         if one.easing == HOLD or one.revolutions:
             continue
         for index, handle in enumerate(layer.handles):
@@ -129,7 +115,7 @@ def _segments(
 
 
 def _velocity_sources(clip: Clip, number: int) -> tuple[object, ...]:
-    """Return what the velocities of a segment follow from, beside its poses."""
+    """Return the values that determine the velocities of a segment, besides its poses."""
     transit, span = pose_segments(clip)[number], clip_segments(clip)[number]
     maps = tuple((id(key.pose.phi), id(key.pose.psi)) for key in transit.keys)
     easing = clip.keys[span.first].easing

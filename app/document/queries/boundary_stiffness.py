@@ -1,4 +1,4 @@
-"""Where a layer is stiffer or softer, by what is painted and by its bones."""
+"""Stiffness along a layer's boundary, from paint and bones."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -14,25 +14,25 @@ from engine.domain.material import brush_weights, limb_weights
 from engine.errors import EngineError
 from engine.maps import Boundary, stiffness_along_loops
 
-A_SIDE = 4  # points that are looked at along a side of the outline
+A_SIDE = 4  # samples per side of the outline
 
 
 class StiffOutline(NamedTuple):
-    """Points of a layer's outline and of its holes', in their order, and how stiff it is there."""
+    """Points along the outline and the holes of a layer, in order, with their stiffness."""
 
     points: Complexes
     stiffness: Floats
 
 
 def with_stiffness(layer: Layer, boundary: Boundary) -> Boundary:
-    """Return the boundary of a layer's domain with the layer's material."""
+    """Return the boundary of the layer's domain with the layer's stiffness."""
     points = np.split(boundary.points, boundary.starts[1:])
     return boundary.stiffened_at_samples(_stiffness_at(layer, points))
 
 
 @memoized_on
 def stiff_outline(layer: Layer) -> StiffOutline:
-    """Return where a layer is stiff or soft, at the vertices of its loops and between them."""
+    """Return the stiffness at the vertices of a layer's loops and between them."""
     share = np.arange(A_SIDE) / A_SIDE
     points = [
         (loop[:, None] + (np.roll(loop, -1) - loop)[:, None] * share).ravel()
@@ -42,7 +42,7 @@ def stiff_outline(layer: Layer) -> StiffOutline:
 
 
 def have_same_stiffness(layer: Layer, other: Layer) -> bool:
-    """Tell whether two layers of one domain are stiff in the same places."""
+    """Return whether two layers with the same domain have the same stiffness."""
     own, others = (
         [(bone.stiffness, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
         for each in (layer, other)
@@ -51,7 +51,7 @@ def have_same_stiffness(layer: Layer, other: Layer) -> bool:
 
 
 def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
-    """Tell whether a pose spends such a share of the tighter limits where its layer is stiff."""
+    """Return whether a pose uses more than a share of the tighter limits at stiff points."""
     points, stiffness = stiff_outline(layer)
     is_stiff = stiffness > 1.0
     if not is_stiff.any():
@@ -59,7 +59,7 @@ def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
     f, g = layer.map_of(pose).derivatives(points[is_stiff])
     a, b = np.abs(f), np.abs(g)
     limits = layer.bounds.scaled_by(stiffness[is_stiff])
-    # A map that folds spends them, too: its logarithms are infinite or no numbers.
+    # A folded map counts too: its logarithms are infinite or NaN.
     with np.errstate(all="ignore"):
         spent = [
             b / a / limits.k,
@@ -70,9 +70,9 @@ def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:
 
 
 def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:
-    """Return the stiffness at points of each loop in its order, from its first vertex on.
+    """Return the stiffness at points of each loop, ordered from its first vertex.
 
-    A bone that has come to leave the drawing, as by another cut-out, does nothing.
+    A bone that leaves the drawing, as after a change of the cut-out, is ignored.
     """
     every = np.concatenate(points)
     parts = [np.ones(len(every))]
@@ -88,12 +88,9 @@ def _stiffness_at(layer: Layer, points: Sequence[Complexes]) -> Floats:
 
 
 def bone_region(layer: Layer, bone: Bone, points: Complexes) -> Floats:
-    """Return how much of a bone's stiffness points of the drawing's boundary have (t,), 0 to 1.
+    """Return the share (t,), from 0 to 1, of a bone's stiffness at points of the boundary.
 
-    Raises
-    ------
-    EngineError
-        If the bone leaves the drawing or crosses a hole.
+    Raises an `EngineError` if the bone leaves the drawing or crosses a hole.
     """
     start, end = (layer.handle(identity).position for identity in bone.ends)
     return limb_weights(layer.domain.loops, start, end, points)
@@ -107,18 +104,11 @@ def brushed_stiffness(
     amount: float,
     softness: float = 0.5,
 ) -> tuple[Floats | None, bool]:
-    """Return what is painted on a layer after a stroke, and whether that reached any outline.
+    """Return the painted stiffness after a brush stroke, and whether the stroke met an outline.
 
-    Parameters
-    ----------
-    places : sequence of complex
-        The centres of its dabs, in pixels of the canvas, y up.
-    radius : float
-        In pixels.
-    amount : float
-        The stiffness, which a dab brings to the outline within its radius.
-    softness : float
-        The part of the radius over which that becomes less, 0 to 1.
+    The places are the centres of the dabs, in pixels of the canvas, y up. Within the radius of a
+    dab, in pixels, the stiffness of the outline becomes `amount`. `softness` is the share of the
+    radius over which the effect fades, 0 to 1.
     """
     loops = layer.domain.loops
     shares = brush_weights(loops, as_points(list(places), "places"), radius, softness)

@@ -1,4 +1,4 @@
-"""A layer in the time of its scene."""
+"""A layer on the timeline of its document."""
 
 from dataclasses import dataclass, fields
 from operator import attrgetter
@@ -10,7 +10,7 @@ from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
 from engine.variant import Baseline
 
-# Fields of a layer, and of its handles, that its motion does not follow from. All others count.
+# Fields of a layer, and of its handles, that do not affect its motion. All other fields do.
 UNMOVING = {
     *("name", "next_handle", "library", "mirror", "motions", "unread_motions", "reference"),
     *(
@@ -36,30 +36,26 @@ _of_handle = attrgetter(
 
 @memoized_on
 def motion_source(layer: Layer) -> tuple[object, ...]:
-    """Return all of a layer that its motion follows from; equal where the motion is."""
+    """Return the fields that determine a layer's motion; equal values mean equal motion."""
     stiffness = None if layer.stiffness is None else layer.stiffness.tobytes()
     return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Clip:
-    """A layer in the time of its scene: all that its motion follows from.
-
-    Clips are equal where the motion is.
-    """
+    """A layer on its document's timeline; two clips are equal if their motion is."""
 
     layer: Layer
-    frames: FrameRange  # of the scene
+    frames: FrameRange  # of the document
     loop: bool
-    fps: float  # springs swing in seconds
-    # A method that the layer's own variant is compared with, in place of it.
+    fps: float  # because springs swing in seconds
+    # A rival method to compare with the layer's own variant.
     baseline: Baseline | None = None
-    # Those of the layers that it hangs on at some time, by themselves, where springs and planted
-    # tracks follow from them.
+    # Clips of all ancestors, without ancestors of their own. Set only if springs or scene-space
+    # tracks depend on the motion of the ancestors.
     parents: "tuple[Clip, ...]" = ()
 
     def __eq__(self, other: object) -> bool:
-        """Tell whether the motion of two clips is the same, whatever else the layers are like."""
         if not isinstance(other, Clip):
             return NotImplemented
         return self._time == other._time and (
@@ -76,17 +72,15 @@ class Clip:
 
     @property
     def keys(self) -> tuple[Keyframe, ...]:
-        """The layer's keys."""
         return self.layer.keys
 
     @property
     def period(self) -> int:
-        """How many frames a loop takes until it comes round."""
+        """Length of the loop in frames."""
         return self.frames.last - self.frames.first
 
 
 def clip_of(document: Document, layer: int) -> Clip:
-    """Return the clip of the layer with this id."""
     own = document.layer(layer)
     feels = [each.enabled for each in own.springs]
     feels += [each.enabled and each.is_scene_space for each in own.tracks]

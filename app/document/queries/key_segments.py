@@ -1,8 +1,8 @@
-"""The intervals between the keys of a clip: in a line, and round in its cycles.
+"""The segments between the keys of a clip, also within its cycles.
 
-A cycle has the intervals between its keys once, and one more from its last key to its first one,
-however often it repeats. What leads to it ends at its first key, and what goes on from it begins
-at the key that it shows when its repeats end.
+A cycle has each segment between its keys once, and one from its last key to its first. The number
+of repeats does not matter. The segment before a cycle ends at the cycle's first key. The segment
+after it begins at the key that the cycle shows at the end of its repeats.
 """
 
 from bisect import bisect_left, bisect_right
@@ -17,7 +17,7 @@ from app.document.timing import Cycle
 
 
 class Segment(NamedTuple):
-    """From one key to the next: their indices, from which frame on, and in how many frames."""
+    """From one key to the next: key indices, first frame and length in frames."""
 
     first: int
     last: int
@@ -25,49 +25,50 @@ class Segment(NamedTuple):
     frames: int
 
     def share(self, frame: float) -> float:
-        """Return which share of its frames is over at a frame."""
+        """Return the elapsed share of the segment at a frame."""
         return (frame - self.start) / self.frames
 
 
 class ResolvedCycle(NamedTuple):
-    """A cycle in a clip: its keys by their indices, and the spans that lead around."""
+    """A cycle of a clip, with the indices of its keys and its segments."""
 
     cycle: Cycle
     keys: range
-    end: int  # the frame at which its repeats end
-    shows_end: bool  # whether it shows that frame, too, and not a key that is there
-    segments: tuple[int, ...]  # each begins at the key of the same place in `keys`; or none
+    end: int  # frame at which the repeats end
+    shows_end: bool  # whether the cycle shows that frame; otherwise a key there does
+    segments: tuple[
+        int, ...
+    ]  # segment number after the key at the same index of `keys`; empty for a single key
 
     def covers(self, frame: float) -> bool:
-        """Tell whether a frame is in the stretch or in its repeats."""
+        """Return whether a frame is in the cycle or its repeats."""
         return self.cycle.first <= frame < self.end or (self.shows_end and frame == self.end)
 
 
 class SegmentLayout(NamedTuple):
-    """The spans of a clip, in the order of their frames, its cycles, and how a loop closes."""
+    """The segments of a clip in the order of their frames, its cycles, and the loop segment."""
 
     segments: tuple[Segment, ...]
     cycles: tuple[ResolvedCycle, ...]
-    loop_segment: Segment | None  # from the last key to the first one
+    loop_segment: Segment | None  # from the last key to the first
 
 
 def clip_segments(clip: Clip) -> tuple[Segment, ...]:
-    """Return the spans of a clip's intervals, in the order of `Moment.interval`."""
+    """Return the segments of a clip; `SegmentTime.segment` is an index into them."""
     return segment_layout(clip).segments
 
 
 def segment_keys(clip: Clip) -> tuple[tuple[int, int], ...]:
-    """Return the indices of the two keys of each interval, in the order of `Moment.interval`."""
+    """Return the key indices of each segment, in the order of `clip_segments`."""
     return tuple((span.first, span.last) for span in clip_segments(clip))
 
 
 def loop_segment(clip: Clip) -> Segment | None:
-    """Return the span in which a loop leads from its last key to its first one, if there is one."""
+    """Return the segment from the last key to the first in a loop, if any."""
     return segment_layout(clip).loop_segment
 
 
 def segment_layout(clip: Clip) -> SegmentLayout:
-    """Return the spans of a clip, and its cycles."""
     return _segment_layout(clip.layer, clip.frames, clip.loop)
 
 
@@ -87,7 +88,7 @@ def _segment_layout(
             found += _segment_after(ring, at, first, last, at[last])
     closing: list[Segment] = []
     if loop:
-        # A cycle that begins between two of its keys is not led to.
+        # If a cycle begins between two of its keys, no segment leads to it.
         ring, round_ = ring_of.get(0), frames.last - frames.first
         if ring is None or at[0] == ring.cycle.first:
             closing = _segment_after(ring_of.get(len(at) - 1), at, len(at) - 1, 0, at[0] + round_)
@@ -116,7 +117,7 @@ def _resolved_cycle(cycle: Cycle, at: list[int], frames: FrameRange) -> Resolved
 
 
 def _cycle_segments(ring: ResolvedCycle, at: list[int]) -> list[Segment]:
-    """Return the spans of a cycle, none where it has a single key."""
+    """Return the segments of a cycle; none for a single key."""
     if len(ring.keys) < 2:
         return []
     first, last = ring.keys[0], ring.keys[-1]
@@ -127,25 +128,25 @@ def _cycle_segments(ring: ResolvedCycle, at: list[int]) -> list[Segment]:
 def _segment_after(
     ring: ResolvedCycle | None, at: list[int], first: int, last: int, to: int
 ) -> list[Segment]:
-    """Return the span that leads on from a key, or from the cycle that it is in, if there is one.
+    """Return the segment after a key, or after the key's cycle, if there is one.
 
-    It ends at the key `last`, at the frame `to`.
+    The segment ends at the key `last`, at the frame `to`.
     """
     start = at[first]
     if ring is not None:
         start, shown = ring.end, ring.cycle.source_frame(ring.end)
         if len(ring.keys) > 1:
             first = next((index for index in ring.keys if at[index] == shown), -1)
-    # In a loop of one key there is nothing between that key and itself.
+    # A loop with one key has no segment from that key to itself.
     is_whole = first == last and ring is None
     return [] if first < 0 or to <= start or is_whole else [Segment(first, last, start, to - start)]
 
 
 def segment_at_frame(clip: Clip, frame: float) -> tuple[int, Segment, float]:
-    """Return the span that a frame is in, after its number, and which share of it is over, 0 to 1.
+    """Return the number and the segment at a frame, and its elapsed share, 0 to 1.
 
-    Where nothing leads to a later key, or from an earlier one, the pose stands still. In a loop
-    frames beyond the ends come round. The clip has spans.
+    Outside all segments the share stays at the nearest end. In a loop, frames wrap around. The clip
+    must have segments.
     """
     if clip.loop and clip.period and frame not in clip.frames:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period

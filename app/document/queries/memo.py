@@ -1,4 +1,4 @@
-"""What was found out about a layer or a domain, kept as long as that is there."""
+"""Memoized queries, with results kept as long as the layer or domain exists."""
 
 from collections.abc import Callable
 from functools import wraps
@@ -8,20 +8,20 @@ from weakref import WeakKeyDictionary
 Given = TypeVarTuple("Given")
 T = TypeVar("T")
 Whose = TypeVar("Whose")
-MOST: Final = 16  # answers about one
+MOST: Final = 16  # results per layer or domain
 
 
 def memoized_on(query: Callable[[Whose, *Given], T]) -> Callable[[Whose, *Given], T]:
-    """Let a query about a layer or a domain give the last answers again; none may hold it.
+    """Memoize a query about a layer or a domain; a result must not refer to the layer or domain.
 
-    However many layers there are, none makes others be asked about anew, and those of a project
-    that was closed go with it.
+    Each layer has its own results, so that many layers do not evict each other. The results of a
+    closed project are freed.
     """
     known: WeakKeyDictionary[Whose, dict[object, T]] = WeakKeyDictionary()
 
     @wraps(query)
     def answer(whose: Whose, *given: *Given) -> T:
-        # Workers ask, too: another thread may clear the answers at any moment.
+        # Workers call queries too, so another thread may clear the results at any moment.
         answers = known.setdefault(whose, {})
         found = answers.get(given)
         if found is None:

@@ -1,4 +1,4 @@
-"""How the motion of a clip leaves its keys and reaches them, by their passings and easings."""
+"""Tangents of a clip's motion at its pose keys."""
 
 from dataclasses import dataclass, replace
 from math import inf
@@ -17,36 +17,36 @@ from app.document.timing import TangentMode
 from engine.interpolation import InteriorKnot, support_of
 from engine.variant import Baseline
 
-# Pixels by which the coefficients of two maps may differ that are the same to the eye: the solver
-# comes back to a pose only so closely.
+# Pixels. Maps whose coefficients differ less are visually equal: the solver reproduces a pose only
+# to this accuracy.
 SAME_MAP = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PoseSegment:
-    """How a clip goes from one key to the next."""
+    """Motion of a clip from one key to the next."""
 
-    # The two; with the one before where `start` is a joint, and the one after where `end` is one.
-    # Then those that joints apart have in place of one of the two, as `engine.interpolation` orders
-    # them.
+    # The two keys, with the key before if `start` is a knot and the key after if `end` is one. Then
+    # the outer keys of knots that belong to a neighbouring cycle, in the order of
+    # `engine.interpolation`.
     keys: tuple[Keyframe, ...]
-    revolutions: tuple[int, ...]  # whole turns on the way from each of them to the next
+    revolutions: tuple[int, ...]  # additional full turns from each key to the next
     start: KeyTangent
     end: KeyTangent
-    # Whether the joints are of a cycle that this is no part of: the one after the first key, and
-    # the one before the second key, are others then.
+    # Whether the knots belong to a cycle that does not contain this segment. The outer key at the
+    # first knot, and at the second, then differs from the segment's own keys.
     apart: tuple[bool, bool] = (False, False)
 
     @property
     def has_smooth_tangent(self) -> bool:
-        """Whether it depends on other keys than the two."""
+        """Whether the motion depends on more keys than the two."""
         return len(self.keys) > 2
 
     @property
     def windows(self) -> tuple[list[int], list[int]]:
-        """The indices among the keys of those that its joints are of, the key passed in the middle.
+        """Indices of the keys of the knots, with the knot's own key in the middle.
 
-        Of an end without a joint they say nothing.
+        The entry of an end without a knot has no meaning.
         """
         return support_of(
             isinstance(self.start, InteriorKnot), isinstance(self.end, InteriorKnot), self.apart
@@ -54,12 +54,12 @@ class PoseSegment:
 
     @property
     def is_linear(self) -> bool:
-        """Whether it goes straight from key to key, as quickly as the easing says."""
+        """Whether the motion is a straight blend in eased time."""
         return self.start == self.end == 1.0
 
     @property
     def end_speeds(self) -> tuple[float, float]:
-        """How fast `weight` grows with the share at the first key and at the second one."""
+        """Slopes of `weight` over the share at the first key and at the second."""
         if (
             self.is_linear
             or isinstance(self.start, InteriorKnot)
@@ -69,7 +69,7 @@ class PoseSegment:
         return self.start, self.end
 
     def weight(self, share: float) -> float:
-        """Return which share of the way is done after a share of the interval's time."""
+        """Return the weight of the second key after a share of the segment's eased time."""
         if (
             self.is_linear
             or isinstance(self.start, InteriorKnot)
@@ -82,7 +82,6 @@ class PoseSegment:
 
 
 def pose_segments(clip: Clip) -> tuple[PoseSegment, ...]:
-    """Return the transits of a clip's intervals, in their order."""
     return _pose_segments(clip.layer, clip.frames, clip.loop, clip.baseline)
 
 
@@ -103,7 +102,6 @@ def _pose_segments(
 def _pose_segment(
     clip: Clip, number: int, at_start: "AdjacentSegments", at_end: "AdjacentSegments"
 ) -> PoseSegment:
-    """Return the transit of one of a clip's spans."""
     keys, found = clip.keys, clip_segments(clip)
     first, last, _, _ = found[number]
     start, end = (
@@ -140,16 +138,17 @@ def _pose_segment(
 
 
 class AdjacentSegments(NamedTuple):
-    """By which spans, by their numbers, the motion reaches a key and leaves it, if it does."""
+    """Numbers of the segments before and after a key, if any."""
 
     before: int | None
     after: int | None
 
 
 def adjacent_segments(clip: Clip) -> list[tuple[AdjacentSegments, AdjacentSegments]]:
-    """Return by which spans the motion passes the two keys of each of a clip's spans.
+    """Return the adjacent segments of both keys of each segment.
 
-    Keys of a cycle are passed as in every repeat, also by what leads to it and on from it.
+    Keys of a cycle have the tangents of its repeats, also in the segments before and after the
+    cycle.
     """
     found, rings, _ = segment_layout(clip)
     ways = {span.first: number for number, span in enumerate(found) if span.first != span.last}
@@ -179,7 +178,7 @@ def adjacent_segments(clip: Clip) -> list[tuple[AdjacentSegments, AdjacentSegmen
 def _continue_from_cycle(
     clip: Clip, ring: ResolvedCycle, known: dict[int, AdjacentSegments]
 ) -> None:
-    """Let a key at the end of a cycle that has the pose shown there go on from the cycle."""
+    """Continue the cycle's motion through a key at its end that has the pose shown there."""
     keys, following = clip.keys, ring.keys.stop
     if ring.shows_end or following in ring.keys:
         return
@@ -194,7 +193,7 @@ def _continue_from_cycle(
 
 
 def _tangent_of(clip: Clip, number: int, at: AdjacentSegments, *, side: int) -> KeyTangent:
-    """Return how a span reaches its second key or, on side 1, leaves its first one."""
+    """Return the tangent of a segment at its second key or, for side 1, at its first."""
     keys, found = clip.keys, clip_segments(clip)
     span, index = found[number], found[number][1 - side]
     legs = [None if each is None else _tangent_segment_of(found[each]) for each in at]
@@ -202,7 +201,7 @@ def _tangent_of(clip: Clip, number: int, at: AdjacentSegments, *, side: int) -> 
     own, other = _tangent_segment_of(span), legs[side]
     if other is None or at[side] == number:
         return end
-    # A key of a cycle: the velocity is that in it, the time to come to it or go on is the span's.
+    # At a key of a cycle the velocity is that of the cycle, but the segment has its own length.
     pace, usual = (keys[leg.first].easing.end_speeds[1 - side] for leg in (own, other))
     if not isinstance(end, InteriorKnot) or usual == 0.0:
         return stop_factor(pace) if 0.0 in (end, usual) else 1.0
@@ -217,7 +216,6 @@ def _tangent_segment_of(span: Segment) -> TangentSegment:
 
 
 def have_same_map(key: Keyframe, other_key: Keyframe) -> bool:
-    """Tell whether two keys' poses have the same map."""
     pose, other = key.pose, other_key.pose
     if pose is other or pose.phi is other.phi:
         return True

@@ -1,6 +1,6 @@
-"""How the motion reaches each of some keys, and leaves it, by their passings and easings.
+"""Tangents at keys, from tangent modes and easings.
 
-Between two keys, what moves is a cubic Hermite polynomial of the eased time.
+Between two keys, a value is a cubic Hermite polynomial of the eased time.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,47 +11,47 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 from app.document.timing import HOLD, Easing, TangentMode
 from engine.interpolation import InteriorKnot
 
-# How an interval leaves a key, or reaches it: by the joint with which the motion passes it, or at a
-# share of a straight blend's pace, 1 at a corner and 0 at a stop.
+# Tangent of a segment at a key: the knot of a smooth key, or the share of a straight blend's speed,
+# 1 at a corner and 0 at a stop.
 KeyTangent = InteriorKnot | float
 
 
 class KeyLike(Protocol):
-    """A key, of a pose or of a track."""
+    """A key of any channel."""
 
     @property
     def frame(self) -> int:
-        """Its frame."""
+        """Frame of the key."""
 
     @property
     def easing(self) -> Easing:
-        """How time runs until the next key."""
+        """Easing of the segment to the next key."""
 
     @property
     def tangent_mode(self) -> TangentMode:
-        """How the motion passes it, other than by a hold."""
+        """Tangent mode; a hold is an easing."""
 
 
 Key = TypeVar("Key", bound=KeyLike)
 Value = TypeVar("Value", float, complex)
 
 
-@dataclass(frozen=True)  # with slots, Python 3.11 could not make one of given types
+@dataclass(frozen=True)  # no slots: Python 3.11 cannot combine them with Generic
 class KeyedProperty(Generic[Key, Value]):
-    """What moves between keys."""
+    """A value that is interpolated between keys."""
 
     value_of: Callable[[Key], Value]
-    tolerance: float  # by how much two keys may differ that want the same
-    # With which a key of its own is passed, a frame; None for what its neighbours make of it.
+    tolerance: float  # two keys closer than this are equal
+    # A key's own velocity per frame; None derives the velocity from the neighbouring keys.
     velocity: Callable[[Key], Value | None] = lambda _: None
 
     def is_same(self, one: Key, other: Key) -> bool:
-        """Tell whether two keys want the same."""
+        """Return whether two keys have the same value."""
         return abs(self.value_of(one) - self.value_of(other)) <= self.tolerance
 
 
 class TangentSegment(NamedTuple):
-    """From one key to another, by their indices, and in how many frames."""
+    """From one key to another: key indices and length in frames."""
 
     first: int
     last: int
@@ -60,25 +60,24 @@ class TangentSegment(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KeySequence(Generic[Key]):
-    """Keys that follow each other in time, and how the motion goes through them."""
+    """Keys in order of time, and the motion beyond their ends."""
 
     keys: tuple[Key, ...]
-    # How many frames lead from the last key to the first one again; 0 where it is the first one
-    # again, and None where it leads nowhere.
+    # Length in frames from the last key to the first. 0 if the two are the same moment, None if the
+    # motion does not wrap around.
     gap: int | None
-    is_same: Callable[[Key, Key], bool]  # whether two keys have what moves alike
-    # Whether the motion comes from rest at a key that no leg leads to, and so at one without a way
-    # on, where it passes these through; else as straight as a corner.
+    is_same: Callable[[Key, Key], bool]  # whether two keys have the same value
+    # Whether smooth first and last keys have zero velocity; otherwise the motion is straight there.
     starts_and_ends_at_rest: bool = False
 
     def tangents(self, index: int) -> tuple[KeyTangent, KeyTangent]:
-        """Return how a key is reached, and how it is left."""
+        """Return the tangents before and after a key."""
         before, after = self.segment_before(index), self.segment_after(index)
         is_end = self.starts_and_ends_at_rest and None in (before, after)
         return tangents_at(self.keys, index, before, after, self.is_same, is_end=is_end)
 
     def segment_before(self, index: int) -> TangentSegment | None:
-        """Return the leg that leads to a key."""
+        """Return the segment that ends at a key."""
         last = len(self.keys) - 1
         if index > 0:
             return TangentSegment(
@@ -89,7 +88,7 @@ class KeySequence(Generic[Key]):
         return TangentSegment(last, 0, self.gap) if self.gap else self.segment_before(last)
 
     def segment_after(self, index: int) -> TangentSegment | None:
-        """Return the leg that leads on from a key."""
+        """Return the segment that begins at a key."""
         last = len(self.keys) - 1
         if index < last:
             return TangentSegment(
@@ -109,17 +108,10 @@ def tangents_at(
     *,
     is_end: bool = False,
 ) -> tuple[KeyTangent, KeyTangent]:
-    """Return how one of some keys is reached by a leg, and how it is left by another one.
+    """Return the tangents of the segments before and after a key.
 
-    Parameters
-    ----------
-    keys : sequence of Key
-    index : int
-    before, after : TangentSegment or None
-    is_same : callable
-        Tells whether two keys have what moves alike.
-    is_end : bool
-        Whether the motion comes from rest or to rest there, where it would pass through.
+    `is_same` returns whether two keys have the same value. With `is_end`, a smooth key has zero
+    velocity, as at the first and the last key.
     """
     before, after = _moving_segment(keys, before), _moving_segment(keys, after)
     reached = keys[index if before is None else before.last]
@@ -129,7 +121,7 @@ def tangents_at(
     stops = stop_factor(end_pace), stop_factor(start_pace)
     if before and after and reached.tangent_mode is left.tangent_mode is TangentMode.SMOOTH:
         if is_same(left, keys[before.first]) or is_same(left, keys[after.last]):
-            # What is given twice is meant to be kept: past it the motion would swing beyond.
+            # Equal neighbours mean that the value is kept; a smooth tangent would overshoot.
             return stops
         joint = InteriorKnot(before.frames, after.frames)
         if end_pace == start_pace == 0.0:
@@ -148,22 +140,22 @@ def tangents_at(
 
 
 def _moving_segment(keys: Sequence[KeyLike], leg: TangentSegment | None) -> TangentSegment | None:
-    """Return a leg, unless there is no motion in it."""
+    """Return the segment unless it is a hold."""
     return None if leg is None or keys[leg.first].easing == HOLD else leg
 
 
 def stop_factor(pace: float) -> float:
-    """Return 0 where a blend must stop at a key, and 1 where its easing stops there by itself."""
+    """Return 0 if the blend must stop at a key, 1 if its easing already stops there."""
     return 1.0 if pace == 0.0 else 0.0
 
 
 def sample_segment(
     passages: KeySequence[Key], leg: TangentSegment, time: float, moved: KeyedProperty[Key, Value]
 ) -> Value:
-    """Return what moves at a share of the frames of a leg, from 0 to 1; that of a key to the bit.
+    """Return the value at a share of a segment, 0 to 1; exact at both keys.
 
-    It passes a key at the key's own velocity, or with the slope of the parabola through it and its
-    neighbours, and with a stop where a neighbour wants the same of it.
+    A smooth key has its own velocity, or the slope of the parabola through it and its neighbours.
+    Next to an equal neighbour it is a stop.
     """
     one, other = passages.keys[leg.first], passages.keys[leg.last]
     share = one.easing(time)
@@ -179,7 +171,7 @@ def sample_segment(
 def segment_slopes(
     passages: KeySequence[Key], leg: TangentSegment, moved: KeyedProperty[Key, Value]
 ) -> tuple[Value, Value]:
-    """Return the slopes, over the eased time, with which the keys of a leg are left and reached."""
+    """Return the slopes over the eased time at both ends of a segment."""
     change = moved.value_of(passages.keys[leg.last]) - moved.value_of(passages.keys[leg.first])
     return (
         _slope(passages, leg.first, moved, change, side=1),
@@ -195,9 +187,9 @@ def _slope(
     *,
     side: int,
 ) -> Value:
-    """Return the slope, over the eased time, with which a key is reached or, on side 1, left.
+    """Return the slope over the eased time before a key or, for side 1, after it.
 
-    The change is that from the leg's first key to its second one.
+    `change` is the difference of the segment's two keys.
     """
     keys = passages.keys
     before, after = passages.segment_before(index), passages.segment_after(index)
@@ -219,10 +211,10 @@ def _slope(
 def _own_velocity(
     passages: KeySequence[Key], index: int, moved: KeyedProperty[Key, Value]
 ) -> tuple[Value | None, tuple[float, float]]:
-    """Return a key's own velocity, and the frames that an even blend takes at the paces there.
+    """Return a key's own velocity, and the lengths in frames of a linear blend at its speeds.
 
-    They are those of the leg that leads to it, and of the one that leads on. There is no velocity
-    where the key is not passed through, nor where an easing stands still there, or jumps.
+    The lengths are of the segments before and after the key. The velocity is None unless the key is
+    smooth and both easings have finite positive speeds there.
     """
     keys = passages.keys
     before, after = passages.segment_before(index), passages.segment_after(index)

@@ -1,4 +1,4 @@
-"""Which handles a pose does not bring to their targets, and what holds them back."""
+"""Target errors of a pose, and their cause."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,17 +13,17 @@ from engine.arrays import Complexes
 from engine.geometry import diameter
 from engine.maps import Bounds, distortion
 
-# Of the outline's diameter: a handle this far from its target falls short. A free handle
-# always gives in a little, since it pulls against the stiffness of the shape.
+# Fraction of the outline's diameter from which a target error counts. A free handle always stays a
+# little off its target, since it pulls against the stiffness of the shape.
 LEAST_TARGET_ERROR = 0.005
-AT_LIMIT = 0.97  # of a limit: so much of it is used where a pose cannot go on
+AT_LIMIT = 0.97  # share of a limit from which a pose cannot go on
 LIMIT_NAMES = {"k": "shear", "σa": "stretch", "σb": "squeeze"}
-TINY = 1e-300  # in place of a stretch that is not proven to be above 0
+TINY = 1e-300  # in place of a squeeze that is not proven to be above 0
 HELD_BY_LIMITS = "held back by the limits"
 
 
 class LimitUse(NamedTuple):
-    """How much of a limit is used; 1 where it is reached, 0 where nothing is distorted."""
+    """Used share of a limit, from 0 without distortion to 1 at the limit."""
 
     name: str
     value: float
@@ -32,17 +32,17 @@ class LimitUse(NamedTuple):
 
     @property
     def word(self) -> str:
-        """What is limited, in a word."""
+        """Name of the limited quantity."""
         return LIMIT_NAMES[self.name]
 
     @property
     def is_all(self) -> bool:
-        """Whether nothing is left of it that a pose could use."""
+        """Whether the limit is reached."""
         return self.share > AT_LIMIT
 
 
 class DistortionRange(NamedTuple):
-    """The largest k and σ_a of the whole drawing at one moment, and its smallest σ_b."""
+    """Largest k and σ_a, and smallest σ_b, of a whole drawing at one time."""
 
     k: float
     sigma_a: float
@@ -50,13 +50,13 @@ class DistortionRange(NamedTuple):
 
     @classmethod
     def of(cls, pose: Pose) -> "DistortionRange":
-        """Return what is proven of a pose."""
+        """Return the proven range of a pose."""
         certificate = pose.certificate
         return cls(certificate.k, certificate.sigma_a, certificate.sigma_b)
 
     @classmethod
     def measured(cls, fz: Complexes, fzbar: Complexes) -> "DistortionRange":
-        """Return the extremes of a map whose derivatives at some points are these, each (p,)."""
+        """Return the range of a map with these derivatives at sampled points, each (p,)."""
         return cls(
             k=float(distortion.k(fz, fzbar).max()),
             sigma_a=float(distortion.sigma_a(fz, fzbar).max()),
@@ -64,7 +64,7 @@ class DistortionRange(NamedTuple):
         )
 
     def joined(self, other: "DistortionRange") -> "DistortionRange":
-        """Return the worse of both."""
+        """Return the range that contains both."""
         return DistortionRange(
             k=max(self.k, other.k),
             sigma_a=max(self.sigma_a, other.sigma_a),
@@ -72,7 +72,7 @@ class DistortionRange(NamedTuple):
         )
 
     def beyond(self, other: "DistortionRange") -> "DistortionRange":
-        """Return by how much each is worse than another's, or 0."""
+        """Return the excess of each value over the other range, at least 0."""
         return DistortionRange(
             k=max(self.k - other.k, 0.0),
             sigma_a=max(self.sigma_a - other.sigma_a, 0.0),
@@ -80,15 +80,15 @@ class DistortionRange(NamedTuple):
         )
 
     def reached(self, bounds: Bounds) -> tuple[str, ...]:
-        """Return what is limited so that a shape which some limit holds back cannot go on.
+        """Return the names of the limits that hold the shape back, the most used first.
 
-        In words; that of which most is used comes first.
+        The first is always listed; further ones are listed if they are reached.
         """
         first, *others = sorted(self.uses(bounds), key=lambda use: -use.share)
         return (first.word, *(use.word for use in others if use.is_all))
 
     def uses(self, bounds: Bounds) -> tuple[LimitUse, ...]:
-        """Return how much of each limit is used; stretches count by their logarithms."""
+        """Return the used share of each limit; for stretch and squeeze, of the logarithms."""
         share_a = log(self.sigma_a) / log(bounds.sigma_a)
         share_b = log(max(self.sigma_b, TINY)) / log(bounds.sigma_b)
         return (
@@ -100,24 +100,22 @@ class DistortionRange(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TargetErrors:
-    """The handles that fall short of their targets in a pose."""
+    """The handles that miss their targets in a pose."""
 
-    errors: Mapping[
-        int, float
-    ]  # by how many pixels, by their ids; those that arrived are not in it
-    # Whether the limits hold them back. Else the other handles and the shape's stiffness do.
+    errors: Mapping[int, float]  # in pixels by handle id; other handles have no entry
+    # Whether the limits are the cause. Otherwise other handles and the shape's stiffness are.
     at_limits: bool
 
     @property
     def reason(self) -> str:
-        """What holds them back, in words."""
+        """The cause in words."""
         if self.at_limits:
             return HELD_BY_LIMITS
         return "held back by the other handles and the shape's stiffness"
 
 
 def misses_target(layer: Layer, lag: float) -> bool:
-    """Tell whether a handle so many pixels from its target has not arrived there."""
+    """Return whether a handle at this distance in pixels misses its target."""
     return lag > _least_target_error(layer)
 
 
@@ -128,7 +126,7 @@ def _least_target_error(layer: Layer) -> float:
 
 @memoized_on
 def measure_target_errors(layer: Layer, pose: Pose) -> TargetErrors:
-    """Return which handles of a layer fall short in a pose, and why; none that follow does."""
+    """Return the handles of a layer that miss their targets, without sprung handles."""
     lags = {
         identity: lag
         for identity, lag in layer.target_errors(pose).items()

@@ -1,4 +1,4 @@
-"""Which two keys a moment lies between, and how far it is from one to the other."""
+"""Position between keys at a frame, changed frames, and frames of an export."""
 
 from collections.abc import Iterable
 from fractions import Fraction
@@ -17,17 +17,17 @@ from app.document.settings import FrameRange, require_fps
 from app.errors import LissomError
 from engine.geometry import RigidMotion, Similarity
 
-# Pixels: a handle at rest is where the identity takes it, up to rounding.
+# Pixels: tolerance for rounding.
 SAME_PLACE = 1e-6
 SAME_FACTOR = 1e-9
 
 
 class SegmentTime(NamedTuple):
-    """A place between the two keys of an interval, of which `intervals` tells."""
+    """A position between the two keys of a segment; `segment_keys` lists the keys."""
 
     segment: int
-    # How far it is from the former, 0, to the latter, 1: the time of the interval's in-betweens.
-    # Where these blend the two keys alone, it is the weight of the latter.
+    # Time within the segment's in-betweens, from 0 at the first key to 1 at the second. If only
+    # these two keys are blended, the time is the weight of the second.
     weight: float
 
 
@@ -37,7 +37,7 @@ class _HasFrame(Protocol):
 
 
 class _Key(NamedTuple):
-    """A key, and whose it is."""
+    """A key with the id or name of its owner."""
 
     whose: int | str
     frame: int
@@ -45,12 +45,11 @@ class _Key(NamedTuple):
 
 
 def segment_time_at(clip: Clip, frame: float) -> SegmentTime:
-    """Return the moment that a frame shows.
+    """Return the segment and the weight at a frame.
 
-    Before the first key and after the last one their poses stand still. In a loop the last key
-    leads on to the first one across the end of the animation, whose last frame is its first one
-    again; frames beyond the ends come round. In a cycle it is that of the frame that repeats there.
-    Fractions lie between frames.
+    The first and the last pose hold outside the keys. In a loop the last key leads to the first,
+    and the last frame equals the first; frames outside wrap around. In a cycle, the repeated frame
+    counts. Fractions lie between frames.
     """
     if len(clip.keys) == 1:
         return SegmentTime(0, 0.0)
@@ -60,7 +59,7 @@ def segment_time_at(clip: Clip, frame: float) -> SegmentTime:
 
 
 def keyed_pose_at(clip: Clip, moment: SegmentTime) -> Pose | None:
-    """Return the pose of the one key that a moment shows unblended; None where it blends two."""
+    """Return the pose of a single key at this time; None between two keys."""
     keys = clip.keys
     if moment.weight not in (0.0, 1.0) or len(keys) == 1:
         return None if len(keys) > 1 else keys[0].pose
@@ -68,9 +67,9 @@ def keyed_pose_at(clip: Clip, moment: SegmentTime) -> Pose | None:
 
 
 def changed_ranges(before: Document, after: Document) -> list[FrameRange]:
-    """Return where in time two documents differ: keys of all kinds, the ways from poses, markers.
+    """Return the frames in which two documents differ: keys, segments and markers.
 
-    A change of everything that is shown, such as of handles or of a domain, is nowhere.
+    Changes of the whole drawing, for example of handles or of a domain, are not listed.
     """
     stretches: list[FrameRange] = []
     others = {layer.id: layer for layer in before.layers}
@@ -89,7 +88,7 @@ def changed_ranges(before: Document, after: Document) -> list[FrameRange]:
 
 
 def _keys_beside(document: Document) -> set[_Key]:
-    """Return all that stands at a frame but keys of poses and of tracks, and whose it is."""
+    """Return all keys and markers except pose and track keys, with their owners."""
     rows: list[tuple[int | str, Iterable[_HasFrame]]] = [
         ("markers", document.markers),
         ("camera", document.camera),
@@ -108,7 +107,7 @@ def _keys_beside(document: Document) -> set[_Key]:
 
 
 def _changed_keys(before: Layer, after: Layer) -> list[FrameRange]:
-    """Return the frames of the keys that differ, each up to the next one if only its way does."""
+    """Return the frames of changed pose keys; the whole segment if only the easing changed."""
     keys = {key.frame: key for key in before.keys}
     following = dict(pairwise(key.frame for key in after.keys))
     stretches = [FrameRange(frame, frame) for frame in keys.keys() - after.key_frames]
@@ -122,7 +121,7 @@ def _changed_keys(before: Layer, after: Layer) -> list[FrameRange]:
 
 
 def _changed_in_tracks(before: Layer, after: Layer) -> set[int]:
-    """Return the frames of tracks' keys that differ, or of all keys of tracks that differ else."""
+    """Return the frames of changed track keys, or of all keys of otherwise changed tracks."""
     one, other = (
         {(track.handles, track.delay, key) for track in layer.tracks for key in track.keys}
         for layer in (before, after)
@@ -134,9 +133,9 @@ def _changed_in_tracks(before: Layer, after: Layer) -> set[int]:
 
 
 def export_frame_range(document: Document) -> FrameRange:
-    """Return the frames that an export covers unless told otherwise.
+    """Return the default range of an export.
 
-    Of a loop that is exported whole, the last frame is left out where it is the first one again.
+    A loop exported whole omits its last frame if that equals the first.
     """
     if document.export.frames is not None:
         return document.export.frames
@@ -148,16 +147,16 @@ def export_frame_range(document: Document) -> FrameRange:
 
 
 def frames_for_fit(document: Document, exported: FrameRange) -> FrameRange:
-    """Return the frames whose motion an export shows whole where it is fitted into the frame.
+    """Return the frames that the framing "fit" contains.
 
-    All of the animation's are among them, so that some frames exported anew match those of before.
+    They include the whole animation, so that a later export of a part has the same framing.
     """
     frames = document.frames
     return FrameRange(min(frames.first, exported.first), max(frames.last, exported.last))
 
 
 def _is_same(document: Document, first: int, second: int) -> bool:
-    """Tell whether two frames show the same pose, or two that were solved for the same wishes."""
+    """Return whether two frames show the same pose, or poses with the same targets."""
     clips = (clip_of(document, layer.id) for layer in document.layers)
     return _moves_alike(document, first, second) and all(
         _poses_alike(clip, segment_time_at(clip, first), segment_time_at(clip, second))
@@ -170,7 +169,7 @@ def _is_same(document: Document, first: int, second: int) -> bool:
 
 
 def _moves_alike(document: Document, first: int, second: int) -> bool:
-    """Tell whether the camera, and all layers as a whole, are alike at two frames."""
+    """Return whether the camera and the transforms and opacities of all layers are equal."""
     shots = [camera_at(document, frame) for frame in (first, second)]
     pairs: list[list[RigidMotion | Similarity]] = [
         [shot.canvas_motion(document.canvas) for shot in shots if shot is not None]
@@ -179,7 +178,7 @@ def _moves_alike(document: Document, first: int, second: int) -> bool:
         [transform_at(document, each, frame) for frame in (first, second)]
         for each in document.layers
     ]
-    # After a whole turn things are where they were, up to rounding.
+    # Full turns return to the same place up to rounding.
     return all(
         abs(one.factor - other.factor) <= SAME_FACTOR and abs(one.shift - other.shift) <= SAME_PLACE
         for one, other in filter(None, pairs)
@@ -199,25 +198,16 @@ def _poses_alike(clip: Clip, first: SegmentTime, second: SegmentTime) -> bool:
         abs(target.position - other.targets[handle].position) <= SAME_PLACE
         and target.rotation == other.targets[handle].rotation
         for handle, target in one.targets.items()
-        # Those that follow are not wished anywhere: poses have them where the body carries them.
+        # Springs move these handles; their targets in poses have no effect.
         if handle not in clip.layer.sprung_handles
     )
 
 
 def frame_times(document: Document, frames: FrameRange, fps: float | None = None) -> list[float]:
-    """Return the frame, whole or between two, that each picture of an export shows.
+    """Return the frame, possibly fractional, of each picture of an export.
 
-    Parameters
-    ----------
-    frames : FrameRange
-        Both ends included; the last one only if the export's rate falls on it.
-    fps : float, optional
-        Pictures per second; the document's own rate by default.
-
-    Raises
-    ------
-    LissomError
-        If the rate is out of its range.
+    `fps` is by default the document's rate. The last frame is included only if the rate meets it.
+    Raises a `LissomError` if the rate is out of its range.
     """
     if fps is None:
         return [float(frame) for frame in range(frames.first, frames.last + 1)]
@@ -227,7 +217,7 @@ def frame_times(document: Document, frames: FrameRange, fps: float | None = None
             f"The export's frames per second must be at most {100 * document.fps:g}, a hundred "
             f"times the document's own, not {fps:g}."
         )
-    # In exact arithmetic, so that rounding neither drops the last picture nor adds one.
+    # Exact arithmetic, so that rounding neither drops the last picture nor adds one.
     step = Fraction(document.fps) / Fraction(fps)
     count = (frames.last - frames.first) // step + 1
     return [float(frames.first + index * step) for index in range(count)]

@@ -1,4 +1,4 @@
-"""Where tracks want their handles, and about which ones springs swing."""
+"""Positions of tracks at a frame, and roots of springs."""
 
 from bisect import bisect_right
 from typing import NamedTuple
@@ -20,28 +20,27 @@ from app.document.timing import LINEAR, Cycle, Spring, Track, TrackKey
 from engine.domain import MeshedDomain
 from engine.domain.meshing import find_distances
 
-# By how much two keys may differ that want the same: pixels, and radians.
+# Keys closer than this count as equal: pixels, and radians.
 SAME_PLACE, SAME_TURN = 0.01, 1e-4
 
 
 class TrackSample(NamedTuple):
-    """What a track wants at a frame, as its keys have it."""
+    """Value of a track at a frame, in the space of its keys."""
 
-    place: complex  # beside the pose in its turning frame, or in the picture; pixels
-    turn: float  # beyond the base motion, in radians; 0 where the track does not turn
+    place: complex  # relative to the pose in its rotating frame, or in the picture; pixels
+    turn: float  # relative to the base motion, in radians; 0 if the track keys no rotation
 
 
 def track_at(track: Track, clip: Clip, frame: float) -> TrackSample | None:
-    """Return what a track wants of its handles at a frame; None where it does not act.
+    """Return the value of a track at a frame; None outside the range of its keys.
 
-    It acts from its first key to its last one, both included, later by its delay. In a loop frames
-    come round, and the last frame is the first one again; so they do in a cycle that takes the
-    track, and nowhere else is it then. What a key wants is given to the bit.
+    The range is delayed by the track's delay. It wraps around in a loop, and repeats in a cycle
+    that contains the track. The value at a key is exact.
 
-    Between two keys place and turn have the passings of keys as whole poses have them
-    (`app.document.queries.tangents.sample_segment`), each by itself. Through its first key and its
-    last one it comes from rest and to rest, as nothing is moved beyond them; where it fills a loop
-    and its ends agree it goes on from the one to the other.
+    Position and rotation are interpolated separately
+    (`app.document.queries.tangents.sample_segment`). Smooth first and last keys have zero velocity,
+    since the track has no effect beyond them. If the track fills a loop and its ends agree, the
+    motion continues from the last to the first.
     """
     time = _time(track, clip, frame)
     if time is None or not track.enabled:
@@ -53,10 +52,10 @@ def track_at(track: Track, clip: Clip, frame: float) -> TrackSample | None:
 
 
 def velocity_at(track: Track, clip: Clip, frame: float) -> complex | None:
-    """Return at which velocity a key inserted into a track at a frame changes nothing there.
+    """Return the velocity at which a key inserted at this frame does not change the motion.
 
-    In pixels a frame; None where the keys around leave velocities to their passings, where time is
-    eased, and where the track does not act.
+    In pixels per frame. None if the keys around have no velocities, the segment is eased, or the
+    frame is outside the track.
     """
     time = _time(track, clip, frame)
     keys = track.keys
@@ -85,7 +84,7 @@ TURN = KeyedProperty[TrackKey, float](lambda key: key.turn, SAME_TURN)
 
 
 def _time(track: Track, clip: Clip, frame: float) -> float | None:
-    """Return the frame among the track's keys that a frame of the scene shows, if there is one."""
+    """Return the frame within the track's keys that a frame of the document shows, if any."""
     first, last = track.keys[0].frame, track.keys[-1].frame
     cycle, period = track_cycle(track, clip), clip.period if clip.loop else 0
     if period and frame not in clip.frames:
@@ -102,12 +101,12 @@ def _time(track: Track, clip: Clip, frame: float) -> float | None:
 
 
 def track_cycle(track: Track, clip: Clip) -> Cycle | None:
-    """Return the cycle with which a track repeats, if there is one."""
+    """Return the cycle with which a track repeats, if any."""
     return next((cycle for cycle in clip.layer.cycles if cycle.repeats_keys(track.keys)), None)
 
 
 def _segment_index(track: Track, time: float) -> int:
-    """Return the index of the key at a frame or before it."""
+    """Return the index of the last key at or before a frame."""
     return bisect_right(track.keys, time, key=lambda key: key.frame) - 1
 
 
@@ -127,7 +126,7 @@ def _tangent_segment(keys: tuple[TrackKey, ...], index: int) -> TangentSegment:
 
 
 def _value(track: Track, clip: Clip, time: float, moved: KeyedProperty[TrackKey, Value]) -> Value:
-    """Return what moves at a frame from the first key to the last one."""
+    """Return the interpolated value at a frame within the keys."""
     keys, index = track.keys, _segment_index(track, time)
     if time == keys[index].frame:
         return moved.value_of(keys[index])
@@ -137,12 +136,11 @@ def _value(track: Track, clip: Clip, time: float, moved: KeyedProperty[TrackKey,
 
 
 def spring_root(layer: Layer, spring: Spring) -> int | None:
-    """Return the id of the handle about which a spring swings; None where there is none.
+    """Return the id of the handle about which a spring swings, if any.
 
-    It is the spring's own. If that follows by a spring, it is the root of that one, and so on.
-    Without one of its own it is the nearest handle that follows by none, first along bones, and
-    then along the drawing, never across a gap. What follows is told without tracks, so that these
-    change no root.
+    The spring's own root comes first; if that has a spring, the root of that spring, and so on. The
+    default root is the nearest handle without a spring, first along bones, then along the drawing,
+    never across a gap. Tracks have no influence on the root.
     """
     seen = {spring.handle}
     while spring.root is not None:
@@ -166,5 +164,5 @@ def spring_root(layer: Layer, spring: Spring) -> int | None:
 
 @memoized_on
 def _distances(domain: MeshedDomain, places: tuple[complex, ...]) -> tuple[float, ...]:
-    """Return how far it is along the drawing from the first of some places to the others."""
+    """Return the distances along the drawing from the first point to the others."""
     return tuple(find_distances(domain.mesh, places[0], np.array(places[1:])).tolist())

@@ -1,7 +1,7 @@
-"""What handles are to each other and to the drawing: pairs on two sides, bones, and joints.
+"""Relations of handles: mirror pairs, bones and stiffness, and applied motion presets.
 
 In: handles.
-Out: their partners, bones and the material that these make, and motions that joints were given.
+Out: mirror partners, bones, stiffness, applied motion presets.
 Imports: the values of `app.document`.
 """
 

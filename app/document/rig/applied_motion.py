@@ -1,4 +1,4 @@
-"""Ready motions that a layer was given, and from what they were made."""
+"""Motion presets that were applied to a layer."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,24 +14,24 @@ MAX_REPEATS = 1000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AppliedMotion:
-    """A ready motion as it was given, by which it can be given again in another way.
+    """An applied motion preset, with all that is needed to apply it again with other parameters.
 
-    It says nothing of how the layer moves: that its keys do. Whether they are as they were made,
-    or were edited since, tells `app.document.queries.is_as_given`.
+    The keys alone define how the layer moves. `app.document.queries.is_motion_unedited` tests
+    whether the keys are still as the preset made them.
     """
 
-    motion: str  # the name of one of `engine.geometry.motions.MOTIONS`
-    kind: str  # and of one of its `KINDS`
-    joints: Mapping[str, int]  # the ids of the handles that are joints, by the joints' names
-    facing: int  # 1 where the drawing looks to the right, -1 to the left
+    motion: str  # name of an entry of `engine.geometry.motions.MOTIONS`
+    kind: str  # name of one of its `KINDS`
+    joints: Mapping[str, int]  # joint name to handle id
+    facing: int  # 1 if the drawing looks to the right, -1 to the left
     parameters: Parameters
-    first: int  # the frame at which it was given
-    start: int  # the frame at which it begins; from the first one it blends in
-    last: int  # the frame at which it ends
-    repeat_count: int = 1  # how often it is there
-    digest: str = ""  # of the keys that were made
+    first: int  # first frame
+    start: int  # first frame of the motion; the layer blends in from `first` to `start`
+    last: int  # last frame
+    repeat_count: int = 1  # number of repeats
+    digest: str = ""  # of the keys that the preset made
 
-    # What a later version says of it.
+    # Fields of a later version.
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -54,26 +54,26 @@ class AppliedMotion:
         object.__setattr__(self, "joints", MappingProxyType(dict(self.joints)))
 
     def moved(self, to: Callable[[int], int]) -> Self:
-        """Return the motion with its frames where a function has them."""
+        """Return the motion with its frames mapped by a function."""
         first, start, last = map(to, (self.first, self.start, self.last))
         return replace(self, first=first, start=start, last=last)
 
     def overlaps(self, first: int, last: int) -> bool:
-        """Tell whether some of its frames are strictly within others."""
+        """Return whether the ranges of frames overlap in more than an end."""
         return self.first < last and first < self.last
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class UnreadMotion:
-    """A motion in a project file that this version cannot show; it is written as it was read."""
+    """A motion in a project file that this version cannot read; it is written unchanged."""
 
-    index: int  # its place among the layer's motions in the file
+    index: int  # position among the layer's motions in the file
     content: object  # decoded JSON
-    reason: str  # why it cannot be shown, as a sentence
+    reason: str  # why this version cannot read the motion, as a sentence
 
 
 def require_motions(motions: Sequence[AppliedMotion], handles: Collection[int]) -> None:
-    """Raise a `LissomError` unless motions are apart, and their joints among some handles."""
+    """Refuse motions that overlap, or whose joints are not among the handles."""
     for before, after in pairwise(motions):
         require(
             before.last <= after.first,

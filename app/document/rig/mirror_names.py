@@ -1,4 +1,4 @@
-"""Which handles, and which layers, are each other's other side: by their names, or their places."""
+"""Mirror pairs of handles and layers, by name or by position."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
@@ -11,12 +11,12 @@ from app.errors import LissomError
 from engine.arrays import Complexes
 from engine.geometry import diameter
 
-# Of the shape's diameter: handles that mirror each other this nearly are pairs without names.
+# Fraction of the shape's diameter: handles that mirror each other this closely form a pair.
 PAIR_DISTANCE = 0.03
-# Words, or whole names, that tell of one side and of the other.
+# Words or whole names for one side and for the other.
 SidePairs = tuple[tuple[str, str], ...]
 SIDES: SidePairs = (("L", "R"), ("left", "right"))
-MAX_PAIRS = 1_000  # each name is compared with all of them
+MAX_PAIRS = 1_000  # each name is compared with all pairs
 PAIRS: SidePairs = (*SIDES, ("near", "far"))
 NO_PAIR = (
     "“{words}” is no pair: write two words, or two whole names, with a slash between, as in "
@@ -26,12 +26,12 @@ NO_PAIR = (
 
 @lru_cache(maxsize=4096)
 def mirrored_name(name: str, pairs: SidePairs = PAIRS) -> str | None:
-    """Return the name of a handle or a layer on the other side; None where it tells of no side.
+    """Return the mirrored name of a handle or a layer; None without a side in the name.
 
-    A pair of whole names comes first. Else a word counts where it begins and ends, be it in the
-    middle of "handLeftUpper", but not in "bright" or "cleft", and a letter where it stands alone:
-    ".L", "_r", "L arm", "arm.l.001". Of several the last one counts, as in "right tail.L", and its
-    case is kept.
+    A pair of whole names comes first. A longer word counts at the borders of words, as in
+    "handLeftUpper", but not in "bright" or "cleft". A single letter counts if it stands alone:
+    ".L", "_r", "L arm", "arm.l.001". The last of several counts, as in "right tail.L". The case is
+    kept.
     """
     both_ways = [*pairs, *((other, word) for word, other in pairs)]
     for word, other in both_ways:
@@ -50,13 +50,13 @@ def mirrored_name(name: str, pairs: SidePairs = PAIRS) -> str | None:
 
 
 def _forms(word: str, other: str) -> Mapping[str, str]:
-    """Return how a word may be written, and the other one likewise."""
+    """Return the spellings of a word, each with the same spelling of the other word."""
     ways = (str.upper, str.capitalize, str.lower)
     return {way(word): way(other) for way in ways} | {word: other}
 
 
 def _places(name: str, form: str) -> Iterator[int]:
-    """Yield where a word stands in a name as a word of its own."""
+    """Yield the positions of a form in a name where it stands as a word of its own."""
     start = name.find(form)
     while start >= 0:
         before, after = name[:start][-1:], name[start + len(form) :][:1]
@@ -73,7 +73,7 @@ def _places(name: str, form: str) -> Iterator[int]:
 
 
 def require_pairs(pairs: SidePairs) -> None:
-    """Raise a `LissomError` unless each of some words has one partner."""
+    """Refuse empty words and words that occur twice."""
     require(len(pairs) <= MAX_PAIRS, f"There are at most {MAX_PAIRS:,} pairs, not {len(pairs):,}.")
     words = [word.casefold() for pair in pairs for word in pair]
     require(all(word.strip() for word in words), "A pair is of two words, such as near and far.")
@@ -81,12 +81,9 @@ def require_pairs(pairs: SidePairs) -> None:
 
 
 def parse_pairs(text: str) -> SidePairs:
-    """Return the pairs that a text tells, such as "L/R, near/far".
+    """Return the pairs in a text such as "L/R, near/far".
 
-    Raises
-    ------
-    LissomError
-        If it tells no pairs.
+    Raises a `LissomError` if the text is not a list of pairs.
     """
     pairs = []
     for part in filter(str.strip, text.split(",")):
@@ -99,14 +96,14 @@ def parse_pairs(text: str) -> SidePairs:
 
 
 def format_pairs(pairs: SidePairs) -> str:
-    """Return pairs as `read_pairs` reads them."""
+    """Return pairs as a text that `parse_pairs` reads."""
     return ", ".join("/".join(pair) for pair in pairs)
 
 
 def mirrored_handles_by_name(
     handles: Iterable[Handle], pairs: SidePairs = PAIRS
 ) -> Mapping[int, int]:
-    """Return the partner of each handle that has one by name; both by their ids, both ways."""
+    """Return the mirror partner of each handle by name, as handle ids in both directions."""
     names = {handle.name: handle.id for handle in handles}
     others = {
         identity: names.get(mirrored_name(name, pairs) or "") for name, identity in names.items()
@@ -117,19 +114,10 @@ def mirrored_handles_by_name(
 def mirrored_handles(
     handles: Iterable[Handle], axis: float, outline: Complexes, pairs: SidePairs = PAIRS
 ) -> Mapping[int, int]:
-    """Return the partner of each handle that has one, by name or else by place, by their ids.
+    """Return the mirror partner of each handle by name or else by position, as handle ids.
 
-    A handle next to the axis is its own partner, unless its name tells of another.
-
-    Parameters
-    ----------
-    handles : iterable of Handle
-    axis : float
-        The upright line at which they mirror each other, in pixels from the left.
-    outline : complex128, shape (n,)
-        Of their layer.
-    pairs : tuple of tuple of str
-        Of words that tell of sides.
+    A handle near the vertical axis is its own partner unless its name has a side. The tolerance
+    depends on the size of the `outline`.
     """
     handles = tuple(handles)
     partners = dict(mirrored_handles_by_name(handles, pairs))

@@ -1,4 +1,4 @@
-"""What a layer is made of: where it is stiffer or softer than usual."""
+"""Stiffness of a layer: painted values and bones."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -11,17 +11,17 @@ from engine.domain import MeshedDomain
 from engine.domain.material import copy_nearest_stiffness
 from engine.maps import SOFTEST, STIFFEST
 
-DEFAULT_BONE_STIFFNESS = 10.0  # of a bone
-STIFFNESS_TOLERANCE = 1e-9  # so near to 1 a stiffness is the usual one
+DEFAULT_BONE_STIFFNESS = 10.0  # default of a bone
+STIFFNESS_TOLERANCE = 1e-9  # a stiffness this close to 1 counts as 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bone:
-    """A limb between two handles that is stiff, or soft, but for the joints at its ends."""
+    """A stiff or soft strip between two handles, without the joints at its ends."""
 
-    ends: tuple[int, int]  # the ids of its handles
-    stiffness: float = DEFAULT_BONE_STIFFNESS  # its stiffness, from 1/30 to 100
-    is_shown: bool = True  # whether it is seen; it acts either way
+    ends: tuple[int, int]  # handle ids
+    stiffness: float = DEFAULT_BONE_STIFFNESS  # from 1/30 to 100
+    is_shown: bool = True  # in the window; a hidden bone acts too
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -29,12 +29,12 @@ class Bone:
         require_stiffness_amount(self.stiffness)
 
     def is_between(self, ends: Sequence[int]) -> bool:
-        """Tell whether it leads from one of two handles to the other, either way."""
+        """Return whether the bone joins these two handles, in either order."""
         return set(ends) == set(self.ends)
 
 
 def require_stiffness_amount(amount: float) -> None:
-    """Raise a `LissomError` unless this is a stiffness that a part may have."""
+    """Raise a `LissomError` unless the stiffness is in the allowed range."""
     require(
         SOFTEST * (1 - STIFFNESS_TOLERANCE) <= amount <= STIFFEST,
         f"A stiffness is from 1/30 to {STIFFEST:g}, not {amount:g}; 1 is the usual one.",
@@ -42,13 +42,13 @@ def require_stiffness_amount(amount: float) -> None:
 
 
 def combined_stiffness(stiffnesses: Sequence[Floats]) -> Floats:
-    """Return the largest of some stiffnesses at each place; of soft ones alone the smallest."""
+    """Return the largest stiffness at each point; the smallest where all are at most 1."""
     largest: Floats = np.maximum.reduce(stiffnesses)
     return np.where(largest > 1.0, largest, np.minimum.reduce(stiffnesses))
 
 
 def default_as_none(stiffness: Floats) -> Floats | None:
-    """Return a stiffness that nobody can write to; None where it is 1 everywhere."""
+    """Return the clipped stiffness as a read-only array; None if it is 1 everywhere."""
     if (np.abs(stiffness - 1.0) < STIFFNESS_TOLERANCE).all():
         return None
     return freeze(np.clip(stiffness, SOFTEST, STIFFEST))
@@ -57,7 +57,7 @@ def default_as_none(stiffness: Floats) -> Floats | None:
 def transfer_painted_stiffness(
     stiffness: Floats | None, domain: MeshedDomain, into: MeshedDomain
 ) -> Floats | None:
-    """Return what is painted on a domain at the same places of another one."""
+    """Return the painted stiffness of a domain at the same points of another domain."""
     if stiffness is None or into is domain:
         return stiffness
     corners = np.concatenate(into.loops)

@@ -1,7 +1,7 @@
-"""How time runs between keys, and clocks of single handles: tracks and springs.
+"""Time between keys, and motion of single handles: easing, cycles, tracks and springs.
 
 In: numbers and ids of handles.
-Out: frozen values, checked as they are made.
+Out: frozen values, checked by their constructors.
 Imports: `app.errors`, and the checks of `app.document`.
 """
 

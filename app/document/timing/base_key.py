@@ -1,4 +1,4 @@
-"""What keys of all that moves have alike, but for those of poses."""
+"""Base class of all keys except pose keys."""
 
 from dataclasses import dataclass, field, replace
 from typing import Self
@@ -10,7 +10,7 @@ from app.document.timing.tangent_mode import TangentMode, require_tangent_mode
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BaseKey:
-    """A key of what moves as poses do, and the way from there to the next one."""
+    """Frame, easing and tangent mode of a key, and the segment to the next key."""
 
     frame: int
     easing: Easing = LINEAR
@@ -24,13 +24,13 @@ class BaseKey:
 
     @property
     def shown_tangent_mode(self) -> TangentMode:
-        """How the motion passes the key, by a hold too."""
+        """Tangent mode of the key, with a hold shown as `TangentMode.HOLD`."""
         return TangentMode.HOLD if self.easing == HOLD else self.tangent_mode
 
     def with_easing_of(self, other: Self, *, backwards: bool = False) -> Self:
-        """Return the key with the way on from another one, or with that way run backwards."""
+        """Return the key with the easing of another key, or with that easing reversed."""
         return replace(self, easing=other.easing.reversed() if backwards else other.easing)
 
     def retimed(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - it has no velocity
-        """Return the key at another frame of a motion that runs so many times as fast."""
+        """Return the key at another frame; the speed factor `pace` scales velocities, if any."""
         return self if frame == self.frame else replace(self, frame=frame)

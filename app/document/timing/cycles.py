@@ -1,4 +1,4 @@
-"""Cycles: stretches of time that repeat."""
+"""Cycles: ranges of frames that repeat."""
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Sequence
@@ -10,16 +10,16 @@ from app.document.checks import NOTHING, Unknown, require, require_frame
 from app.document.timing.base_key import BaseKey
 from app.errors import LissomError
 
-MAX_CYCLES = 1_000  # of a layer
+MAX_CYCLES = 1_000  # per layer
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cycle:
-    """A stretch of time that repeats; its last frame is the same moment as its first one."""
+    """A range of frames that repeats; its last frame equals its first."""
 
     first: int
     last: int
-    until: int | None = None  # the frame at which its repeats end; None is the scene's last one
+    until: int | None = None  # last frame of the repeats; None is the document's last frame
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -38,30 +38,30 @@ class Cycle:
 
     @property
     def period(self) -> int:
-        """How many frames it takes to come round."""
+        """Length of a repeat in frames."""
         return self.last - self.first
 
     @property
     def description(self) -> str:
-        """The stretch in words."""
+        """The range in words."""
         return f"frames {self.first} to {self.last}"
 
     def contains(self, frame: float) -> bool:
-        """Tell whether a frame is in the stretch itself, whose end is that of the last repeat."""
+        """Return whether a frame is in the cycle's own range, its last frame excluded."""
         return self.first <= frame < self.last
 
     def covers(self, frame: float) -> bool:
-        """Tell whether a frame is in the stretch or in its repeats."""
+        """Return whether a frame is in the cycle or its repeats."""
         return self.first <= frame and (self.until is None or frame <= self.until)
 
     def repeats_keys(self, keys: Sequence[BaseKey]) -> bool:
-        """Tell whether keys repeat with it: those that go on beyond it have their own time."""
+        """Return whether these keys repeat; keys that extend beyond the cycle do not."""
         return self.contains(keys[0].frame) and keys[-1].frame <= self.last
 
     def contains_changes(self, frames: Iterable[int]) -> bool:
-        """Tell whether what changes at some frames changes in the stretch, and not in repeats.
+        """Return whether there are changes within the cycle and none in its repeats.
 
-        What changes before and after has no say, and there is a change at least.
+        Changes before the cycle and after its repeats are ignored.
         """
         later = [frame for frame in frames if frame > self.first]
         if self.until is not None:
@@ -69,25 +69,25 @@ class Cycle:
         return bool(later) and max(later) < self.last
 
     def retimed(self, to: Callable[[int], int]) -> Self:
-        """Return the cycle with its frames where a function has them."""
+        """Return the cycle with its frames mapped by a function."""
         until = None if self.until is None else to(self.until)
         return replace(self, first=to(self.first), last=to(self.last), until=until)
 
     def clamped_source_frame(self, frame: float, end: int) -> float:
-        """Return the frame of the stretch that a frame shows of what is held before and after it.
+        """Return the frame of the cycle that a frame shows, clamped to the cycle and its repeats.
 
-        The last frame of the scene is where repeats without an end are over.
+        Repeats without an end stop at `end`, the document's last frame.
         """
         until = max(self.last, end) if self.until is None else self.until
         return self.source_frame(min(max(frame, self.first), until))
 
     def source_frame(self, frame: float) -> float:
-        """Return the frame of the stretch that a frame shows while it repeats."""
+        """Return the frame of the cycle that a repeated frame shows."""
         return self.first + (frame - self.first) % self.period
 
 
 def require_no_overlap(cycles: Sequence[Cycle]) -> None:
-    """Raise a `LissomError` unless each cycle has ended when the next one begins."""
+    """Raise a `LissomError` unless each cycle's repeats end before the next cycle begins."""
     require(
         len(cycles) <= MAX_CYCLES,
         f"A layer has at most {MAX_CYCLES:,} stretches that repeat, not {len(cycles):,}.",
@@ -102,9 +102,9 @@ def require_no_overlap(cycles: Sequence[Cycle]) -> None:
 
 
 def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
-    """Raise a `LissomError` unless motion comes into a cycle, round, and on to a layer's keys.
+    """Refuse a cycle that does not join a layer's keys, given by their frames in order.
 
-    These are told by their frames, in order.
+    The motion must lead into the cycle, repeat, and lead on to the next key.
     """
     begin, end = bisect_left(keys, cycle.first), bisect_left(keys, cycle.last)
     own, has_before, after = keys[begin:end], begin > 0, keys[end : end + 1]
@@ -135,7 +135,7 @@ def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
 
 
 def _nearest_end(cycle: Cycle, own: Sequence[int], before: int) -> int:
-    """Return the frame nearest to a cycle's end at which it shows one of its keys."""
+    """Return the frame nearest to the cycle's end at which the repeats show a key."""
     until = cycle.last if cycle.until is None else cycle.until
     begun = until - (until - cycle.first) % cycle.period - cycle.first
     ends = [frame + begun + away for frame in own for away in (-cycle.period, 0, cycle.period)]
@@ -144,12 +144,12 @@ def _nearest_end(cycle: Cycle, own: Sequence[int], before: int) -> int:
 
 
 def count_changes_within(frames: Sequence[int], cycle: Cycle) -> int:
-    """Return how many of some frames, in their order, lie within a cycle, its ends left out."""
+    """Return the number of these ordered frames strictly inside a cycle."""
     return max(0, bisect_left(frames, cycle.last) - bisect_right(frames, cycle.first))
 
 
 def count_repeated_changes(frames: Sequence[int], cycles: Iterable[Cycle], end: int) -> int:
-    """Return how many changes come of some in all repeats at most, up to the scene's last frame."""
+    """Return the largest number of changes with all repeats up to the document's last frame."""
     count = len(frames)
     for cycle in cycles:
         own = count_changes_within(frames, cycle)

@@ -1,4 +1,4 @@
-"""How time runs inside an interval between two keys."""
+"""Easing: time within the segment between two keys."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,15 +16,12 @@ HALVINGS = 54
 class Easing:
     """A monotone map of [0, 1] to itself, or a hold.
 
-    Raises
-    ------
-    LissomError
-        If there are not four numbers, or one is outside [0, 1].
+    Raises a `LissomError` if there are not four numbers, or one is outside [0, 1].
     """
 
-    # x1, y1, x2, y2 of a cubic Bézier curve from (0, 0) to (1, 1). With all four in [0, 1] both
-    # coordinates are monotone, so that the blend stays convex, as the bounds on the distortion
-    # require. None holds the first key until the second one.
+    # x1, y1, x2, y2 of a cubic Bézier curve from (0, 0) to (1, 1). With all four in [0, 1], both
+    # coordinates are monotone and the weight stays in [0, 1], which the distortion bounds require.
+    # None holds the first key until the second key.
     curve: tuple[float, float, float, float] | None
 
     def __post_init__(self) -> None:
@@ -35,11 +32,11 @@ class Easing:
                 f"An easing curve is four numbers from 0 to 1, not {shortened(self.curve)}: "
                 "outside them the in-betweens could leave their bounds."
             )
-        # Only now: a whole number may be too large for a float.
+        # After the check, because an integer may be too large for a float.
         object.__setattr__(self, "curve", tuple(float(value) for value in self.curve))
 
     def __call__(self, s: float) -> float:
-        """Return the weight of the second key at the fraction s of the interval."""
+        """Return the weight of the second key at the fraction s of the segment."""
         if s <= 0.0:
             return 0.0
         if s >= 1.0:
@@ -49,8 +46,8 @@ class Easing:
         x1, y1, x2, y2 = self.curve
         if (x1, x2) == (y1, y2):
             return s
-        # Bisection needs no slope (it may be 0 or infinite) and is exactly monotone in s, whatever
-        # the rounding of x does.
+        # Bisection needs no slope (which may be 0 or infinite) and is exactly monotone in s despite
+        # rounding of x.
         low, high = 0.0, 1.0
         for _ in range(HALVINGS):
             middle = (low + high) / 2
@@ -62,9 +59,9 @@ class Easing:
 
     @property
     def end_speeds(self) -> tuple[float, float]:
-        """How fast time runs at the start and at the end, from 0, at rest, to infinity; 1 is even.
+        """Slopes of the curve at the start and at the end, from 0 to infinity; 1 is linear.
 
-        A hold has no pace, and 0 at both.
+        Both are 0 for a hold.
         """
         if self.curve is None:
             return 0.0, 0.0
@@ -74,7 +71,7 @@ class Easing:
         )
 
     def reversed(self) -> Self:
-        """Return the easing of the interval played backwards; a hold stays a hold."""
+        """Return the easing of the segment played backwards; a hold stays a hold."""
         if self.curve is None:
             return self
         x1, y1, x2, y2 = self.curve
@@ -87,7 +84,7 @@ class Easing:
 
     @classmethod
     def parse(cls, value: object) -> "Easing":
-        """Return the easing written as the name of a preset or as a list of four numbers."""
+        """Return the easing for the name of a preset or a list of four numbers."""
         if isinstance(value, str):
             if value not in PRESETS:
                 raise LissomError(
@@ -104,13 +101,13 @@ class Easing:
         return cls(tuple(value))
 
     def to_json(self) -> str | list[float]:
-        """Return what `parse` reads back as this easing."""
+        """Return the value from which `parse` makes this easing."""
         name = self.name
         return name if self.curve is None or name != "custom" else list(self.curve)
 
 
 def _end_speed(first: tuple[float, float], second: tuple[float, float]) -> float:
-    """Return the slope of a curve at (0, 0), from its control points."""
+    """Return the slope of a curve at (0, 0) from its control points."""
     for x, y in (first, second):
         if x > 0.0:
             return y / x

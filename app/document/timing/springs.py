@@ -1,4 +1,4 @@
-"""Springs: handles that follow their place in the motion late, and swing about it."""
+"""Springs: secondary motion of handles that lag behind their positions and swing."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,23 +7,23 @@ from types import MappingProxyType
 from app.document.checks import NOTHING, Unknown, require
 
 MAX_SPRING_FREQUENCY = 1000.0  # Hz
-MAX_DAMPING = 100.0  # of the critical one
+MAX_DAMPING = 100.0  # 1 is critical damping
 MAX_LAG = 10_000.0  # frames
 MAX_STRENGTH = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spring:
-    """How a handle follows: a damped oscillator that the motion of its own place drives."""
+    """A damped oscillator that moves a handle, driven by the motion of the handle's position."""
 
-    handle: int  # its id
+    handle: int  # handle id
     frequency: float  # in Hz
-    damping: float  # 1 is critical: it comes back without swinging over
+    damping: float  # 1 is critical damping, without overshoot
     lag: float = 0.0  # frames
-    strength: float = 1.0  # how far it swings, 1 as the oscillator does
-    # The id of the handle about which it swings; None is the one that `root_of` finds.
+    strength: float = 1.0  # factor of the displacement
+    # Id of the handle about which the handle swings; None takes the result of `spring_root`.
     root: int | None = None
-    # How far it may leave its distance from the root: 0 keeps it, 1 swings freely, root or not.
+    # Freedom of the distance from the root: 0 keeps the distance, 1 ignores the root.
     stretch: float = 0.0
     enabled: bool = True
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
@@ -53,7 +53,8 @@ class Spring:
         require(self.root != self.handle, "A spring swings about another handle than its own.")
 
 
-# By name: frequency and damping. Measured on the samples' tails and ears; the others are between.
+# Frequency and damping by name. "tail" and "ear" are measured on the samples, the others are chosen
+# between them.
 SPRING_PRESETS: Mapping[str, tuple[float, float]] = MappingProxyType(
     {
         "tail": (1.6, 0.18),

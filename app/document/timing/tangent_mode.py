@@ -1,4 +1,4 @@
-"""How motion passes a key, of a pose or of a track."""
+"""Tangent modes of keys."""
 
 from enum import StrEnum
 
@@ -6,10 +6,10 @@ from app.document.checks import require
 
 
 class TangentMode(StrEnum):
-    """How the motion passes a key; the values are the names in files.
+    """How motion goes through a key; the values are the names in files.
 
-    Through at one velocity, where it comes from one key and goes on to another; in a corner, coming
-    and going straight; or with a stop. To hold is to have no motion until the next key.
+    SMOOTH has one velocity on both sides, CORNER has straight tangents on each side, STOP has zero
+    velocity. HOLD keeps the key until the next one.
     """
 
     SMOOTH = "through"
@@ -19,7 +19,7 @@ class TangentMode(StrEnum):
 
 
 def require_tangent_mode(passing: str) -> None:
-    """Raise a `LissomError` unless a key can be passed so; to hold is an easing."""
+    """Refuse unknown tangent modes, and HOLD, which is stored as an easing."""
     require(
         passing in (TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP),
         "A key is passed through, in a corner or with a stop, not "

@@ -1,4 +1,4 @@
-"""Tracks: keys of single handles, beside those of whole poses."""
+"""Tracks: keys of single handles."""
 
 import math
 from dataclasses import dataclass, field, replace
@@ -16,20 +16,21 @@ from app.document.checks import (
 )
 from app.document.timing.base_key import BaseKey
 
-MAX_TRACK_ROTATION = 20 * math.tau  # either way
+MAX_TRACK_ROTATION = 20 * math.tau  # radians, either direction
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrackKey(BaseKey):
-    """Where a track wants its handles at a frame, and the way from there to its next key."""
+    """Position of a track's handles at a frame, and the segment to the next key."""
 
-    # Of a track with the pose, by how much the handle is beside its place in the base motion, in
-    # the frame that turns with the shape there; of a planted one, its place in the picture. Pixels.
+    # For a pose-space track, the displacement of the handle from the base motion, in a frame that
+    # rotates with the shape. For a scene-space track, the position in the picture. Pixels.
     place: complex
-    # By how much the shape turns there beyond the base motion, in radians; where the track turns.
+    # Rotation of the shape at the handle relative to the base motion, in radians, if the track keys
+    # rotation.
     turn: float = 0.0
-    # With which the motion passes it where it goes through, in pixels a frame, as the place is
-    # told; None for what its neighbours and the easings make of it.
+    # Velocity through the key in pixels per frame, in the space of `place`. None derives it from
+    # the neighbouring keys and the easings.
     velocity: complex | None = None
 
     def __post_init__(self) -> None:
@@ -47,32 +48,30 @@ class TrackKey(BaseKey):
         )
 
     def retimed(self, frame: int, pace: float) -> Self:
-        """Return the key at another frame of a motion that runs so many times as fast."""
+        """Return the key at another frame, with its velocity multiplied by `pace`."""
         velocity = None if self.velocity is None else pace * self.velocity
         return replace(self, frame=frame, velocity=velocity)
 
     def without_velocity(self) -> Self:
-        """Return the key passed as its neighbours and the easings have it."""
+        """Return the key without a velocity of its own."""
         return self if self.velocity is None else replace(self, velocity=None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Track:
-    """A clock of one handle's own, or of some that move together, over the layer's motion.
+    """Keys of one handle, or of several that move together, on top of the layer's motion.
 
-    It acts from its first key to its last one, both included, and nowhere else.
+    A track acts from its first to its last key, both included.
     """
 
-    # The ids of its handles. Its keys are of the first one; the others are moved by as much.
+    # Handle ids. The keys belong to the first; the other handles get the same displacement.
     handles: tuple[int, ...]
-    is_scene_space: bool = (
-        False  # whether its keys are places in the picture, and not beside the pose
-    )
-    keys: tuple[TrackKey, ...]  # in the order of their frames; there is always one
-    delay: int = 0  # frames by which it is late; in a loop it comes round
-    # How far around its handles the body gives, from 0, hardly, to 1, as it likes.
+    is_scene_space: bool = False  # whether keys are positions in the picture
+    keys: tuple[TrackKey, ...]  # in the order of their frames, at least one
+    delay: int = 0  # in frames; wraps around in a loop
+    # How far the displacement spreads around the handles, from 0 (hardly) to 1 (freely).
     reach: float = 1.0
-    keys_rotation: bool = False  # whether its keys turn the shape at the handles, too
+    keys_rotation: bool = False  # whether keys also rotate the shape at the handles
     enabled: bool = True
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
@@ -93,5 +92,5 @@ class Track:
 
     @property
     def key_frames(self) -> frozenset[int]:
-        """The frames that have a key, without the delay."""
+        """The frames of the keys, without the delay."""
         return frozenset(key.frame for key in self.keys)

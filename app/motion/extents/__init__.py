@@ -1,8 +1,8 @@
-"""How far an animation moves over the plane, in few frames or very many.
+"""Bounding boxes of animations, with few frames or very many.
 
-In: documents, and where their layers are in a frame.
+In: documents, and positions of their layers in a frame.
 Out: boxes.
-Imports: `app.document`, `app.errors`, what else is in `app.motion`.
+Imports: `app.document`, `app.errors`, the other packages of `app.motion`.
 """
 
 from app.motion.extents.extent import (

@@ -1,4 +1,4 @@
-"""How far an animation moves over the plane."""
+"""Bounding boxes of animations."""
 
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -22,13 +22,13 @@ from engine.arrays import Complexes, Floats
 
 
 class BoundingBox(NamedTuple):
-    """A rectangle from its lower left to its upper right corner."""
+    """A rectangle by its lower left and upper right corners."""
 
     lower: complex
     upper: complex
 
     def contains(self, other: "BoundingBox", *, slack: float) -> bool:
-        """Tell whether the other box sticks out nowhere by more than `slack`."""
+        """Return whether the other box exceeds this one by at most `slack` on each side."""
         below, above = other.lower - self.lower, self.upper - other.upper
         return min(below.real, below.imag, above.real, above.imag) >= -slack
 
@@ -38,13 +38,13 @@ class BoundingBox(NamedTuple):
 
 
 def bounding_box(points: Complexes) -> BoundingBox:
-    """Return the smallest box around points (n,), of which there is at least one."""
+    """Return the bounding box of points (n,), n ≥ 1."""
     x, y = points.real, points.imag
     return BoundingBox(complex(x.min(), y.min()), complex(x.max(), y.max()))
 
 
 def extent_key(document: Document) -> tuple[object, ...]:
-    """Return all of a document that its extent depends on; equal where the extent is."""
+    """Return the values that determine the extent of a document; equal for equal extents."""
     motions = [(motion_source(each), each in document.exported_layers) for each in document.layers]
     frames = frames_for_fit(document, export_frame_range(document))
     return (*motions, document.frames, document.loop, document.fps, frames)
@@ -56,16 +56,10 @@ def measure_extent(
     joints: ParentTransforms | None = None,
     corrected: Mapping[int, CorrectedFrames] | None = None,
 ) -> BoundingBox:
-    """Return the box around all that an export of a document shows.
+    """Return the bounding box of an export's motion.
 
-    Parameters
-    ----------
-    stores : mapping of int to InbetweenCache
-        One for each layer, by its id, that has its in-betweens.
-    joints : ParentTransforms, optional
-        What is true of them is used again.
-    corrected : mapping of int to CorrectedFrames, optional
-        Whole, by the layers' ids.
+    `stores` have all in-betweens, and `corrected` all corrections, by layer id. Earlier transforms
+    `joints` are reused.
     """
     clips = {layer: clip_of(document, layer) for layer in stores}
     frames = frames_for_fit(document, export_frame_range(document))
@@ -87,24 +81,16 @@ def measure_extent(
 
 
 class _Missing(Exception):  # noqa: N818 - it ends a search
-    """A frame is not there yet."""
+    """A frame is not computed yet."""
 
 
 def motion_bounding_box(
     document: Document, frames: FrameRange, place: Callable[[int, int], Complexes | None]
 ) -> BoundingBox | None:
-    """Return the box around all layers in all of these frames, of which few may be measured.
+    """Return the bounding box of all layers in these frames; long ranges are sampled.
 
-    Parameters
-    ----------
-    frames : FrameRange
-    place : callable
-        Returns where the vertices of a layer, by its id, are in a frame; None ends the search.
-
-    Raises
-    ------
-    LissomError
-        If a vertex is nowhere.
+    `place` returns the vertex positions of a layer, by its id, in a frame. None ends the search.
+    Raises a `LissomError` if a position is not finite.
     """
     if not document.exported_layers:
         return BoundingBox(0j, complex(*document.canvas))

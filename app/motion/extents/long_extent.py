@@ -1,9 +1,9 @@
-"""How far the layers reach in more frames than are measured one by one.
+"""Extents of animations too long to measure every frame.
 
-Between two frames at which anything is keyed, layers move smoothly, or as often before in a cycle.
-There some frames are measured. Where a box that bends, or moves fast, may stick out of all between
-two of them, the one in the middle is measured, too, and so on. What is left when too many were
-measured counts as far as it may reach, so that nothing is beyond what is found.
+Between two frames with keys, layers move smoothly, or repeat a cycle. Some of these frames are
+measured. A side that bends or moves fast may exceed its values at both ends of a gap. The middle
+frame of such a gap is then measured, and so on. Gaps left at the budget count with their bound, so
+the result contains all frames.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -17,48 +17,46 @@ import numpy as np
 from app.document import Document, FrameRange, Layer
 from engine.arrays import Floats
 
-MOST_MEASURED: Final = 1_000  # frames; up to so many are all measured
-MOST_WITHIN: Final = 7  # rounds that are measured first between two keys
-MOST_PHASES: Final = 240  # frames of a round that are measured, beside those that are keyed
-MOST_AT_FIRST: Final = 60  # frames of these rounds
-FEWEST_ROUNDS: Final = 4  # of which only some are measured
-MOST_REPEATED: Final = (
-    250  # frames that a cycle brings again and that are measured as keyed ones are
-)
-SETTLING: Final = 48  # frames that springs take to come to rest, or most of it
-# Of the longer side: what is found may reach so much less than some frame. It is a fraction of the
-# room that a fitted picture has around the motion.
+MOST_MEASURED: Final = 1_000  # frames; shorter ranges are measured completely
+MOST_WITHIN: Final = 7  # periods measured first between two keys
+MOST_PHASES: Final = 240  # measured frames of a period, besides frames with keys
+MOST_AT_FIRST: Final = 60  # frames of these first periods
+FEWEST_ROUNDS: Final = 4  # for fewer periods, every frame counts as a period
+MOST_REPEATED: Final = 250  # repeated key frames of a cycle that are measured as keys
+SETTLING: Final = 48  # frames until springs come nearly to rest
+# Fraction of the longer side by which the result may be too small. It is a fraction of the margin
+# around a fitted picture.
 TOLERANCE: Final = 0.002
-# Of what a box changes between two frames: by how much it is taken to reach beyond both.
+# Assumed overshoot between two frames, as a fraction of the change between them.
 BEYOND: Final = 0.25
 GOLDEN: Final = (5**0.5 - 1) / 2
 
-# How far the layers reach in a frame: to the left, down, right and up, (f, 4).
+# Extents of the layers in a frame: left, down, right and up, (f, 4).
 Reaches = Floats
 Measure = Callable[[int], Reaches]
 
 
 class UnkeyedFrames(NamedTuple):
-    """Frames between two at which something is keyed, both included, in rounds of so many."""
+    """Frames between two neighbouring frames with keys, both included, divided into periods."""
 
     first: int
     last: int
     period: int
-    phases: Sequence[int]  # the frames of each round that are measured, from its first one on
+    phases: Sequence[int]  # measured frames of each period, relative to its first
 
     @property
     def period_count(self) -> int:
-        """How many whole rounds there are."""
+        """Number of whole periods."""
         return (self.last - self.first + 1) // self.period
 
     def frames_of_period(self, number: int) -> list[int]:
-        """Return the frames of a round that are measured; after the last one, of what is left."""
+        """Return the measured frames of a period; the last number is the remainder."""
         start = self.first + number * self.period
         return [start + phase for phase in self.phases if start + phase <= self.last]
 
 
 class _Gap(NamedTuple):
-    """Rounds between two that are measured, and how far they may reach, (4,)."""
+    """Periods between two measured ones, and the bound of their extent, (4,)."""
 
     stretch: UnkeyedFrames
     ends: tuple[int, int]
@@ -67,7 +65,7 @@ class _Gap(NamedTuple):
 
 
 def farthest_reach(document: Document, frames: FrameRange, measure: Measure) -> Floats:
-    """Return how far the layers reach in any of these frames: left, down, right and up, (4,)."""
+    """Return the largest extents of the layers in these frames: left, down, right and up, (4,)."""
     if frames.last - frames.first < MOST_MEASURED:
         every = [measure(frame).max(axis=0) for frame in range(frames.first, frames.last + 1)]
         whole: Floats = np.max(every, axis=0)
@@ -80,7 +78,7 @@ def farthest_reach(document: Document, frames: FrameRange, measure: Measure) -> 
 
 
 class _Search:
-    """What is measured of the frames, and how far that reaches."""
+    """The measured extents and the number of measurements."""
 
     def __init__(self, measure: Measure) -> None:
         self._measure = measure
@@ -88,11 +86,11 @@ class _Search:
         self._measured = 0
 
     def begin(self, stretch: UnkeyedFrames, most: int) -> Iterator[_Gap]:
-        """Measure the ends of a stretch and some rounds within; yield the gaps between these."""
+        """Measure the ends of a range and some periods within; yield the gaps between them."""
         within = max(1, min(most, MOST_AT_FIRST // len(stretch.phases)))
         if rest := stretch.frames_of_period(stretch.period_count):
             self._reach(rest)
-        # At uneven distances: what swings may be alike at even ones.
+        # Uneven distances, since a swinging motion may repeat at even ones.
         last = stretch.period_count - 1
         shares = ((i + (i * GOLDEN) % 1 - 0.5) / (within + 1) for i in range(1, within + 1))
         numbers = sorted({0, last, *(round(last * share) for share in shares)})
@@ -101,7 +99,7 @@ class _Search:
             yield from self._split(stretch, ends, both)
 
     def close(self, gaps: list[_Gap]) -> Floats:
-        """Measure within the gaps that may reach farthest; return how far all reaches."""
+        """Measure within the gaps with the largest bounds; return the bounds of all extents."""
         turns = count()
         left = [(-self._excess(gap), next(turns), gap) for gap in gaps]
         heapify(left)
@@ -124,7 +122,7 @@ class _Search:
         return float(np.max(gap.bound - self._farthest))
 
     def _reach(self, frames: Sequence[int]) -> Floats:
-        """Measure some frames; return how far the layers reach in each, (p, f, 4)."""
+        """Measure frames; return the extents of the layers in each, (p, f, 4)."""
         reaches = np.array([self._measure(frame) for frame in frames])
         self._farthest = np.maximum(self._farthest, reaches.max(axis=(0, 1)))
         self._measured += len(frames)
@@ -150,10 +148,10 @@ class _Search:
 
 
 def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
-    """Return the stretches between the frames at which anything is keyed."""
+    """Return the ranges between frames with keys."""
     sprung = [each for each in document.layers if any(spring.enabled for spring in each.springs)]
     swinging = {each.id for each in sprung}
-    # What carries springs sets them swinging, too.
+    # A moving ancestor sets springs swinging too.
     swinging |= {each.id for layer in sprung for each in document.all_ancestors(layer.id)}
     keyed = {
         frame
@@ -173,9 +171,9 @@ def _stretches(document: Document, frames: FrameRange) -> list[UnkeyedFrames]:
 
 
 def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
-    """Yield the frames at which a layer's motion is keyed, and those beside where it may jump.
+    """Yield the frames of a layer's keys, and the frames next to possible jumps.
 
-    Springs that it sets swinging take `settling` frames after each of these.
+    After each of them follow `settling` frames for springs that the layer sets swinging.
     """
     moves = [*layer.key_frames, *(key.frame for key in layer.transform_keys)]
     jumps = [frame for cycle in layer.cycles for frame in (cycle.first, cycle.last)]
@@ -186,7 +184,7 @@ def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
         moves += times
         jumps += (times[0], times[-1])
     if document.loop:
-        # What is late goes on from the beginning.
+        # Delayed keys wrap around.
         first, length = document.frames.first, document.frames.last - document.frames.first
         moves += [first + (frame - first) % max(length, 1) for frame in moves]
     for cycle in layer.cycles:
@@ -202,7 +200,7 @@ def _keyed(document: Document, layer: Layer, settling: int) -> Iterator[int]:
 
 
 def _period(document: Document, first: int, last: int) -> int:
-    """Return after how many frames all that repeats between two frames is as before."""
+    """Return the common period of all cycles that repeat between two frames, or 1."""
     end = document.frames.last
     period = lcm(
         *(

@@ -1,7 +1,7 @@
-"""The motion of a clip at some points: in-betweens, and how handles stay and go their own ways.
+"""The motion of a clip at given points: in-betweens, auto-pins, tracks and springs.
 
 In: a clip and points.
-Out: where they are at any frame, with f_z and f_z̄.
+Out: positions at any frame, with f_z and f_z̄.
 Imports: `app.document`, `app.errors`.
 """
 

@@ -1,4 +1,4 @@
-"""A clip's motion at any frame: the one way to it for exports, joints and checks."""
+"""The motion of a clip at any frame, for exports, attachments and checks."""
 
 from app.document import Clip, Variant
 from app.motion.inbetweens.frame_corrector import FrameCorrector, needs_correction
@@ -10,24 +10,14 @@ from engine.interpolation import Frame
 
 
 class Animation:
-    """A clip's motion at the points of a sampler: from key to key, and as handles stay and go.
+    """The motion of a clip at a sampler's points, with tracks and springs.
 
-    Parameters
-    ----------
-    variant : str, optional
-        The layer's own by default.
-    points : complex128, shape (m,), optional
-        By default the vertices of the domain's mesh.
-    sampler : PoseSampler, optional
-        An earlier animation's; it is used again if its domain and anchor are the layer's: poses
-        that it has sampled are not sampled again.
+    The variant is by default the layer's own, and the points, complex128 (m,), are the vertices of
+    the domain's mesh. An earlier sampler is reused if its domain and anchor are the layer's.
+    `carried` returns the rigid motion of the layer at a frame, for scene-space tracks, by default
+    the identity.
 
-    Attributes
-    ----------
-    base : KeyframeMotion
-        The motion from key to key, with handles that stay, and without tracks and springs.
-    carried : callable, optional
-        Where the layer hangs, at a frame, for what is planted in the scene; by itself without.
+    `base` is the motion with auto-pins, without tracks and springs.
     """
 
     def __init__(
@@ -56,17 +46,17 @@ class Animation:
 
     @property
     def corrections(self) -> FrameCorrector | None:
-        """What is added to the base motion; None where nothing ever is."""
+        """Corrections of the base motion; None without tracks and springs."""
         if self._corrections is None and self._is_corrected:
             self._corrections = FrameCorrector(self.clip, self.variant, self.sampler, self.carried)
         return self._corrections
 
     def positions(self, frame: float) -> Complexes:
-        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        """Return the positions (m,) at a frame, possibly fractional."""
         return self.frame(frame).positions
 
     def frame(self, frame: float) -> Frame:
-        """Return positions and derivatives of the points at a frame."""
+        """Return positions and derivatives at a frame."""
         correction = None if self.corrections is None else self.corrections.correction_at(frame)
         if correction is None:
             return self.base.frame(frame)

@@ -1,4 +1,4 @@
-"""In-betweens of a clip's segments, with the handles that stay between their keys."""
+"""In-betweens of a clip's segments with auto-pins."""
 
 from functools import partial
 
@@ -25,32 +25,30 @@ from engine.interpolation import (
     solve_pins,
 )
 
-BESIDE = 0.03  # of the diameter: nearer to an anchor or a handle that stays, handles give way
-FIRM = 0.01  # of full firmness: a handle that lacks less is held fully
-# The one-sided difference of fourth order: in time, in-betweens are analytic between keys. Around
-# holes they may jump at the key itself, where nothing is looked at.
+BESIDE = 0.03  # fraction of the diameter: closer to the anchor or a pinned handle, handles yield
+FIRM = 0.01  # a handle with firmness above 1 minus this has firmness 1
+# One-sided difference of fourth order. In-betweens are analytic in time between keys. Around holes
+# they may jump at the key itself, which is not sampled.
 STEP = 2e-3
 FORWARD = (-77 / 12, 107 / 6, -39 / 2, 61 / 6, -25 / 12)
-KEPT = 3  # segments that stay prepared for pins: one, with those on both sides
-SLOWEST = 1e-9  # pace below which a segment begins at rest
+KEPT = 3  # cached segments: one, and both neighbours
+SLOWEST = 1e-9  # speed below which a segment begins at rest
 
 
 class AutoPins:
     """The auto-pins of a clip.
 
-    Parameters
-    ----------
-    clip : Clip
-    variant : Variant
-    sampler : PoseSampler
-        Of the layer's domain, at any points; what it knows of the outline is used, and kept there.
+    `sampler` belongs to the layer's domain, at any points. Its cached data of the outline is used
+    and extended.
     """
 
     def __init__(self, clip: Clip, variant: Variant, sampler: PoseSampler) -> None:
         self.clip, self._variant, self._known = clip, variant, sampler
         self._segments = pinned_segments(clip)
         self._prepared: tuple[PointCorrector, PoseSampler] | None = None
-        self._looked_at: dict[int, Inbetweens] = {}  # at its own sampler, the latest last
+        self._looked_at: dict[
+            int, Inbetweens
+        ] = {}  # in the order of last use, at the sampler of the handles
 
     def inbetweens(self, number: int, sampler: PoseSampler) -> Inbetweens:
         """Return the in-betweens of a segment at the points of a sampler."""
@@ -59,12 +57,12 @@ class AutoPins:
         return base if pins is None else base.with_correction(pins)
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
-        """Return one of these; of a variant that makes single frames."""
+        """Return a single in-between, for a variant that makes single frames."""
         transit, bounds = pose_segments(self.clip)[number], self.clip.layer.bounds
         return sampler.frame_of(transit, bounds, self._variant, time, self.series(number))
 
     def series(self, number: int) -> CorrectionSeries | None:
-        """Return the corrections of a segment; None where nothing is pinned."""
+        """Return the corrections of a segment; None without pins."""
         segment = self._segments[number]
         if segment is None:
             return None
@@ -81,7 +79,7 @@ class AutoPins:
         return solve_pins(self._own_base(number), corrector, pins, bounds)
 
     def _own_base(self, number: int) -> Inbetweens:
-        """Return a segment without pins at the sampler of these, which its neighbours ask for."""
+        """Return a segment without pins at the handles; neighbour segments use it too."""
         base = self._looked_at.pop(number, None) or self._base(number, self.prepare()[1])
         self._looked_at[number] = base
         for oldest in list(self._looked_at)[:-KEPT]:
@@ -89,13 +87,13 @@ class AutoPins:
         return base
 
     def prepare(self) -> tuple[PointCorrector, PoseSampler]:
-        """Return what corrects the handles, and a sampler of these with the values it takes."""
+        """Return the corrector of the handles, and a sampler with the values that it needs."""
         if self._prepared is None:
             self._prepared = prepare_corrector(self.clip.layer, self._known)
         return self._prepared
 
     def _pins(self, number: int, segment: PinnedSegment, sampler: PoseSampler) -> SegmentPins:
-        """Return where the handles are wanted during a segment."""
+        """Return the targets of the handles during a segment."""
         clip, layer = self.clip, self.clip.layer
         own = clip_segments(clip)[number]
         keys = [clip.keys[index] for index in (own.first, own.last)]
@@ -104,7 +102,7 @@ class AutoPins:
         for side, other in enumerate(segment.neighbours):
             pace = self._pace(number, side)
             if other is not None and SLOWEST < pace < np.inf:
-                # Pixels a frame there, against the velocity of the motion that has to stay.
+                # Pixels per frame, opposite to the velocity of the motion that is pinned.
                 away = self._velocity(other, 1 - side)
                 slopes[side] = -self._pace(other, 1 - side) * away / pace
         anchor = layer.anchor if layer.has_parent else None
@@ -118,14 +116,14 @@ class AutoPins:
         )
 
     def _pace(self, number: int, side: int) -> float:
-        """Return how fast the time of a segment's in-betweens runs at one of its ends, a frame."""
+        """Return the speed of a segment's in-between time at one end, per frame."""
         span, transit = clip_segments(self.clip)[number], pose_segments(self.clip)[number]
         easing = self.clip.keys[span.first].easing.end_speeds
         pace = transit.end_speeds[side] * easing[side] / span.frames
         return pace if np.isfinite(pace) else 0.0
 
     def _velocity(self, number: int, side: int) -> Complexes:
-        """Return how fast points leave a segment's first key, or reach its second one, by time."""
+        """Return the velocity over the in-between time at a segment's first or second key."""
         base, sign = self._own_base(number), -1.0 if side else 1.0
         steps = [base.frame(side + sign * (i + 1) * STEP).positions for i in range(len(FORWARD))]
         weights = sign / STEP * np.array(FORWARD, dtype=np.complex128)
@@ -133,10 +131,10 @@ class AutoPins:
         return velocity
 
     def _firmness(self, segment: PinnedSegment, anchor: complex | None) -> Floats:
-        """Return how firmly handles are held: 0 on what stays more than they do, 1 far from it.
+        """Return the firmness of each handle: 0 on a point of higher rank, 1 far from it.
 
-        The anchor stays more than pinned handles, these more than fading ones, and the others give
-        way to all: two points of one place that are wanted apart would tear the drawing.
+        The anchor ranks above pinned handles, these above fading ones, and these above all others.
+        Two close points with different targets would tear the drawing.
         """
         layer = self.clip.layer
         places = np.array([each.position for each in layer.handles], dtype=np.complex128)
@@ -149,7 +147,7 @@ class AutoPins:
 
 
 def firmness_at(distances: Floats) -> Floats:
-    """Return how firmly handles are held at distances, over the diameter, from what stays more."""
+    """Return the firmness at distances, relative to the diameter, from points of higher rank."""
     far = -np.expm1(-((distances / BESIDE) ** 2))
     firmness: Floats = np.where(far > 1 - FIRM, 1.0, far)
     return firmness

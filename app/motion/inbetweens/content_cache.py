@@ -1,4 +1,4 @@
-"""Values that are worked out from arrays, found again by what is in the arrays."""
+"""A cache of computed values by the contents of arrays."""
 
 import threading
 from collections.abc import Callable, Hashable
@@ -12,29 +12,26 @@ Value = TypeVar("Value")
 
 
 class ContentCache:
-    """A cache of frozen values within a budget; several threads may use it at once.
+    """A thread-safe cache of frozen values within a budget; the least recently used go first.
 
-    Two domains with equal outlines, as those of a duplicated layer or of a file that is opened
-    again, share what is worked out of them. What was not used longest makes room first.
-
-    Parameters
-    ----------
-    budget : int
-        Bytes of all values together.
+    Domains with equal outlines share their values, for example after a layer is duplicated or a
+    file is opened again. `budget` limits the bytes of all values together.
     """
 
     def __init__(self, budget: int) -> None:
         self._budget = budget
         self._guard = threading.Lock()
-        self._values: dict[Hashable, tuple[Any, int]] = {}  # with their bytes, the latest used last
+        self._values: dict[
+            Hashable, tuple[Any, int]
+        ] = {}  # with sizes in bytes, in the order of last use
         self._used = 0
 
     def find(
         self, key: Hashable, make: Callable[[], Value], size_of: Callable[[Value], int]
     ) -> Value:
-        """Return the value of a key, made where it is not there.
+        """Return the value of a key, computed if missing.
 
-        Two threads that ask at once may both make it; one of the equal values is kept.
+        Two threads may compute the same value at once; one of the equal values is kept.
         """
         with self._guard:
             known = self._values.pop(key, None)
@@ -54,7 +51,7 @@ class ContentCache:
         return value
 
     def forget(self, key: Hashable) -> None:
-        """Let go of the value of a key, where memory is short."""
+        """Drop the value of a key."""
         with self._guard:
             self._drop(key)
 
@@ -64,7 +61,7 @@ class ContentCache:
 
 
 def digest(*arrays: npt.NDArray[Any] | None) -> bytes:
-    """Return a digest by which arrays with the same contents, types and shapes are known."""
+    """Return a digest of contents, types and shapes of arrays."""
     found = blake2b(digest_size=16)
     for array in arrays:
         if array is None:

@@ -1,7 +1,7 @@
-"""The corrections of a clip's frames: springs and tracks over the motion from key to key.
+"""Corrections of a clip's frames by springs and tracks.
 
-Each frame is worked out by itself, and known by all that it follows from, so that undo, a copied
-key and another window onto the same layer find what was made before.
+Each frame is computed alone and cached by its content. Undo, copied keys and other windows of the
+same layer thus find earlier results.
 """
 
 import threading
@@ -23,20 +23,18 @@ from engine.arrays import Complexes, Floats
 from engine.deform.correction import PointTargets
 from engine.interpolation import CorrectionBase, correct_frame, evaluate_base
 
-KEPT = 2**26  # bytes of corrections of one outline that are kept
-FORCE = 8.0  # per L: the largest pull of a track; within the limits hardly anything takes more
-# Points of the outline that hold it where a track does not reach far, how firmly at most, and at
-# least: there they count for nothing.
+KEPT = 2**26  # bytes of cached corrections per outline
+FORCE = 8.0  # per L: the largest force of a track; within the limits hardly any track needs more
+# Number of outline points that hold the shape if a track's reach is small, and their largest and
+# smallest firmness. The smallest has no effect.
 HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
 
 
 class BaseMotionFrame(NamedTuple):
-    """What tracks are relative to at a frame.
+    """The frame that tracks are relative to.
 
-    Parameters
-    ----------
-    places, turns : complex128, shape (h,)
-        Where the handles are without them, and by what factor the shape is turned there.
+    `positions` (h,) are the places of the handles without tracks. `rotations` (h,) are the factors,
+    of modulus 1, by which the shape turns there.
     """
 
     positions: Complexes
@@ -44,7 +42,7 @@ class BaseMotionFrame(NamedTuple):
 
 
 def have_same_base_frames(clip: Clip, other: Clip) -> bool:
-    """Tell whether two clips of a layer differ in its tracks alone, if at all."""
+    """Return whether two clips of a layer differ at most in tracks."""
 
     def source(of: Clip) -> tuple[object, ...]:
         layer = of.layer
@@ -59,7 +57,7 @@ def have_same_base_frames(clip: Clip, other: Clip) -> bool:
 
 
 def needs_correction(clip: Clip) -> bool:
-    """Tell whether tracks or springs may change frames of a clip."""
+    """Return whether tracks or springs may change frames of a clip."""
     layer = clip.layer
     own = [each.enabled for each in layer.tracks] + [each.enabled for each in layer.springs]
     return clip.baseline is None and any(own)
@@ -68,18 +66,9 @@ def needs_correction(clip: Clip) -> bool:
 class FrameCorrector:
     """The corrections of a clip.
 
-    Parameters
-    ----------
-    clip : Clip
-    variant : Variant
-    sampler : PoseSampler
-        Of the layer's domain, at any points; what it knows of the outline is used, and kept there.
-    carried : callable, optional
-        Where the layer hangs, at a frame; by itself without.
-
-    Attributes
-    ----------
-    clip : Clip
+    The sampler belongs to the layer's domain, at any points. Its cached data of the outline is used
+    and extended. `carried` returns the rigid motion of the layer at a frame, by default the
+    identity.
     """
 
     def __init__(
@@ -109,42 +98,42 @@ class FrameCorrector:
         self._own = SecondaryMotion(clip, carried)
 
     def correction_at(self, frame: float) -> SecondaryCorrection | None:
-        """Return what is added to the motion at a frame; None where that is nothing."""
+        """Return the correction at a frame; None without one."""
         with self._lock:
             if not self._own.is_active(frame):
                 return None
             base, count = self._base(frame), len(self._points)
-            # Told only now: if it were kept, nothing of this would go away with the last one who
-            # has it.
+            # Passed here and not stored: a stored bound method would be a reference cycle, and the
+            # object would outlive its last user.
             wanted = self._own.targets_at(frame, base.places[:count], base.fz[:count], self._places)
             return None if wanted is None else self._solve_correction(frame, base, wanted)
 
     @property
     def run_up(self) -> int:
-        """Frames before a frame from which its correction follows."""
+        """Number of earlier frames that affect the correction of a frame."""
         return self._own.run_up
 
     @property
     def nbytes(self) -> int:
-        """Bytes of what frames are found with."""
+        """Bytes of the data from which frames are computed."""
         return self._motion.nbytes + self._motion.sampler.extension_bytes
 
     def with_tracks(self, clip: Clip) -> "FrameCorrector":
-        """Return the corrections of a clip that differs in its tracks alone."""
+        """Return the corrections of a clip that differs only in its tracks."""
         changed = copy(self)
         changed.clip = clip
         changed._own = self._own.with_tracks(clip)  # noqa: SLF001 - its own
         return changed
 
     def base_frame_at(self, frame: float) -> BaseMotionFrame:
-        """Return what tracks are relative to at a frame."""
+        """Return the frame that tracks are relative to."""
         with self._lock:
             found, count = self._motion.frame(frame), len(self._points)
             fz = found.fz[:count]
             return BaseMotionFrame(found.positions[:count], fz / np.abs(fz))
 
     def _places(self, frame: float) -> Complexes:
-        """Return where the handles are at a frame before springs and tracks, (h,)."""
+        """Return the positions of the handles at a frame before springs and tracks, (h,)."""
         return self._motion.frame(frame).positions[: len(self._points)]
 
     def _base(self, frame: float) -> CorrectionBase:
@@ -154,7 +143,7 @@ class FrameCorrector:
     def _solve_correction(
         self, frame: float, base: CorrectionBase, wanted: SecondaryTargets
     ) -> SecondaryCorrection:
-        """Return the correction by which handles go their own ways."""
+        """Return the correction that brings the handles to their targets."""
         targets, bounds = self._targets(base, wanted), self.clip.layer.bounds
 
         def solve() -> SecondaryCorrection:
@@ -174,17 +163,17 @@ class FrameCorrector:
         return self._remembered((*self._content_key(frame), *_content(wanted)), solve)
 
     def _targets(self, base: CorrectionBase, wanted: SecondaryTargets) -> PointTargets:
-        """Return the targets of handles with tracks and springs; the others stay.
+        """Return targets of handles with tracks and springs; other handles keep their places.
 
-        Those beside them, and those beside an anchor that stays, give way: held as firmly, they
-        would tear at it.
+        Handles close to them, or close to a fixed anchor, have less firmness, since they would tear
+        the drawing.
         """
         count, more = len(self._points), len(base.places) - len(self._points)
         size = self._corrector.boundary.size
         weights = np.where(wanted.has_target, 1.0, self._away_from(self._points[wanted.has_target]))
         if self._is_anchored:
             weights = weights * self._away_from(np.array([self.clip.layer.anchor]))
-        # The rest of the outline is held the more, the less far a track reaches.
+        # The rest of the outline is held more firmly for a smaller reach.
         held = HELD_BY * (1.0 - wanted.reach) ** 2
         give = more * size**2 / max(held, LEAST_HELD)
         return PointTargets(
@@ -199,14 +188,14 @@ class FrameCorrector:
         )
 
     def _away_from(self, others: Complexes) -> Floats:
-        """Return how far the handles are from some points, (h,): 0 at the nearest, 1 if far."""
+        """Return the firmness (h,) of handles near some points: 0 at a point, 1 far away."""
         away = np.abs(self._points[:, None] - others).min(axis=1, initial=np.inf)
         return firmness_at(away / self._corrector.boundary.size)
 
     def _remembered(
         self, key: tuple[object, ...], solve: Callable[[], SecondaryCorrection]
     ) -> SecondaryCorrection:
-        """Return the correction that is known by a key, solved where it is not."""
+        """Return the cached correction of a key, solved if missing."""
         with self._guard:
             known = self._known.pop(key, None)
         if known is None:
@@ -218,7 +207,7 @@ class FrameCorrector:
         return known
 
     def _content_key(self, frame: float) -> tuple[object, ...]:
-        """Return what the motion of a frame follows from; the poses stay alive with it."""
+        """Return the values that determine a frame's motion; they keep the poses alive."""
         clip, moment = self.clip, segment_time_at(self.clip, frame)
         resting = keyed_pose_at(clip, moment)
         if resting is not None:
@@ -228,5 +217,5 @@ class FrameCorrector:
 
 
 def _content(parts: Iterable[object]) -> tuple[object, ...]:
-    """Return values by which what follows from them is known."""
+    """Return hashable values; arrays become their bytes."""
     return tuple(each.tobytes() if isinstance(each, np.ndarray) else each for each in parts)

@@ -1,4 +1,4 @@
-"""The motion of a clip from key to key, before handles go their own ways."""
+"""The motion of a clip from key to key, before tracks and springs."""
 
 from collections.abc import Callable
 
@@ -7,22 +7,14 @@ from app.motion.inbetweens.auto_pins import AutoPins
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from engine.interpolation import Frame, Inbetweens
 
-KEPT = 4  # intervals that stay prepared
+KEPT = 4  # segments that stay prepared
 
 
 class KeyframeMotion:
-    """A clip's motion at the points of a sampler.
+    """The motion of a clip at a sampler's points.
 
-    Parameters
-    ----------
-    clip : Clip
-    variant : Variant
-    sampler : PoseSampler
-        Of the layer's domain and anchor.
-    pins : AutoPins, optional
-        Of the same clip and variant.
-
-    Of intervals, those that were asked for last stay prepared: frames come one after the other.
+    The sampler belongs to the layer's domain and anchor, the pins to the same clip and variant. The
+    last used segments stay prepared, since frames are usually requested in order.
     """
 
     def __init__(
@@ -33,16 +25,16 @@ class KeyframeMotion:
         self.sampler = sampler
         self._pins = pins or AutoPins(clip, variant, sampler)
         sampler.keep_only({key.pose for key in clip.keys})
-        # By their numbers, the latest last, with their bytes.
+        # By number, in the order of last use, with sizes in bytes.
         self._prepared: dict[int | Pose, tuple[Inbetweens, int]] = {}
 
     @property
     def nbytes(self) -> int:
-        """Bytes of what is prepared."""
+        """Bytes of the prepared segments."""
         return sum(size for _, size in tuple(self._prepared.values()))
 
     def frame(self, frame: float) -> Frame:
-        """Return positions and derivatives of the points at a frame."""
+        """Return positions and derivatives at a frame."""
         moment = segment_time_at(self.clip, frame)
         resting = keyed_pose_at(self.clip, moment)
         if resting is None:
@@ -52,9 +44,10 @@ class KeyframeMotion:
         return Frame(positions=positions, fz=fz, fzbar=fzbar, rho=None)
 
     def segment_at(self, frame: float) -> tuple[Inbetweens, float]:
-        """Return the in-betweens that have a frame, and its time among them.
+        """Return the in-betweens around a frame, and its time among them.
 
-        At a key they are those of its pose with itself, which can be corrected like all others.
+        At a key they are in-betweens of its pose with itself, which can be corrected like all
+        others.
         """
         moment = segment_time_at(self.clip, frame)
         resting = keyed_pose_at(self.clip, moment)
@@ -65,7 +58,7 @@ class KeyframeMotion:
         ), 0.0
 
     def inbetweens(self, interval: int) -> Inbetweens:
-        """Return the in-betweens of one of the clip's intervals."""
+        """Return the in-betweens of a segment."""
         return self._kept(interval, lambda: self._pins.inbetweens(interval, self.sampler))
 
     def _kept(self, key: int | Pose, prepare: Callable[[], Inbetweens]) -> Inbetweens:

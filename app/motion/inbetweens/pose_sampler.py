@@ -1,4 +1,4 @@
-"""Points of a domain at which in-betweens are wanted, and the samples of poses there."""
+"""Samples of poses at points of a domain, and in-betweens there."""
 
 import threading
 from collections.abc import Callable, Sequence, Set as AbstractSet
@@ -39,13 +39,13 @@ from engine.interpolation import (
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 
-# Outlines and keyframes that were sampled last, in bytes; what layers hold themselves takes no more
-# memory by being here, too. Transforms take far longest to make, and make no room for others.
+# Caches of sampled outlines and keyframes, in bytes. Values that layers hold take no additional
+# memory here. Transforms are the slowest to compute, so they have a cache of their own.
 _SAMPLED = ContentCache(96 * 2**20)
 _TRANSFORMS = ContentCache(32 * 2**20)
 
 
-MAX_PINNED = 512  # segments of one outline whose pins are kept
+MAX_PINNED = 512  # segments with cached pins per outline
 
 
 class _Sized(Protocol):
@@ -58,7 +58,7 @@ def _nbytes(value: _Sized | None) -> int:
 
 
 def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> PointCorrector:
-    """Return what corrects frames of a domain with targets for points (m,)."""
+    """Return the corrector of a domain's frames with targets for points (m,)."""
     content = digest(*boundary.loops, *boundary.span.cages, boundary.weights, points)
     make = partial(build_corrector, boundary, anchor, points)
     return _SAMPLED.find(("corrector", content, anchor), make, _nbytes)
@@ -67,15 +67,10 @@ def corrector_for(boundary: Boundary, anchor: complex, points: Complexes) -> Poi
 def prepare_corrector(
     layer: Layer, sibling: "PoseSampler", more: Complexes | None = None
 ) -> tuple[PointCorrector, "PoseSampler"]:
-    """Return what corrects a layer's handles, and a sampler of these with the values it takes.
+    """Return the corrector of a layer's handles, and a sampler with the values that it needs.
 
-    Parameters
-    ----------
-    layer : Layer
-    sibling : PoseSampler
-        Of its outline, cage and anchor.
-    more : complex128, shape (p,), optional
-        Further points that are corrected, after the handles.
+    The sibling has the same outline, cage and anchor. `more`, complex128 (p,), are further points
+    to correct, after the handles.
     """
     sites = sibling.sites
     points = np.array([each.position for each in layer.handles], dtype=np.complex128)
@@ -93,36 +88,30 @@ def prepare_corrector(
 
 
 class OutlineCache:
-    """What samplers of one outline and cage share, worked out when it is asked for first.
+    """Data shared by the samplers of one outline and cage, computed on first use.
 
-    Attributes
-    ----------
-    corrections : dict
-        Of frames, by all that they follow from; those that were wanted longest ago first. It is
-        read and changed under `guard`: several threads may.
-    tangents : dict
-        Of the motion through keys, by the poses and what else they follow from; under `guard`, too.
-    nbytes : int
-        The bytes that `forget_transform` lets go.
+    `corrections` of frames are cached by content, in the order of last use. `tangents` at smooth
+    keys are cached by poses and the other values that determine them. Access to both needs `guard`,
+    since several threads use them. `forget_transform` frees `nbytes` bytes.
     """
 
     def __init__(self, domain: MeshedDomain) -> None:
         self._domain = domain
         self._key = "transform", digest(*domain.loops, *domain.cages)
-        # Of its own, so that others wait for the transform alone.
+        # A lock of its own, so that other threads wait for the transform only.
         self._lock = threading.RLock()
         self._transform: HilbertTransform | None = None
         self.nbytes = 0
         self.corrections: dict[object, SecondaryCorrection] = {}
         self.tangents: dict[tuple[tuple[Pose, ...], InteriorKnot, Bounds, Variant], Tangent] = {}
         self.guard = threading.Lock()
-        # With the poses that keep the identities in their keys.
+        # With the poses whose ids are in the keys.
         self._pins: dict[SegmentKey, tuple[CorrectionSeries, tuple[Pose, ...]]] = {}
 
     def pins_of(
         self, pair: SegmentKey, poses: tuple[Pose, ...], solve: Callable[[], CorrectionSeries]
     ) -> CorrectionSeries:
-        """Return the pins of a segment, solved where they are not known."""
+        """Return the pins of a segment, solved if missing."""
         with self.guard:
             known = self._pins.pop(pair, None)
         if known is None:
@@ -135,7 +124,6 @@ class OutlineCache:
 
     @property
     def transform(self) -> HilbertTransform:
-        """The Hilbert transform of the outline."""
         with self._lock:
             if self._transform is None:
                 domain = self._domain
@@ -145,40 +133,29 @@ class OutlineCache:
             return self._transform
 
     def forget_transform(self) -> None:
-        """Let go of the transform, which is soon made again."""
+        """Drop the transform, which can be computed again soon."""
         with self._lock:
             self._transform, self.nbytes = None, 0
         _TRANSFORMS.forget(self._key)
 
 
 class PoseSampler:
-    """Points of a domain at which in-betweens are wanted, with all that poses share there.
+    """Points of a domain for in-betweens, with the samples of poses there.
 
-    It keeps the samples of each pose that it met; poses are frozen, so that they stay true. Several
-    threads may use it at once.
+    The samples of each pose are cached; poses are frozen, so samples stay valid. The class is
+    thread-safe. `forget_extension` frees `extension_bytes` bytes. Raises an `EngineError` if a
+    point or the anchor is outside the domain.
 
     Parameters
     ----------
     anchor : complex, optional
-        None lets the engine choose it.
+        None lets the engine choose.
     points : complex128, shape (m,), optional
         By default the vertices of the domain's mesh.
     values_at : complex128, shape (v,), optional
-        Beside points that are given: where only values are wanted.
+        Additional points that need values without derivatives; only with `points`.
     sibling : PoseSampler, optional
-        With the same outline and cage; what depends on them alone is shared with it.
-
-    Raises
-    ------
-    EngineError
-        If a point or the anchor is outside the domain.
-
-    Attributes
-    ----------
-    sites : SampledDomain
-    known : OutlineCache
-    extension_bytes : int
-        The bytes that `forget_extension` lets go.
+        With the same outline and cage; shares the data that depends on these alone.
     """
 
     def __init__(
@@ -195,7 +172,7 @@ class PoseSampler:
         mesh = domain.mesh
         triangles = mesh.triangles if points is None else None
         points = mesh.vertices if points is None else points
-        # What all that is sampled here depends on.
+        # Content that determines the samples.
         content = digest(*domain.loops, *domain.cages, points, triangles, values_at)
         self._content = content, anchor
         known = None if sibling is None else sibling.sites.boundary
@@ -218,13 +195,13 @@ class PoseSampler:
         self._basis_lock = threading.Lock()
         self._extension: Extension | None = None
         self.extension_bytes = 0
-        # Of its own, so that nothing else waits for it.
+        # A lock of its own, so that no other method waits for the extension.
         self._extension_lock = threading.RLock()
         self.known: OutlineCache = OutlineCache(domain) if sibling is None else sibling.known
 
     @property
     def extension(self) -> Extension:
-        """The transform at the nodes of the paths, prepared when it is asked for first."""
+        """The transform at the nodes of the paths, computed on first use."""
         with self._extension_lock:
             if self._extension is None:
                 transform = self.known.transform
@@ -234,13 +211,13 @@ class PoseSampler:
             return self._extension
 
     def forget_extension(self) -> None:
-        """Let go of the transform at the nodes, most of what a layer takes that is not edited."""
+        """Drop the transform at the nodes, most of the memory of a layer that is not edited."""
         with self._extension_lock:
             self._extension, self.extension_bytes = None, 0
         _SAMPLED.forget(("extension", *self._content))
 
     def keep_only(self, poses: AbstractSet[Pose]) -> None:
-        """Forget what was kept for other poses."""
+        """Drop the samples of other poses."""
         with self._lock:
             self._samples = {p: s for p, s in self._samples.items() if p in poses}
         known = self.known
@@ -248,7 +225,6 @@ class PoseSampler:
             known.tangents = {k: t for k, t in known.tangents.items() if poses >= set(k[0])}
 
     def samples(self, pose: Pose) -> KeyframeSamples:
-        """Return the samples of a pose's map."""
         with self._lock:
             if pose not in self._samples:
                 f = HarmonicMap(
@@ -266,23 +242,23 @@ class PoseSampler:
     def inbetweens(
         self, first: Pose, second: Pose, variant: Variant, *, turns: int = 0
     ) -> Inbetweens:
-        """Return the in-betweens of two poses alone, with whole turns beyond the shorter way."""
+        """Return the in-betweens of two poses alone, with additional full turns."""
         samples = [self.samples(first), self.samples(second)]
         sheets = root_sheets(np.array([sample.anchor_fz for sample in samples]), (turns,))
         interval = self._interval(KeyframeBlend.of(samples, sheets), variant, Bounds())
         return self._prepared(interval, variant)
 
     def still_inbetweens(self, pose: Pose, variant: Variant) -> Inbetweens:
-        """Return the in-betweens of a pose with itself, which are corrected as its neighbours are.
+        """Return the in-betweens of a pose with itself, which are corrected like their neighbours.
 
-        Of a variant that needs a transform or a scale those of η are the same.
+        A variant with a transform or a scale has the same in-betweens as η here.
         """
         kind = Variant.ETA if variant.needs_transform or variant.is_scaled else variant
         return self.inbetweens(pose, pose, kind)
 
     @property
     def basis(self) -> SpanBasis:
-        """The functions of the domain's span at the nodes, prepared when it is asked for first."""
+        """The functions of the domain's span at the nodes, computed on first use."""
         with self._basis_lock:
             if self._basis is None:
                 sites = self.sites
@@ -290,11 +266,11 @@ class PoseSampler:
             return self._basis
 
     def inbetweens_of(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
-        """Return the in-betweens of a clip's interval; the motion through keys obeys the bounds."""
+        """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
         return self._prepared(self._engine_interval(transit, bounds, variant), variant)
 
     def makes_single_frames(self, variant: Variant) -> bool:
-        """Tell whether one in-between alone takes less time than all of its interval."""
+        """Return whether a single in-between takes less time than the whole segment."""
         return variant.needs_transform and self.sites.closer is None
 
     def frame_of(
@@ -305,25 +281,15 @@ class PoseSampler:
         weight: float,
         pins: CorrectionSeries | None = None,
     ) -> Frame:
-        """Return one of these in-betweens; a variant that `makes_single_frames` says so.
-
-        Parameters
-        ----------
-        transit, bounds, variant
-            As in `inbetweens_of`.
-        weight : float
-            Its time from one key to the other, in [0, 1].
-        pins : CorrectionSeries, optional
-            Of handles that stay.
-        """
+        """Return the in-between at the time `weight`, with pins; needs `makes_single_frames`."""
         return frame_at(weight, variant, self._engine_interval(transit, bounds, variant), pins)
 
     def velocity_shares(
         self, transit: PoseSegment, bounds: Bounds, variant: Variant
     ) -> tuple[float, float]:
-        """Return how much of its velocity the bounds leave to the motion at both keys.
+        """Return the share of its velocity that the limits allow at both keys.
 
-        From 0, a stop, to 1, which it is too where the motion does not pass through.
+        From 0, a stop, to 1. A key without a smooth tangent has 1.
         """
         start, end = (
             end.velocity_share if isinstance(end, Tangent) else 1.0
@@ -363,7 +329,7 @@ class PoseSampler:
         course = TimeWeights.between(*self._ends(transit, bounds, variant), apart=transit.apart)
         count = len(samples) - sum(transit.apart)
         sheets = [*root_sheets(anchors[:count], transit.revolutions[: count - 1])]
-        # Those apart are reached from the key in the middle of their windows.
+        # The outer keys of other cycles are reached from the middle keys of their windows.
         others = iter(
             zip(range(count, len(samples)), transit.revolutions[count - 1 :], strict=True)
         )
@@ -377,7 +343,7 @@ class PoseSampler:
         return self._interval(passage, variant, bounds)
 
     def _prepared(self, interval: KeyframeSegment, variant: Variant) -> Inbetweens:
-        """Prepare in-betweens; what is solved on the boundary serves all samplers of the domain."""
+        """Prepare in-betweens; all samplers of the domain share the solution on the boundary."""
         if not variant.needs_transform:
             return prepare_inbetweens(variant, interval)
         course, maps = (

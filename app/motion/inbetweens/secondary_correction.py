@@ -1,4 +1,4 @@
-"""What tracks and springs change of a frame of the motion from key to key."""
+"""Correction of a frame by tracks and springs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,34 +8,21 @@ from engine.interpolation import CorrectionSeries
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SecondaryCorrection:
-    """The correction of a frame by which tracks and springs have their handles where they want.
+    """The correction of a frame that brings handles with tracks and springs to their targets."""
 
-    Parameters
-    ----------
-    known : CorrectionSeries
-        The same at all times: of this frame.
-    misses : mapping of int to float
-        Target errors in pixels, of handles with tracks, by their ids.
-    wishes : mapping of int to complex
-        The targets of the same handles.
-    limits : tuple of str
-        The limits that stop it, in words; see `Extremes.reached`.
-    steps : int
-        Newton's, of all that was solved.
-    """
-
-    series: CorrectionSeries
+    series: CorrectionSeries  # constant in time: the correction of this frame
+    # In pixels by handle id, for handles with tracks.
     target_errors: Mapping[int, float] = field(default_factory=dict)
-    targets: Mapping[int, complex] = field(default_factory=dict)
-    limits: tuple[str, ...] = ()
-    steps: int = 0
+    targets: Mapping[int, complex] = field(default_factory=dict)  # of the same handles
+    limits: tuple[str, ...] = ()  # that stop the handles; see `DistortionRange.reached`
+    steps: int = 0  # total number of Newton steps
 
     @property
     def is_limited(self) -> bool:
-        """Whether a limit stops it."""
+        """Whether a limit stops a handle."""
         return bool(self.limits)
 
     @property
     def nbytes(self) -> int:
-        """Memory of the functions."""
+        """Memory of the functions in bytes."""
         return self.series.h.nbytes + self.series.q.nbytes

@@ -1,4 +1,4 @@
-"""Where springs and tracks want their handles at a frame, over the motion of the layer."""
+"""Targets of handles at a frame by springs and tracks."""
 
 from typing import NamedTuple
 
@@ -9,41 +9,21 @@ from app.motion.inbetweens.spring_offsets import ParentMotion, PositionsAt, Spri
 from engine.arrays import Booleans, Complexes, Floats
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
-TURNED = 50.0  # pixels that count as much as a turn by one radian
+TURNED = 50.0  # pixels that weigh as much as a rotation by one radian
 
 
 class SecondaryTargets(NamedTuple):
-    """Where the handles (h,) are wanted.
+    """Targets of the handles (h,)."""
 
-    Parameters
-    ----------
-    places : complex128, shape (h,)
-    is_own : bool, shape (h,)
-        The handles with tracks and springs.
-    turns : float64, shape (h,)
-        By how much the shape is turned there, in radians from −π to π; NaN where it is free.
-    reach : float
-        How far around the handles the shape gives, from 0 to 1, as it likes.
-    tracked : frozenset of int
-        The ids of handles with a target by a track.
-    """
-
-    positions: Complexes
-    has_target: Booleans
-    rotations: Floats
-    reach: float
-    tracked: frozenset[int]
+    positions: Complexes  # complex128 (h,)
+    has_target: Booleans  # (h,): handles with tracks and springs
+    rotations: Floats  # float64 (h,): of the shape, from −π to π; NaN where free
+    reach: float  # how far the displacement spreads around the handles, from 0 to 1 (freely)
+    tracked: frozenset[int]  # ids of handles with a target by a track
 
 
 class SecondaryMotion:
-    """The springs and tracks of a clip.
-
-    Parameters
-    ----------
-    clip : Clip
-    carried : callable, optional
-        Where the layer hangs, at a frame; by itself without.
-    """
+    """The springs and tracks of a clip; `carried` is the layer's rigid motion at a frame."""
 
     def __init__(self, clip: Clip, carried: ParentMotion | None = None) -> None:
         layer = clip.layer
@@ -51,25 +31,26 @@ class SecondaryMotion:
         self._swings = SpringOffsets(clip, carried)
         self._index = {handle.id: number for number, handle in enumerate(layer.handles)}
         self._tracks = [track for track in layer.tracks if track.enabled]
-        # Tracks and springs hold their handles also before they move them: no jump as they begin.
+        # Tracks and springs hold their handles also before they move them, so that nothing jumps at
+        # their start.
         own = [identity for track in self._tracks for identity in track.handles]
         own += [spring.handle for spring in self._swings.springs]
         self._is_own = np.zeros(len(layer.handles), np.bool_)
         self._is_own[[self._index[identity] for identity in own]] = True
 
     def with_tracks(self, clip: Clip) -> "SecondaryMotion":
-        """Return those of a clip that differs in its tracks alone: the springs swing alike."""
+        """Return the motion of a clip that differs only in its tracks, with the same springs."""
         changed = SecondaryMotion(clip, self._carried)
         changed._swings = self._swings
         return changed
 
     @property
     def run_up(self) -> int:
-        """Frames before a frame from which what is wanted there follows."""
+        """Number of earlier frames that affect the targets of a frame."""
         return self._swings.run_up
 
     def is_active(self, frame: float) -> bool:
-        """Tell whether anything may be wanted at a frame."""
+        """Return whether a handle may have a target at a frame."""
         return bool(self._swings.springs) or any(
             track_at(track, self._clip, frame) is not None for track in self._tracks
         )
@@ -77,15 +58,10 @@ class SecondaryMotion:
     def targets_at(
         self, frame: float, places: Complexes, fz: Complexes, at: PositionsAt
     ) -> SecondaryTargets | None:
-        """Return where handles are wanted at a frame; None where they are there.
+        """Return the targets at a frame; None if all handles are there.
 
-        Parameters
-        ----------
-        frame : float
-        places, fz : complex128, shape (h,)
-            Where they are, and f_z there.
-        at : callable
-            Returns where they are at any frame before springs and tracks, (h,).
+        `places` and `fz`, complex128 (h,), are the positions of the handles, and f_z there. `at`
+        returns the positions at any frame before springs and tracks.
         """
         wanted, turns = places.copy(), np.full(len(places), np.nan)
         reaches, sizes, tracked = [], [], set()
@@ -110,14 +86,14 @@ class SecondaryMotion:
             root, tip = self._swings.roots.get(spring.handle), self._index[spring.handle]
             if root is None or spring.handle in tracked:
                 continue
-            # The root may go its own way, too, and turn: the arm goes along.
+            # A track may move and rotate the root; the arm moves with the root.
             turn = 0.0 if np.isnan(turns[root]) else turns[root]
             along = wanted[root] - places[root]
             along += (wanted[tip] - places[root]) * np.expm1(1j * turn)
             wanted[tip] += (1 - spring.stretch) * along
         if np.array_equal(wanted, places) and not np.nan_to_num(turns).any():
             return None
-        # By how far each leads, so that none jumps in as it begins.
+        # Weighted by the displacements, so that the reach does not jump at the start of a track.
         reach = float(np.average(reaches, weights=sizes)) if np.any(sizes) else 1.0
         return SecondaryTargets(wanted, self._is_own, turns, reach, frozenset(tracked))
 
@@ -127,7 +103,7 @@ class SecondaryMotion:
     def _offset(
         self, track: Track, at: TrackSample, frame: float, place: complex, fz: complex
     ) -> complex:
-        """Return by how much a track moves its handles."""
+        """Return the displacement of a track's handles."""
         if not track.is_scene_space:
             return at.place * fz / abs(fz)
         return self._parent_transform(frame).apply_inverse(at.place) - place

@@ -1,16 +1,16 @@
-"""By what the in-betweens of two keys are known, whichever clip they are in."""
+"""Cache keys of the in-betweens of two keys, independent of the clip."""
 
 from app.document import Clip, Pose, Variant, pinned_segments, pose_segments
 
-# The maps, their own and those of the keys around that the motion passes through, since handles may
-# come and go; turns, joints, bounds, anchor and variant.
+# Ids of the maps (handles may be added and deleted) of both keys and of the neighbour keys at
+# smooth ends; full turns, tangents, limits, anchor and variant.
 SegmentKey = tuple[object, ...]
 
 
 def segment_key(clip: Clip, interval: int, variant: Variant | None = None) -> SegmentKey:
-    """Return the key by which the in-betweens of one of a clip's intervals are known."""
+    """Return the cache key of a segment's in-betweens."""
     transit, layer = pose_segments(clip)[interval], clip.layer
-    # As numbers, which are hashed far sooner than the dataclass.
+    # As numbers, which hash much faster than the dataclass.
     bounds = (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
     maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
     joined = (
@@ -25,7 +25,7 @@ def segment_key(clip: Clip, interval: int, variant: Variant | None = None) -> Se
 
 
 def segment_poses(clip: Clip, interval: int) -> tuple[Pose, ...]:
-    """Return the poses by whose identities these are known: they must be kept alive."""
+    """Return the poses whose ids are in the cache key; they must be kept alive."""
     pinned = pinned_segments(clip)[interval]
     poses = tuple(key.pose for key in pose_segments(clip)[interval].keys)
     return poses if pinned is None else pinned.poses

@@ -1,4 +1,4 @@
-"""How the springs of a clip swing: worked out in pieces, around the frames that are asked for."""
+"""Displacements by the springs of a clip, computed in pieces around the requested frames."""
 
 from collections.abc import Callable
 from functools import partial
@@ -17,44 +17,38 @@ from engine.geometry.kinematics import (
     turn_arm,
 )
 
-MAX_SPRING_OFFSET: Final = 0.3  # of the layer's diameter
-PIECE: Final = 64  # frames of a swing, at least
+MAX_SPRING_OFFSET: Final = 0.3  # fraction of the layer's diameter
+PIECE: Final = 64  # smallest number of frames of a piece
 KEPT_PIECES: Final = 1_024
 KEPT_PLACES: Final = 2**14
 Key = TypeVar("Key")
 Value = TypeVar("Value")
-# Where a layer is that hangs on others, at a frame.
+# Rigid motion of an attached layer at a frame.
 ParentMotion = Callable[[float], RigidMotion]
-# Where the handles (h,) of a layer are, at a frame.
+# Positions (h,) of a layer's handles at a frame.
 PositionsAt = Callable[[float], Complexes]
 
 
 class _Piece(NamedTuple):
-    """Some frames of a spring, and those between them: as if it swung freely, and about its root.
+    """A range of a spring's frames, simulated freely and about its root.
 
-    It holds from its first frame to before its last one.
+    It is valid from its first frame to before its last.
     """
 
     first: int
     last: int
     free: SpringResponse
-    about: SpringResponse | None  # in arcs
+    about: SpringResponse | None  # as arc lengths
 
 
 class SpringOffsets:
-    """The swings of a clip's springs, which the motion in the scene drives.
+    """The displacements by a clip's springs, driven by the motion in the scene.
 
-    A damped spring forgets: a piece is worked out from rest, so many frames before it begins as the
-    spring takes to settle. A loop that is over sooner is worked out whole, so that it closes.
+    A damped spring forgets. The simulation of a piece starts at rest, as many frames earlier as the
+    spring takes to settle. A shorter loop is simulated whole, so that it closes.
 
-    Attributes
-    ----------
-    springs : tuple of Spring
-        Those that are enabled.
-    roots : dict of int to int
-        By the ids of handles, the numbers of those about which they swing.
-    run_up : int
-        Frames before a frame from which its swings follow.
+    `springs` are the enabled springs. `roots` maps handle ids to indices of root handles. The
+    `run_up` earlier frames affect a displacement.
     """
 
     def __init__(self, clip: Clip, carried: ParentMotion | None) -> None:
@@ -75,16 +69,10 @@ class SpringOffsets:
         self._places: dict[object, Complexes] = {}
 
     def offset(self, spring: Spring, frame: float, places: Complexes, at: PositionsAt) -> complex:
-        """Return by how much a spring moves its handle at a frame, on the layer by itself.
+        """Return the displacement of a spring's handle at a frame, in the layer's space.
 
-        Parameters
-        ----------
-        spring : Spring
-        frame : float
-        places : complex128, shape (h,)
-            Where the handles are at the frame before springs and tracks.
-        at : callable
-            Returns the same at any frame.
+        `places`, complex128 (h,), are the positions of the handles at the frame before springs and
+        tracks. `at` returns these positions at any frame.
         """
         piece, time = self._piece(spring, frame, at)
         hung = self._carried(frame) if self._carried else IDENTITY_MOTION
@@ -96,7 +84,7 @@ class SpringOffsets:
         return (1 - spring.stretch) * turned + spring.stretch * free
 
     def _piece(self, spring: Spring, frame: float, at: PositionsAt) -> tuple[_Piece, float]:
-        """Return the piece of a spring that shows a frame, and the time in it."""
+        """Return the piece of a spring that contains a frame, and the time in it."""
         last, settling = self._count - 1, self._settling[spring.handle]
         time = frame - self._clip.frames.first - spring.lag
         is_loop = self._clip.loop and last > 0
@@ -106,12 +94,12 @@ class SpringOffsets:
         number = int(time // size)
         known = self._pieces.get((spring.handle, number))
         if known is None or time >= known.last:
-            # Twice as long as before, so that whoever goes on pays for each frame twice at most.
+            # Twice as long as before, so that playing on simulates each frame at most twice.
             length = PIECE
             while number * size + length <= time:
                 length *= 2
             start, end = number * size - settling, number * size + min(length, size)
-            # A fade depends on what comes after it.
+            # A fade depends on the frames after it.
             frames = range(start, end + FADE_FRAMES + 1)
             if is_whole:
                 start, end, frames = 0, self._count, range(self._count)
@@ -142,7 +130,7 @@ class SpringOffsets:
         return swung(), None if root is None else swung(roots=places[root])
 
     def _driving(self, frame: int, at: PositionsAt) -> Complexes:
-        """Return where the handles (h,) are in the scene; frames that show the same do once."""
+        """Return the positions (h,) of the handles in the scene, cached by content."""
         key = frame if self._carried else segment_time_at(self._clip, frame)
         found = self._places.get(key)
         if found is None:
@@ -152,7 +140,7 @@ class SpringOffsets:
 
 
 def _keep(kept: dict[Key, Value], key: Key, value: Value, most: int) -> None:
-    """Keep a value, and at most so many: the oldest ones go."""
+    """Keep a value, and drop the oldest beyond `most`."""
     kept.pop(key, None)
     kept[key] = value
     while len(kept) > most:

@@ -1,7 +1,7 @@
-"""Where layers that hang on others are, at any time.
+"""Transforms of attached layers at any time.
 
-In: documents, and what is known of their layers' motion.
-Out: rigid motions, after which a layer is in the scene; joints by which nothing moves.
+In: documents, and cached motion of their layers.
+Out: rigid motions from layers to the scene; attachments that keep a layer in place.
 Imports: `app.document`, `app.motion.inbetweens`, `app.motion.tracing`.
 """
 

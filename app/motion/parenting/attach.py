@@ -1,4 +1,4 @@
-"""The joint by which a layer comes to hang on another one so that nothing moves."""
+"""Attachments that keep a layer in place."""
 
 import numpy as np
 
@@ -11,10 +11,10 @@ from engine.errors import EngineError
 from engine.geometry import contains, deepest_point, diameter
 from engine.interpolation import Frame
 
-# Newton steps towards the point of a parent that is at a place; each squares the error.
+# Newton steps to the point of a parent at a place; each step squares the error.
 MAX_STEPS = 20
-NEWTON_TOLERANCE = 1e-12  # of the layer's size
-MAX_STARTS = 2_000  # triangles among which the nearest one is where the search begins
+NEWTON_TOLERANCE = 1e-12  # fraction of the layer's size
+MAX_STARTS = 2_000  # largest number of triangles searched for a start
 
 
 def attach_in_place(
@@ -26,33 +26,13 @@ def attach_in_place(
     place: complex | None = None,
     turns: bool,
 ) -> tuple[complex, Attachment]:
-    """Return the anchor and the joint by which a layer hangs so that nothing moves now.
+    """Return the child's anchor and the attachment that keep the child in place at a frame.
 
-    Parameters
-    ----------
-    joints : ParentTransforms
-        As they were before.
-    child, parent : int
-        Ids of layers.
-    frame : float
-        Where nothing moves. The joint holds as long as the one that holds there now, or always.
-    place : complex, optional
-        Of the joint, in the scene; by default that of the child's anchor, or, where the parent is
-        not there and no joint at another time needs it, the middle of where the two overlap. Where
-        the parent is not at the place, the child hangs beside its nearest point.
-    turns : bool
-        Whether the child turns with the parent.
-
-    Returns
-    -------
-    anchor : complex
-        Of the child.
-    joint : Attachment
-
-    Raises
-    ------
-    LissomError
-        If the child is not at that place.
+    The attachment replaces the one in effect at the frame. `joints` are the transforms before it.
+    `place` is the joint in the scene, by default at the child's anchor. If the parent is not there
+    and no other attachment needs the anchor, it is the centre of the overlap. Outside the parent,
+    the child keeps its offset from the nearest point. With `turns`, the child rotates with the
+    parent. Raises a `LissomError` if the child is not at that place.
     """
     own, other = joints.document.layer(child), joints.document.layer(parent)
     held = own.attachment_key_at(int(frame))
@@ -71,7 +51,7 @@ def attach_in_place(
         parent=parent,
         parent_point=at,
         inherits_rotation=turns,
-        # With the parent's turn as it is now, the child is turned as it is now.
+        # With the parent's current rotation, the child has its current rotation.
         rest_rotation=float(np.angle(turn) - np.angle(here.factor)) if turns else 0.0,
         offset=complex(away * there.factor / (turn if turns else 1.0)),
         frame=0 if held is None else held.frame,
@@ -81,9 +61,9 @@ def attach_in_place(
 def reparent_in_place(
     joints: ParentTransforms, child: int, parent: int, frame: int, *, turns: bool
 ) -> Attachment:
-    """Return the joint by which a layer goes on with another one from where it is at a frame.
+    """Return the attachment to another parent that keeps the layer in place at a frame.
 
-    It is at the point of that one which is nearest to the layer's anchor then.
+    The joint is at the parent's point that is nearest to the layer's anchor.
     """
     own, other = joints.document.layer(child), joints.document.layer(parent)
     here, there = joints.placement(child, frame, before=True), joints.placement(parent, frame)
@@ -101,7 +81,6 @@ def reparent_in_place(
 
 
 def anchor_or_default(layer: Layer) -> complex:
-    """Return the anchor of a layer, or where it would be."""
     if layer.anchor is not None:
         return layer.anchor
     return deepest_point(layer.domain.outline, layer.domain.loops[1:])
@@ -119,14 +98,14 @@ def _pivot_frame(
 
 
 def _middles(layer: Layer) -> Complexes:
-    """Return points all over a layer at rest."""
+    """Return points all over the undeformed layer."""
     mesh = layer.domain.mesh
     middles: Complexes = mesh.vertices[mesh.triangles].mean(axis=1)
     return middles[:: max(1, len(middles) // MAX_STARTS)]
 
 
 def _common_point(joints: ParentTransforms, child: Layer, parent: Layer, frame: float) -> complex:
-    """Return the child's anchor if it is in the parent, else a point of it that is in both."""
+    """Return the child's anchor if the parent covers it, else a point of the overlap if any."""
     anchor = anchor_or_default(child)
     points = np.array([anchor, *_middles(child)])
     here, there = (joints.placement(each.id, frame) for each in (child, parent))
@@ -143,10 +122,9 @@ def _common_point(joints: ParentTransforms, child: Layer, parent: Layer, frame: 
 def _point_near(
     joints: ParentTransforms, layer: Layer, place: complex, frame: float
 ) -> tuple[complex, complex]:
-    """Return the point of a layer at rest that is at a place, or is nearest to it.
+    """Return the undeformed point of a layer at or nearest to a place.
 
-    Also how far the place is from there; 0 where it is on the layer. All in the layer's own
-    terms.
+    Also the offset of the place from that point; 0 on the layer. Both are in the layer's space.
     """
     try:
         return _source(joints, layer, place, frame), 0j
@@ -158,7 +136,7 @@ def _point_near(
 
 
 def _source(joints: ParentTransforms, layer: Layer, place: complex, frame: float) -> complex:
-    """Return the point of a layer at rest that is at a place, in the layer's own terms."""
+    """Return the undeformed point of a layer at a place in the layer's space."""
     middles = _middles(layer)
     moved = _moved(joints, layer, middles, frame)
     source = complex(middles[np.argmin(np.abs(moved.positions - place))])
@@ -167,7 +145,7 @@ def _source(joints: ParentTransforms, layer: Layer, place: complex, frame: float
         try:
             at = _moved(joints, layer, np.array([source]), frame)
         except EngineError:
-            break  # outside
+            break  # outside the layer
         away = place - complex(at.positions[0])
         if abs(away) <= NEWTON_TOLERANCE * size:
             return source

@@ -1,4 +1,4 @@
-"""From the layers that carry to the one that hangs on them, by joints."""
+"""Transforms along the chain from a layer to its root ancestor."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -10,27 +10,28 @@ from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 
 class PivotFrame(NamedTuple):
-    """Where a point of a layer by itself is, and by what the layer turns there."""
+    """Position of a point of a layer in the layer's space, and rotation there."""
 
     position: complex
     rotation: complex  # of modulus 1
 
 
 class ChainLink(NamedTuple):
-    """A layer, and the joint by which it hangs at a time; None where it never hung before."""
+    """A layer and its attachment at a time; None before the first attachment."""
 
     layer: Layer
     attachment: Attachment | None
-    # By which it moves by itself: not while it hangs, and from where it was when it was let go.
+    # The layer's own transform. The identity while it has a parent; relative to the detach pose
+    # afterwards.
     transform: RigidMotion
 
 
 def parent_links(
     document: Document, layer: int, frame: float, *, before: bool = False
 ) -> tuple[ChainLink, ...]:
-    """Return the links from a layer, by its id, to the one that all hangs on at a frame.
+    """Return the links from a layer, by its id, to its root ancestor at a frame.
 
-    As they are from the frame on, or just before it.
+    The attachments are in effect from the frame on, or with `before` just before the frame.
     """
     chain = document.parent_chain(layer, frame, before=before)
     at = document.loop_frame(frame)
@@ -50,17 +51,11 @@ def compose_chain(
     hinge: Callable[[Layer, complex], PivotFrame],
     kept: Callable[[Layer, Attachment], RigidMotion],
 ) -> RigidMotion:
-    """Return where a layer is that hangs on a chain of others.
+    """Return the transform of a layer from its chain: the layer, its parent, and so on.
 
-    Parameters
-    ----------
-    chain : sequence of ChainLink
-        The layer, the one that it hangs on, and so on.
-    hinge : callable
-        Returns how a point of a layer is moved and turned, the layer by itself.
-    kept : callable
-        Returns how a layer is held by a joint that keeps its place: turned and moved beside the
-        point of the parent, or where it was let go.
+    `hinge` returns position and rotation of a point in its layer's space. `kept` returns the
+    transform that an attachment with `keep_world_transform` keeps. It is relative to the parent's
+    point, or in the scene after a detach.
     """
     last, released, placement = chain[-1]
     if released is not None and released.keep_world_transform:
@@ -78,7 +73,7 @@ def compose_chain(
 
 
 def _attachment_transform(joint: Attachment) -> RigidMotion:
-    """Return how a layer is held by a joint: turned and moved beside the point of the parent."""
+    """Return the transform of an attached layer relative to the parent's point."""
     return RigidMotion(
         complex(np.exp(-1j * joint.rest_rotation)) if joint.inherits_rotation else 1.0, joint.offset
     )
@@ -87,9 +82,8 @@ def _attachment_transform(joint: Attachment) -> RigidMotion:
 def blend_transforms(
     layer: Layer, joint: Attachment, first: RigidMotion, last: RigidMotion, share: float
 ) -> RigidMotion:
-    """Return how a joint holds a layer on the way from one way of holding it to another."""
     factor = first.factor * np.exp(1j * share * np.angle(last.factor / first.factor))
-    # What is let go is held by its anchor, too, as what hangs on something is.
+    # A detached layer is also blended at its anchor, as an attached one.
     anchor = require_anchor(layer) if joint.parent is None else 0j
     place, end = (held.factor * anchor + held.shift for held in (first, last))
     place += share * (end - place)
@@ -97,12 +91,11 @@ def blend_transforms(
 
 
 def pivot_frame_at(position: complex, fz: complex) -> PivotFrame:
-    """Return where a point is and how the layer is turned there, by f and f_z."""
+    """Return position and rotation at a point from f and f_z."""
     return PivotFrame(complex(position), complex(fz / abs(fz)))
 
 
 def require_anchor(layer: Layer) -> complex:
-    """Return the anchor of a layer that is attached."""
     if layer.anchor is None:
         raise ValueError("a layer that is attached has an anchor")
     return layer.anchor

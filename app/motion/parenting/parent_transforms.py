@@ -1,4 +1,4 @@
-"""Where layers that hang on others are, at any time (Section 7, "a user curve for the anchor")."""
+"""Transforms of attached layers at any time (Section 7, "a user curve for the anchor")."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
@@ -19,38 +19,21 @@ from app.motion.tracing import PointTrails
 from engine.arrays import Complexes
 from engine.geometry import RigidMotion
 
-# Frames of layers that the worker works out before it looks for more urgent work, about a
-# millisecond each, and those that it looks at.
+# Frames per job, about a millisecond each, and frames looked up per job, so that the worker soon
+# takes more urgent jobs.
 BATCH, MAX_SEARCHED = 60, 5_000
 
 
 class ParentTransforms:
-    """The joints of a document, at any time.
+    """The transforms of a document's attached layers at any time.
 
-    A layer hangs by its anchor: it is turned around it and moved, and nothing else, so that it is
-    exactly as distorted as by itself and the joint never opens.
+    A parent moves a layer rigidly about its anchor. The distortion of the layer does not change,
+    and the joint never opens. `siblings` have cached data of the outlines by layer id. Values of
+    earlier transforms that are still valid are reused. Raises an `EngineError` if a joint or an
+    anchor lies outside its layer.
 
-    Parameters
-    ----------
-    siblings : mapping of int to PoseSampler
-        By the ids of layers; what they know of outlines is used again.
-    earlier : ParentTransforms, optional
-        Of an earlier document; what is still true of it is used again.
-
-    Attributes
-    ----------
-    document : Document
-    points : dict of int to list of complex
-        Of each layer, those by which it hangs, or others hang on it.
-    tracked : dict of int to PointTrails
-        The same over time.
-    is_whole : bool
-        Whether all frames have been gone through.
-
-    Raises
-    ------
-    EngineError
-        If a joint or an anchor lies outside its layer.
+    `points` are the joint points of each layer: its own anchor, and points of its children.
+    `tracked` has these points over time. `is_whole` holds once all frames are computed.
     """
 
     def __init__(
@@ -82,7 +65,7 @@ class ParentTransforms:
 
     @property
     def computed_count(self) -> int:
-        """How many frames of layers had to be worked out, because nothing was known of them."""
+        """Number of computed frames of layers; cached ones do not count."""
         return sum(each.worked_out for each in self.tracked.values())
 
     def placement(
@@ -93,16 +76,10 @@ class ParentTransforms:
         *,
         before: bool = False,
     ) -> RigidMotion:
-        """Return where a layer, by its id, is at a frame.
+        """Return the transform of a layer at a frame.
 
-        Parameters
-        ----------
-        layer : int
-        frame : float
-        poses : mapping of int to Pose, optional
-            Shown instead of what the layers with these ids have at the frame.
-        before : bool
-            Whether joints that begin to hold at the frame do not count yet.
+        `poses` are shown in place of the layers' own, by layer id. With `before`, the attachments
+        just before the frame are used.
         """
         if poses:
             return self._compute(layer, frame, poses, before=before)
@@ -119,9 +96,9 @@ class ParentTransforms:
         return compose_chain(chain, partial(self._joint, frame=frame, poses=poses), kept)
 
     def kept_transform(self, layer: Layer, joint: Attachment, frame: float) -> RigidMotion:
-        """Return how a layer is held at a frame by a joint of the document that keeps its place.
+        """Return the transform of a layer under an attachment with `keep_world_transform`.
 
-        One that leads goes over to what the next joint wants, from rest and to rest.
+        With `blends_to_next`, it eases to the transform that the next attachment defines.
         """
         begun = self._keep(layer, joint, joint.kept_from, before=True)
         at = self.document.loop_frame(frame)
@@ -135,9 +112,10 @@ class ParentTransforms:
         return blend_transforms(layer, joint, begun, wanted, share * share * (3 - 2 * share))
 
     def _blends_until(self, layer: Layer, joint: Attachment) -> int | None:
-        """Return the frame at which the next joint begins; None where that follows from this one.
+        """Return the first frame of the next attachment; None if that depends on this one.
 
-        So it is where it keeps what is there then, or hangs on what hangs on the layer at times.
+        The next attachment depends on this one if it keeps the transform of that time. It also does
+        if its parent is a descendant at some frame.
         """
         joints = self.document.attachments_of(layer)
         after = next((each for each in joints if each.frame > joint.frame), None)
@@ -150,9 +128,9 @@ class ParentTransforms:
         return after.frame
 
     def _in_scene(self, layer: Layer, until: int) -> int:
-        """Return the frame at which a repeat begins, or another such where the scene ends before.
+        """Return the frame of a repeat's start, or an earlier one within the document's frames.
 
-        There all is as it would be then.
+        Earlier repeats have the same state.
         """
         cycle, last = layer.cycle_at(until), self.document.frames.last
         if cycle is None or until <= last:
@@ -160,7 +138,7 @@ class ParentTransforms:
         return until - cycle.period * -(-(until - last) // cycle.period)
 
     def _keep(self, layer: Layer, joint: Attachment, frame: int, *, before: bool) -> RigidMotion:
-        """Return how a joint holds a layer that is where it is just before a frame, or at it."""
+        """Return the transform that an attachment keeps from just before a frame, or at it."""
         known = layer.id, joint, frame
         if known not in self._kept:
             self._kept[known] = self._found(layer, joint, frame, before=before)
@@ -185,19 +163,19 @@ class ParentTransforms:
         return RigidMotion(complex(here.factor / turn), complex(away / turn))
 
     def parent_transform(self, layer: int, frame: float) -> RigidMotion:
-        """Return where a layer hangs, but for what is corrected of itself.
+        """Return the transform of a layer by its parents, without its own corrections.
 
-        That leaves its anchor in place and does not turn it.
+        Corrections neither move the anchor nor rotate the layer there.
         """
         hinge = partial(self._seen_from, layer, frame=frame)
         kept = partial(self.kept_transform, frame=frame)
         return compose_chain(parent_links(self.document, layer, frame), hinge, kept)
 
     def _seen_from(self, layer: int, each: Layer, place: complex, frame: float) -> PivotFrame:
-        """Return where a point of a layer is for another one that follows from it.
+        """Return position and rotation of a point for the computation of a dependent layer.
 
-        What is corrected does not count where it may follow from the other one in turn: of that one
-        itself, and of what hangs on it at other times.
+        Corrections that may depend on the layer in turn are left out. They belong to the layer
+        itself, or to its descendants at other frames.
         """
         others = (each, *self.document.all_ancestors(each.id))
         if all(other.id != layer for other in others):
@@ -207,12 +185,12 @@ class ParentTransforms:
         return pivot_frame_at(found.positions[index], found.fz[index])
 
     def animation(self, layer: int, points: Complexes) -> Animation:
-        """Return the motion of some points (m,) of a layer, by its id, by itself."""
+        """Return the motion of points (m,) of a layer in the layer's space."""
         carried = partial(self.parent_transform, layer)
         return layer_animation(self.document, layer, points, self._siblings, carried)
 
     def advance(self) -> "ParentTransforms":
-        """Go through some frames, so that asking for them takes no time."""
+        """Compute some frames in advance."""
         end = self.computed_count + BATCH
         for looked_at, (frame, tracked) in enumerate(self._ahead, 1):
             tracked.at(frame)
@@ -222,7 +200,7 @@ class ParentTransforms:
         return self
 
     def _through(self) -> Iterator[tuple[int, PointTrails]]:
-        """Yield all frames of one layer after the other: they are found with much."""
+        """Yield all frames layer by layer, since each layer's preparation takes much memory."""
         frames = self.document.frames
         for tracked in self.tracked.values():
             for frame in range(frames.first, frames.last + 1):
@@ -242,7 +220,7 @@ class ParentTransforms:
 def find_parent_motion(
     document: Document, layer: int, siblings: Mapping[int, PoseSampler] | None = None
 ) -> ParentMotion | None:
-    """Return what tells where a layer of a document is moved; None where it is at no time."""
+    """Return the function from frame to the layer's transform; None if it never moves."""
     own = document.layer(layer)
     if not (own.has_parent or own.transform_keys):
         return None
@@ -256,7 +234,7 @@ def layer_animation(
     siblings: Mapping[int, PoseSampler],
     carried: ParentMotion | None,
 ) -> Animation:
-    """Return the motion of some points (m,) of a layer of a document, which may be carried."""
+    """Return the motion of points (m,) of a layer that may be attached."""
     layer = document.layer(identity)
     sampler = PoseSampler(
         layer.domain, anchor=layer.anchor, points=points, sibling=siblings.get(identity)
@@ -265,7 +243,7 @@ def layer_animation(
 
 
 class HungAnimation:
-    """The motion of a layer by itself, brought to where the joints of its scene have it."""
+    """The motion of a layer with its placement in the scene."""
 
     def __init__(self, animation: Animation, joints: ParentTransforms) -> None:
         self._animation = animation
@@ -273,13 +251,13 @@ class HungAnimation:
         self._joints = joints
 
     def positions(self, frame: float) -> Complexes:
-        """Return where the points (m,) are at a frame, which may lie between two numbers."""
+        """Return the positions (m,) in the scene at a frame, possibly fractional."""
         placement = self._joints.placement(self._animation.clip.layer.id, frame)
         return placement.apply(self._animation.positions(frame))
 
 
 def parenting_key(document: Document) -> tuple[object, ...]:
-    """Return all of a document that its joints depend on; empty where nothing hangs."""
+    """Return the values that determine the transforms; empty without attachments."""
     involved = [
         each
         for child in document.layers
@@ -292,14 +270,14 @@ def parenting_key(document: Document) -> tuple[object, ...]:
 def hung_animations(
     animations: Iterable[Animation], document: Document
 ) -> dict[int, HungAnimation]:
-    """Return the animations of a document's layers where its scene has them, by their ids."""
+    """Return the layers' animations in the scene, by layer id."""
     own = {animation.clip.layer.id: animation for animation in animations}
     joints = ParentTransforms(document, {identity: each.sampler for identity, each in own.items()})
     return {identity: HungAnimation(each, joints) for identity, each in own.items()}
 
 
 def _points(document: Document) -> dict[int, list[complex]]:
-    """Return the points of each layer by which it hangs, or others hang on it."""
+    """Return the joint points of each layer."""
     points: dict[int, list[complex]] = {layer.id: [] for layer in document.layers}
     for layer in document.layers:
         if layer.attachments:

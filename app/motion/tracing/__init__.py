@@ -1,7 +1,7 @@
-"""A few points of a layer over time, and the paths of its handles.
+"""Points of a layer over time, and motion paths of its handles.
 
 In: a clip and points.
-Out: where they are in every frame, each worked out once.
+Out: positions in every frame, each computed once.
 Imports: `app.document`, `app.motion.inbetweens`.
 """
 

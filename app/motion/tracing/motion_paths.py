@@ -1,4 +1,4 @@
-"""The paths along which the handles of a layer move over time."""
+"""Motion paths of a layer's handles."""
 
 from dataclasses import dataclass
 
@@ -9,17 +9,17 @@ from app.motion.inbetweens import ParentMotion, PoseSampler
 from app.motion.tracing.point_trails import PointTrails
 from engine.arrays import Complexes, Indices, freeze
 
-MOST = 1000  # frames that are traced; of longer animations every second, third …
+MOST = 1000  # traced frames; longer animations skip frames evenly
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionPaths:
-    """Where the handles of a layer are in the frames of its clip."""
+    """Positions of a layer's handles in the frames of its clip."""
 
     clip: Clip
     frames: Indices  # intp (f,)
-    positions: Complexes  # complex128 (f, h): Of each handle, on the layer by itself
-    trails: PointTrails | None  # of the worker alone; None where there are no handles
+    positions: Complexes  # complex128 (f, h), in the layer's space
+    trails: PointTrails | None  # for the worker only; None without handles
 
 
 def trace_paths(
@@ -28,16 +28,11 @@ def trace_paths(
     sibling: PoseSampler | None = None,
     carried: ParentMotion | None = None,
 ) -> MotionPaths:
-    """Work out where a clip's handles are in all frames; exactly, since they are few points.
+    """Return the exact positions of a clip's handles in all frames.
 
-    Parameters
-    ----------
-    earlier : MotionPaths, optional
-        What is known of the same handles and poses is used again.
-    sibling : PoseSampler, optional
-        With the same outline and cage; what depends on them alone is shared.
-    carried : callable, optional
-        Where the layer hangs, at a frame.
+    Earlier paths of the same handles and poses are reused. The sibling has the same outline and
+    cage, and shares the data that depends on these alone. `carried` returns the rigid motion of the
+    layer at a frame.
     """
     first, last = clip.frames.first, clip.frames.last
     frames = np.arange(first, last + 1, 1 + (last - first) // MOST)

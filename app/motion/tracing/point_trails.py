@@ -1,4 +1,4 @@
-"""A few points of a layer over time; each moment is worked out once, as long as its keys stay."""
+"""Points of a layer over time; each time is computed once as long as its keys stay."""
 
 from typing import NamedTuple
 
@@ -14,11 +14,11 @@ from app.motion.inbetweens import (
 )
 from engine.arrays import Complexes
 
-REMEMBERED = 4  # times as many moments as a clip has frames, for undo and redo
+REMEMBERED = 4  # kept times as a multiple of the clip's frames, for undo and redo
 
 
 class TrailFrame(NamedTuple):
-    """The points (p,) at a moment, and f_z there; the poses that they follow from stay alive."""
+    """Points (p,) at a time, and f_z there; `poses` keeps the poses of the cache key alive."""
 
     positions: Complexes
     fz: Complexes
@@ -26,28 +26,15 @@ class TrailFrame(NamedTuple):
 
 
 class PointTrails:
-    """Some points of a layer at any frame of a clip, as it is shown.
+    """Points of a layer at any frame of a clip, with corrections.
 
-    Parameters
-    ----------
-    points : complex128, shape (p,)
-        Of the layer at rest; at least one.
-    sibling : PoseSampler, optional
-        With the same outline and cage; what it knows of them is used again.
-    earlier : PointTrails, optional
-        If it is of the same points, what it knows is used again.
-    carried : callable, optional
-        Where the layer hangs, at a frame.
+    There is at least one point, complex128 (p,), of the undeformed layer. The sibling has the same
+    outline and cage; its cached data is reused, as are earlier trails of the same points. `carried`
+    returns the rigid motion of the layer at a frame.
 
-    Attributes
-    ----------
-    worked_out : int
-        How many moments had to be worked out, as nothing was known of them.
-    sampler : PoseSampler or None
-        None until the first of them.
-    known : dict
-        What was found, by the pair of the keys around and the weight between them; where frames are
-        corrected, by the clip and the frame.
+    `worked_out` counts computed times, without cached ones. The sampler is None until the first
+    computation. `known` has results by segment key and weight, or for corrected clips by clip and
+    frame.
     """
 
     def __init__(
@@ -77,7 +64,6 @@ class PointTrails:
             self.known = dict(list(earlier.known.items())[-most:])
 
     def at(self, frame: float) -> TrailFrame:
-        """Return where the points are at a frame."""
         moment = segment_time_at(self.clip, frame)
         resting = keyed_pose_at(self.clip, moment)
         key: tuple[object, float]
@@ -96,15 +82,15 @@ class PointTrails:
         return self.known[key]
 
     def base_at(self, frame: float) -> TrailFrame:
-        """Return the same before anything is corrected."""
+        """Return the points at a frame before corrections."""
         moved = self._animate().base.frame(frame)
         return TrailFrame(moved.positions, moved.fz, ())
 
     def release_intermediates(self) -> None:
-        """Let go of what moments are worked out with; one that is not known needs it again."""
+        """Drop the data from which times are computed; the next new time needs it again."""
         self._animation = None
         if self.sampler is not None:
-            # It holds the outline's transform, too.
+            # The sampler also holds the outline's transform.
             self.sampler.forget_extension()
 
     def _animate(self) -> Animation:

@@ -1,7 +1,7 @@
-"""Ready motions on drawings: joints become handles, and moments of a motion become keys.
+"""Motion presets on drawings: joints become handles, and times of a motion become keys.
 
-In: a layer, where its joints are, and which motion it is given.
-Out: the layer with its keys, and what of them is out of reach.
+In: a layer, the places of its joints, and a motion preset.
+Out: the layer with its keys, and its target errors.
 Imports: `app.document`, and the solver beside it.
 """
 

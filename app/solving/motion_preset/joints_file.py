@@ -1,4 +1,4 @@
-"""Joints of a drawing, written as a small JSON text."""
+"""Files with the joints of a drawing, in JSON."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,20 +15,12 @@ FIELDS = ("schema", "kind", "joints")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointsFile:
-    """What is said of the joints of a drawing."""
-
-    kind: str | None  # None leaves it to be guessed
+    kind: str | None  # None lets the program guess
     joints: Mapping[str, complex]  # in pixels from the lower left corner, y up
 
 
 def load_joints(path: Path) -> JointsFile:
-    """Read the joints of a drawing.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, is not JSON, or says anything that it cannot say.
-    """
+    """Read the joints of a drawing; an invalid or missing file raises a `LissomError`."""
     return load_json(path, _parsed, largest=LARGEST)
 
 

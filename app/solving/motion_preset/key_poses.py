@@ -1,4 +1,4 @@
-"""Moments of a motion at the frames of its keys, as targets of handles."""
+"""Key poses of a motion preset as targets of handles."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -8,15 +8,15 @@ from app.solving.motion_preset.motion_request import MotionRequest
 from engine.geometry.motions import Body
 from engine.maps import Bounds
 
-# How firmly feet are held, so that they do not slide: the solver misses less than 1 % of a step.
+# Weight of standing feet, so that they do not slide: target errors are below 1 % of a step.
 FIRM = 1000.0
-# Poses spend so much of the layer's limits: what is between them may need a little more.
+# Share of the layer's limits that poses may use, since in-betweens may need a little more.
 SPENT = 0.97
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointKeyPose:
-    """Where a motion wants the joints at a frame, by the ids of their handles."""
+    """Targets of the joints at a frame, by handle id."""
 
     frame: int
     targets: Mapping[int, Target]
@@ -25,13 +25,13 @@ class JointKeyPose:
 def find_key_poses(
     order: MotionRequest, body: Body, given: AppliedMotion
 ) -> tuple[tuple[JointKeyPose, ...], frozenset[int]]:
-    """Return what a motion wants at its keys, and of which handles it stands at some time.
+    """Return the key poses of a motion, and the handles that stand on the ground at some time.
 
-    Where it loops, the end of its cycle is left out.
+    The last key of a repeat is left out, since it equals the first.
     """
     motion, parameters = order.preset, order.parameters
     period = (given.last - given.start) // given.repeat_count
-    # Feet that go on the ground are keyed in every frame: in between they would slide.
+    # Motions with steps have a key at every frame: feet would slide in in-betweens.
     steps = motion.template_for(order.kind).can_travel
     count = period if steps else min(period, motion.keys)
     offsets = [round(number * period / count) for number in range(count)]
@@ -54,9 +54,9 @@ def find_key_poses(
 
 
 def with_joint_weights(layer: Layer, joints: frozenset[int], feet: frozenset[int]) -> Layer:
-    """Return a layer that poses hold by its joints alone, most firmly by its feet.
+    """Return a layer whose poses only the joints hold, standing feet with the largest weight.
 
-    What else has a handle goes where the body carries it, as if it followed by a spring.
+    Other handles follow the body like sprung handles.
     """
     handles = tuple(
         replace(each, weight=FIRM) if each.id in feet else each for each in layer.handles

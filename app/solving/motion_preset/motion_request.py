@@ -1,4 +1,4 @@
-"""What a layer is asked to do, and the joints by which it does it."""
+"""Requested motion preset of a layer, and the handles at its joints."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -23,36 +23,34 @@ from engine.geometry import diameter
 from engine.geometry.motions import Body, Motion, Parameters, find_kind, find_motion, guess_facing
 from engine.maps import Bounds
 
-# Of the diameter of the drawing: a joint is the handle that is so near to it, and one that is so
-# little outside comes to the outline.
+# Fractions of the drawing's diameter: a handle this close to a joint is its handle; a joint this
+# far outside moves to the outline.
 SAME_JOINT, BESIDE = 0.004, 0.01
 TRUNK = ("neck", "head", "chest")
 STIFF_TRUNK, STIFF_LIMB, STIFF_HEAD = 10.0, 3.0, 20.0
-HEAD = 1.5  # times as far as the nearest outline around its joint
+HEAD = 1.5  # radius as a multiple of the distance from the head's joint to the outline
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionRequest:
-    """A motion for a layer.
+    """A request to apply a motion preset to a layer.
 
-    Raises
-    ------
-    EngineError
-        If there is no such motion or kind, or the one does not fit the other.
+    Raises an `EngineError` if the motion or the kind does not exist, or the motion is not made for
+    the kind.
     """
 
     motion: str
     kind: str
     joints: Mapping[str, complex]  # at rest, in pixels of the canvas, y up
     parameters: Parameters = field(default_factory=Parameters)
-    first: int = 0  # the frame from which on it is given
-    repeat_count: int = 1  # how often its cycle is there
-    facing: int | None = None  # 1 looks to the right, -1 to the left; None guesses
-    # Handles that are joints already, by the joints' names; they go where these are now.
+    first: int = 0  # first frame
+    repeat_count: int = 1  # number of repeats
+    facing: int | None = None  # 1 looks to the right, -1 to the left; None lets the program guess
+    # Existing handles by joint name; they move to the joints.
     handles: Mapping[str, int] = field(default_factory=dict)
-    stiff: bool = True  # whether the trunk becomes stiff, so that limbs move and not all
-    bones: bool = False  # whether limbs get bones, too
-    # Limits that the layer has at least; None leaves them as they are.
+    stiff: bool = True  # whether the trunk becomes stiff, so that mainly limbs move
+    bones: bool = False  # whether limbs get bones
+    # The layer's limits become at least these; None leaves them unchanged.
     limits: Bounds | None = RUBBERY.bounds
 
     def __post_init__(self) -> None:
@@ -60,25 +58,22 @@ class MotionRequest:
 
     @property
     def preset(self) -> Motion:
-        """The motion itself."""
         find_kind(self.kind)
         return find_motion(self.motion)
 
 
 def find_facing(layer: Layer, order: MotionRequest) -> int:
-    """Return which way a layer looks: 1 to the right, -1 to the left."""
+    """Return the direction in which the layer looks: 1 to the right, -1 to the left."""
     if order.facing is not None:
         return order.facing
     return guess_facing(find_kind(order.kind), order.joints, layer.domain.outline)
 
 
 def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
-    """Return the body of a layer at rest.
+    """Return the body of an undeformed layer.
 
-    Raises
-    ------
-    LissomError, EngineError
-        If a joint is not on the drawing, or the kind has no such joint.
+    Raises a `LissomError` or `EngineError` if a joint is not on the drawing, or the kind has no
+    such joint.
     """
     outline, kind = layer.domain.outline, find_kind(order.kind)
     x, y = outline.real, outline.imag
@@ -95,7 +90,7 @@ def find_rest_body(layer: Layer, order: MotionRequest) -> Body:
 
 
 def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, complex]:
-    """Return joints on a layer; those that are hardly beside it come to its outline."""
+    """Return joints on the layer; joints slightly outside move to the outline."""
     tolerance = BESIDE * diameter(layer.domain.outline)
     points: Complexes = np.array(list(joints.values()), dtype=np.complex128)
     covered = layer.covers(points, tolerance=tolerance)
@@ -111,12 +106,12 @@ def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, comple
 def with_handles_at_joints(
     document: Document, identity: int, body: Body, order: MotionRequest
 ) -> tuple[Document, dict[str, int]]:
-    """Return a document whose layer has a handle at each joint, and bones; and which those are."""
+    """Return a document with a handle at each joint and with bones, and the handles by joint."""
     joints = dict[str, int]()
     for name, place in body.joints.items():
         document, joints[name] = _with_handle(document, identity, name, place, order, joints)
     if not body.kind.parents:
-        # What moves as a whole is not held still anywhere.
+        # Rigid motions move all handles, so auto-pin is off.
         document = handle_commands.unpin_handles(identity, set(joints.values()), free=True)(
             document
         )
@@ -127,7 +122,7 @@ def with_handles_at_joints(
         ends = joints[before], joints[name]
         if any(bone.is_between(ends) for bone in document.layer(identity).bones):
             continue
-        # Where the way between two joints leaves the drawing, the limb bends as it likes.
+        # If a bone would leave the drawing, the limb stays without bone.
         with suppress(EngineError):
             document = stiffness_commands.add_bone(identity, ends, amount)(document)
     if order.stiff and "head" in joints:
@@ -143,7 +138,7 @@ def _with_handle(
     order: MotionRequest,
     others: Mapping[str, int],
 ) -> tuple[Document, int]:
-    """Return a document whose layer has a handle at a joint, and which that is."""
+    """Return a document with a handle at a joint, and the handle's id."""
     layer = document.layer(identity)
     known = order.handles.get(name)
     if known is not None and any(each.id == known for each in layer.handles):
@@ -160,7 +155,6 @@ def _with_handle(
 
 
 def _with_stiff_head(document: Document, identity: int, head: complex) -> Document:
-    """Return a document whose layer's head keeps its shape."""
     outline = document.layer(identity).domain.outline
     radius = HEAD * float(np.abs(outline - head).min())
     return stiffness_commands.paint_stiffness(identity, [head], radius=radius, amount=STIFF_HEAD)(
@@ -169,7 +163,7 @@ def _with_stiff_head(document: Document, identity: int, head: complex) -> Docume
 
 
 def with_limits(document: Document, identity: int, limits: Bounds | None) -> Document:
-    """Return a document whose layer may be distorted as far as some limits, or its own, allow."""
+    """Return a document whose layer has at least these limits."""
     own = document.layer(identity).bounds
     if limits is None:
         return document

@@ -1,4 +1,4 @@
-"""A motion on its way to a layer, key after key, as the window would solve each."""
+"""Solving the keys of a motion preset one by one, as the window does."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -28,51 +28,30 @@ from app.solving.motion_preset.motion_request import (
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
 from engine.geometry.motions import Body
 
-# A pose that is not at rest by then creeps along a limit.
+# Largest number of steps; a pose that needs more moves slowly along a limit.
 MOST_STEPS = 150
-SIZE_TRIES = 4  # by which the largest one is looked for
-MOST_NAMED = 3  # joints that are named
-WORST = 4  # keys that it is looked for by
-SMALLEST = 0.05  # size that parameters may have
+SIZE_TRIES = 4  # tries in the search for the largest reachable size
+MOST_NAMED = 3  # joints listed in a notice
+WORST = 4  # keys tested in the search
+SMALLEST = 0.05  # smallest size of parameters
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MotionSolve:
-    """A motion on its way to a layer.
+    """The state of applying a motion preset to a layer."""
 
-    Parameters
-    ----------
-    document : Document
-        With handles at the joints, and bones.
-    before : Layer
-        As it was without.
-    order : MotionRequest
-    body : Body
-    given : AppliedMotion
-        Without a digest, which is of keys yet to come.
-    lead : Pose, optional
-        What is shown where the motion blends in.
-    wanted : tuple of JointKeyPose
-        Of the keys to be solved; where the last one is the first one again, it is not among them.
-    rig : Rig
-        Of the joints alone: other handles go where the body carries them.
-    poses : tuple of Pose
-        Those that are solved.
-    """
-
-    document: Document
-    before: Layer
+    document: Document  # with handles and bones at the joints
+    before: Layer  # the original layer
     request: MotionRequest
     body: Body
-    applied: AppliedMotion
-    blend_pose: Pose | None
-    key_poses: tuple[JointKeyPose, ...]
-    rig: Rig
-    poses: tuple[Pose, ...] = ()
-    # How far some joints fall short of where the motion wants them, by their names, and at which
-    # frame most; in pixels.
+    applied: AppliedMotion  # without a digest, since the keys are not yet solved
+    blend_pose: Pose | None  # the pose from which the motion blends in
+    key_poses: tuple[JointKeyPose, ...]  # to solve, without a last key that equals the first
+    rig: Rig  # of the joints only; other handles follow the body
+    poses: tuple[Pose, ...] = ()  # the solved poses
+    # Largest target error of each joint by name, in pixels, with its frame.
     target_errors: Mapping[str, tuple[float, int]]
-    # Between which sizes the largest is looked for that is within reach, and how often it was.
+    # Bounds of the largest reachable size, and the number of tries.
     size_range: tuple[float, float]
     tries: int = 0
 
@@ -83,29 +62,29 @@ class MotionSolve:
 
     @property
     def is_over(self) -> bool:
-        """Whether every key is solved, and a smaller size is known where some are out of reach."""
+        """Whether every key is solved and the search for a reachable size is finished."""
         return self.is_solved and (not self.target_errors or self.tries == SIZE_TRIES)
 
     @property
     def progress(self) -> float:
-        """The part of its steps that is done, 0 to 1."""
+        """The finished share of the steps, 0 to 1."""
         return 1.0 if self.is_over else len(self.poses) / (len(self.key_poses) + 1)
 
     @property
     def status_text(self) -> str:
-        """What the next step does, in words."""
+        """Description of the next step."""
         if self.is_solved:
             return "Looking for a size that is within reach"
         return f"Solving pose {len(self.poses) + 1} of {len(self.key_poses)}"
 
     @property
     def reachable_size(self) -> float | None:
-        """The largest smaller size that is within reach, if one was found."""
+        """The largest reachable size found, if any."""
         return self.size_range[0] if self.tries and self.size_range[0] > 0 else None
 
     @property
     def notices(self) -> tuple[str, ...]:
-        """Which joints are out of reach, and at what size they are not, in words."""
+        """Notices about unreachable joints, and a reachable size."""
         if not self.target_errors:
             return ()
         worst = sorted(self.target_errors.items(), key=lambda each: -each[1][0])
@@ -135,7 +114,7 @@ class MotionSolve:
 
     @property
     def replaced_motions(self) -> tuple[AppliedMotion, ...]:
-        """The motion that it takes the place of, as it was given at the same frame."""
+        """Unedited motions of the same first frame, which this one replaces."""
         return tuple(
             each
             for each in self.before.motions
@@ -144,25 +123,15 @@ class MotionSolve:
 
     @property
     def command(self) -> Command:
-        """What makes one step of undo of all of it."""
+        """The command that applies everything as one undo step."""
         return scene_commands.apply_motion(self.posed_layer, self.applied)
 
 
 def start_motion_solve(document: Document, identity: int, order: MotionRequest) -> MotionSolve:
-    """Return a motion that is on its way to a layer; nothing of it is solved yet.
+    """Return the initial state of applying a motion preset; no key is solved yet.
 
-    Parameters
-    ----------
-    document : Document
-    identity : int
-        The id of the layer.
-    order : MotionRequest
-
-    Raises
-    ------
-    LissomError, EngineError
-        If the layer cannot be posed, a joint is not on it, or one that the motion needs is not
-        there.
+    Raises a `LissomError` or `EngineError` if the layer cannot be posed, a joint is not on it, or a
+    needed joint is missing.
     """
     before = document.layer(identity)
     if before.still:
@@ -204,7 +173,7 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
 
 
 def step_motion_solve(giving: MotionSolve) -> MotionSolve:
-    """Take the next step: one key after the other, then a smaller size; on the worker thread."""
+    """Solve the next key, or try a smaller size; on the worker thread."""
     if giving.is_solved:
         return _smaller(giving)
     moment = giving.key_poses[len(giving.poses)]
@@ -220,18 +189,18 @@ def step_motion_solve(giving: MotionSolve) -> MotionSolve:
 
 
 def solve_key_pose(rig: Rig, begin: Pose, moment: JointKeyPose) -> Pose:
-    """Return the pose that has the joints where a moment wants them, found from another pose."""
+    """Return the pose for the joint targets, solved from another pose."""
     targets = {**begin.targets, **moment.targets}
     return DragSolver.begin(rig, begin).step_towards(targets, MOST_STEPS).make_pose(targets)
 
 
 def find_target_errors(rig: Rig, pose: Pose) -> Mapping[int, float]:
-    """Return by how many pixels handles by which a pose is held fall short, if they do."""
+    """Return the target errors in pixels of handles that miss their targets."""
     return measure_target_errors(rig.layer, pose).errors
 
 
 def _smaller(giving: MotionSolve) -> MotionSolve:
-    """Try the size halfway between one that is within reach and one that is not."""
+    """Try the middle between a reachable and an unreachable size."""
     reached, short = giving.size_range
     size = max(SMALLEST, (reached + short) / 2)
     order = replace(giving.request, parameters=replace(giving.request.parameters, size=size))

@@ -1,17 +1,17 @@
-"""Points of a drawing by which it moves as a whole."""
+"""Points of a drawing for rigid motions."""
 
 import numpy as np
 
 from engine.arrays import Complexes
 from engine.domain import Domain
 
-LEVELS = (0.05, 0.35, 0.65, 0.94)  # of the height
-NARROW = 0.22  # of the wider side of the box: narrower parts have one point in their middle
-INSET = 0.15  # of a part's width, by which points are inside of it
+LEVELS = (0.05, 0.35, 0.65, 0.94)  # fractions of the height
+NARROW = 0.22  # fraction of the box's wider side: narrower parts have one point in their centre
+INSET = 0.15  # distance of points from a part's sides, as a fraction of its width
 
 
 def find_rigid_points(domain: Domain) -> dict[str, complex]:
-    """Return points on a domain at a few heights, to its left and its right, by names."""
+    """Return named points on the left and right of a domain at several heights."""
     outline = domain.outline
     low, high = float(outline.imag.min()), float(outline.imag.max())
     most = max(high - low, float(np.ptp(outline.real)))
@@ -28,7 +28,7 @@ def find_rigid_points(domain: Domain) -> dict[str, complex]:
 
 
 def _widest(domain: Domain, height: float) -> tuple[float, float]:
-    """Return where the widest part of a domain at a height begins and ends."""
+    """Return the start and the end of the widest part of a domain at a height."""
     crossings = np.sort(np.concatenate([_crossed(loop, height) for loop in domain.loops]))
     pairs = crossings[: len(crossings) // 2 * 2].reshape(-1, 2)
     first, last = pairs[np.diff(pairs).argmax()]
@@ -36,7 +36,7 @@ def _widest(domain: Domain, height: float) -> tuple[float, float]:
 
 
 def _crossed(loop: Complexes, height: float) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return where a loop crosses a height."""
+    """Return the places at which a loop crosses a height."""
     after = np.roll(loop, -1)
     is_crossed = (loop.imag < height) != (after.imag < height)
     a, b = loop[is_crossed], after[is_crossed]

@@ -1,4 +1,4 @@
-"""How the keys of a motion come among those that a layer has."""
+"""Inserting the keys of a motion preset among the keys of a layer."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,13 +13,13 @@ from app.document import (
     digest_keys,
 )
 
-BLEND = 0.25  # seconds over which a motion blends in from what is before it
+BLEND = 0.25  # seconds over which a motion blends in
 
 
 def count_blend_frames(layer: Layer, first: int, fps: float) -> int:
-    """Return over how many frames a motion blends in that is given at a frame.
+    """Return the number of frames over which a motion blends in at a frame.
 
-    It does where the layer is keyed before; else its first key takes the place of what is there.
+    It is 0 without earlier keys: the motion's first key then replaces the layer's.
     """
     if any(key.frame < first for key in layer.keys):
         return max(2, round(BLEND * fps))
@@ -29,20 +29,11 @@ def count_blend_frames(layer: Layer, first: int, fps: float) -> int:
 def splice_motion(
     document: Document, identity: int, keys: Sequence[Keyframe], given: AppliedMotion, until: int
 ) -> Layer:
-    """Return a layer with the keys of a motion in place of those that it has meanwhile.
+    """Return a layer whose keys in the range of a motion are replaced by the motion's.
 
-    Parameters
-    ----------
-    document : Document
-    identity : int
-        The id of the layer.
-    keys : sequence of Keyframe
-        Of one cycle, and of how the motion blends in.
-    given : AppliedMotion
-        It gets the digest of its keys. Other motions that it interrupts are forgotten, and what
-        repeats into it becomes keys.
-    until : int
-        The last frame whose key goes, where the motion takes the place of a longer one.
+    `keys` are those of one repeat and of the blend in. `given` gets the digest of its keys.
+    Overlapping motions are dropped, and cycles that repeat into it are baked. If the motion
+    replaces a longer one, keys up to the frame `until` are deleted.
     """
     first, last = given.first, max(given.last, until)
     for cycle in document.layer(identity).cycles:
@@ -67,5 +58,5 @@ def splice_motion(
 
 
 def _is_during(cycle: Cycle, first: int, last: int) -> bool:
-    """Tell whether what repeats does so at some time strictly between two frames."""
+    """Return whether a cycle or its repeats overlap a range."""
     return cycle.first < last and (cycle.until is None or cycle.until > first)

@@ -1,7 +1,7 @@
-"""Pose scripts: animations written as small JSON texts.
+"""Pose scripts: animations in a small JSON format.
 
 In: the file.
-Out: what it says of each layer, checked.
+Out: the checked contents by layer.
 Imports: `app.document`, `app.storage`.
 """
 

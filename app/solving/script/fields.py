@@ -1,4 +1,4 @@
-"""What keys of poses and of tracks have alike in a pose script."""
+"""Fields that keys of several kinds share in a pose script."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from itertools import pairwise
@@ -14,7 +14,7 @@ OUT_OF_ORDER = "{what} out of order: frame {after} after {before}"
 
 
 def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
-    """Return an object that has none but these fields."""
+    """Return an object; other fields than these are refused."""
     read = as_object(content, where)
     for name in read:
         if name not in fields:
@@ -25,7 +25,6 @@ def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObj
 
 
 def read_frame(key: Mapping[str, object], where: str, name: str = "frame") -> int:
-    """Return the frame that a key, or another object, has under a name."""
     frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
         raise LissomError(
@@ -37,9 +36,9 @@ def read_frame(key: Mapping[str, object], where: str, name: str = "frame") -> in
 
 
 def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, TangentMode]:
-    """Return how time runs after a key, and how the motion passes it.
+    """Return the easing and the tangent mode of a key.
 
-    By default it passes through, or with an easing of its own in a corner.
+    The default tangent mode is smooth, or a corner if the key has an easing.
     """
     ease = Easing.parse(key["ease"]) if "ease" in key else LINEAR
     default = TangentMode.CORNER if "ease" in key else TangentMode.SMOOTH
@@ -56,14 +55,14 @@ def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, Tangen
 
 
 def check_frame_order(frames: Sequence[int], what: str) -> None:
-    """Refuse frames of which one does not come after the one before."""
+    """Refuse frames that are not in ascending order."""
     for before, after in pairwise(frames):
         if after <= before:
             raise LissomError(OUT_OF_ORDER.format(what=what, after=after, before=before))
 
 
 def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
-    """Refuse the name of a handle that the script does not have."""
+    """Refuse a handle name that is not in the script."""
     if name not in handles:
         raise LissomError(
             f"{where} names the handle {name!r}, but the handles are "
@@ -72,7 +71,7 @@ def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
 
 
 def build_value(kind: Callable[..., Made], where: str, **fields: Any) -> Made:
-    """Return a value of these fields; what it refuses is told with the place in the script."""
+    """Return a value built from fields; errors get the place in the script."""
     try:
         return kind(**fields)
     except LissomError as error:

@@ -1,6 +1,6 @@
-"""What a pose script says of its layers together, and of the camera.
+"""Relations and channels of layers in a pose script, and the camera.
 
-What hangs on what, which take turns, how they move as a whole, fade, and lie over each other.
+Attachments, switch groups, transforms, opacity and draw order.
 """
 
 from collections import Counter
@@ -35,7 +35,7 @@ ATTACHMENT_FIELDS = ("to", "at", "turn", "frame", "keep")
 TANGENT_FIELDS = ("frame", "ease", "passing")
 CAMERA_FIELDS = (*TANGENT_FIELDS, "centre", "zoom", "turn")
 TRANSFORM_FIELDS = (*TANGENT_FIELDS, "shift", "turn")
-# Where a layer comes to lie beside another one, and whether that is in front.
+# Fields for a place beside another layer, and whether it is in front.
 SIDES = {"in_front_of": True, "behind": False}
 
 Key = TypeVar("Key", CameraKey, TransformKey)
@@ -45,18 +45,18 @@ NO_KEYS = "{where}.keys must be a list of at least one key"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScriptAttachment:
-    """The layer that a layer hangs on from a frame on, and where the joint is as it was drawn."""
+    """The parent of a layer from a frame on, and the undeformed place of the joint."""
 
-    to: str | None  # None lets it go
+    to: str | None  # None detaches the layer
     at: complex | None  # None takes the nearest point at that frame
     turns: bool = True
     frame: int = 0
-    keeps: bool = False  # whether nothing jumps at that frame
+    keeps: bool = False  # whether the layer keeps its place at that frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScriptSwitchGroup:
-    """Layers that take turns, by their names, and which is seen from which frame on."""
+    """Layers of which one is visible, by name, and the switch keys."""
 
     name: str
     layers: tuple[str, ...]
@@ -64,7 +64,7 @@ class ScriptSwitchGroup:
 
 
 def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ...]:
-    """Return the joints of a layer: one, or several from one frame to the next."""
+    """Return the attachments of a layer: one object or a list."""
     if not isinstance(content, list):
         return (_joint(content, where),)
     joints = tuple(_joint(each, f"{where}[{index}]") for index, each in enumerate(content))
@@ -91,7 +91,6 @@ def _joint(content: object, where: str) -> ScriptAttachment:
 
 
 def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...]:
-    """Return from which frames on a layer is seen, or is not."""
     switches = [
         (frame, as_flag(visible, at))
         for at, frame, visible in _from_frames(content, where, "true or false")
@@ -103,14 +102,7 @@ def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...
 def parse_switch_groups(
     script: JsonObject, switched: Sequence[str]
 ) -> tuple[ScriptSwitchGroup, ...]:
-    """Return the choices of a script.
-
-    Parameters
-    ----------
-    script : JsonObject
-    switched : sequence of str
-        The layers that have frames of their own at which they are seen.
-    """
+    """Return the switch groups; `switched` are layers with visibility keys of their own."""
     entries = as_list(script.get("choices", []), "choices")
     choices = [_choice(entry, f"choices[{index}]") for index, entry in enumerate(entries)]
     for name, count in Counter(choice.name for choice in choices).items():
@@ -153,16 +145,14 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScriptDrawOrder:
-    """From a frame on a layer lies right in front of another one, by its name, or behind it."""
+    """From a frame on, a layer is directly in front of or behind another layer, by name."""
 
     frame: int
-    beside: str | None  # None where it lies in the drawing
+    beside: str | None  # None restores the layer's place in the drawing
     in_front: bool = True
 
 
 def parse_camera(content: object) -> tuple[CameraKey, ...]:
-    """Return the keys of the camera."""
-
     def key(read: JsonObject, where: str, **way: Any) -> CameraKey:
         zoom = as_number(read.get("zoom", 1.0), f"{where}.zoom")
         if not zoom > 0:
@@ -180,7 +170,6 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
 
 
 def parse_transform_keys(content: object, where: str) -> tuple[TransformKey, ...]:
-    """Return the keys by which a layer is moved as a whole."""
 
     def key(read: JsonObject, where: str, **way: Any) -> TransformKey:
         return build_value(
@@ -211,7 +200,7 @@ def _parse_keys(
 
 
 def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]:
-    """Return how opaque a layer is: a number, or keys."""
+    """Return the opacity of a layer: a number, or keys."""
     if not isinstance(content, list):
         return build_value(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
     if not content:
@@ -225,7 +214,6 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
 
 
 def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
-    """Return beside which layers a layer lies."""
     placings = []
     for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
         if place is None:
@@ -244,7 +232,6 @@ def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]
 
 
 def parse_canvas(content: object) -> tuple[int, int]:
-    """Return the size of the canvas."""
     sides = as_list(content, "canvas")
     if len(sides) != 2:
         raise LissomError(f"canvas must be width and height, not {repr_for_error(content)}")
@@ -253,7 +240,7 @@ def parse_canvas(content: object) -> tuple[int, int]:
 
 
 def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int, Any]]:
-    """Return pairs of a frame and what holds there, each after where it stands."""
+    """Return pairs of a frame and a value, each after its place in the script."""
     found = []
     for index, entry in enumerate(as_list(content, where)):
         at = f"{where}[{index}]"

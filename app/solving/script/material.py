@@ -1,4 +1,4 @@
-"""What a pose script says is stiff or soft: parts around points, and bones."""
+"""Stiffness in a pose script: painted regions, and bones."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,12 +11,12 @@ from engine.maps import SOFTEST, STIFFEST
 
 REGION_FIELDS = ("around", "radius", "amount")
 BONE_FIELDS = ("from", "to", "amount")
-ROUNDED = 0.001  # 1/30 may be written as .0333
+ROUNDED = 0.001  # tolerance: 1/30 may be written as .0333
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StiffRegion:
-    """What is painted within a radius around a point of the canvas, in pixels."""
+    """Stiffness painted within a radius around a point of the canvas, in pixels."""
 
     around: complex
     radius: float
@@ -26,7 +26,7 @@ class StiffRegion:
 def parse_material(
     content: object, where: str, handles: Sequence[str]
 ) -> tuple[tuple[StiffRegion, ...], tuple[Bone, ...]]:
-    """Return the parts and the bones; these tell handles by their places among `handles`."""
+    """Return the regions and the bones; bones refer to handles by index into `handles`."""
     parts, bones = [], []
     for index, entry in enumerate(as_list(content, where)):
         here = f"{where}[{index}]"

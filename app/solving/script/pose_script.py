@@ -1,4 +1,4 @@
-"""An animation written as a small JSON text: handles, keys and where each key drags the handles."""
+"""Pose scripts: handles, keys and targets of an animation as JSON."""
 
 import math
 from collections.abc import Mapping
@@ -74,34 +74,34 @@ WRONG_SCHEMA = "schema must be {own}, not {content}"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PoseKey:
-    """One key: its frame, the handles that it moves, and the easing towards the next key."""
+    """A key: its frame, the targets of the handles that it moves, and its easing."""
 
     frame: int
     targets: Mapping[str, complex]
-    pull: float = inf  # how strongly each of them is pulled at most, over the shape's diameter
+    pull: float = inf  # largest force on each of them, over the shape's diameter
     ease: Easing = LINEAR
     passing: TangentMode = TangentMode.SMOOTH
     fronts: Mapping[str, float] = field(default_factory=dict)
-    # By how much the shape turns at handles, in radians; others turn as they did before.
+    # Rotation of the shape at handles, in radians; other handles keep theirs.
     turns: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScriptHandle:
-    """One handle: where it is in the picture, and what it does there."""
+    """A handle: its place in the picture, and its options."""
 
     at: complex
     front: float = 0.0
     extent: float | None = None
-    still: bool = True  # where two keys have it at one place
+    still: bool = True  # whether auto-pin applies
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LayerScript:
-    """The animation of one layer, in pixels of the canvas with y up.
+    """The animation of one layer, in pixels of the canvas, y up.
 
-    The defaults are those of the file format. `layer` is None where the script has but one layer.
-    Tracks, springs and bones tell handles by their places among `handles`.
+    The defaults are those of the file format. `layer` is None in a script of a single layer.
+    Tracks, springs and bones refer to handles by index into `handles`.
     """
 
     layer: str | None = None
@@ -117,15 +117,15 @@ class LayerScript:
     parts: tuple[StiffRegion, ...] = ()
     bones: tuple[Bone, ...] = ()
     attach: tuple[ScriptAttachment, ...] = ()
-    # When it is seen; None leaves that to the drawing.
+    # Visibility keys; None keeps the drawing's visibility.
     visible: tuple[tuple[int, bool], ...] | None = None
     movement: tuple[TransformKey, ...] = ()
-    opacity: float | tuple[OpacityKey, ...] | None = None  # None leaves that to the drawing
+    opacity: float | tuple[OpacityKey, ...] | None = None  # None keeps the drawing's opacity
     order: tuple[ScriptDrawOrder, ...] = ()
 
     @property
     def last(self) -> int:
-        """The frame of the last key, of whatever moves between keys, or at which repeats end."""
+        """The last frame of all keys and repeats."""
         frames = [self.keys[-1].frame, *(track.keys[-1].frame for track in self.tracks)]
         frames += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
         frames += [key.frame for key in self.movement]
@@ -147,34 +147,24 @@ class PoseScript:
 
     @property
     def last(self) -> int:
-        """The last frame of the animation."""
         frames = [layer.last for layer in self.layers]
         return max(frames + [key.frame for key in self.camera])
 
 
 def load_pose_script(path: Path) -> PoseScript:
-    """Read a pose script.
-
-    Raises
-    ------
-    LissomError
-        If the file is missing, is not JSON, or says anything that a pose script cannot say.
-    """
+    """Read a pose script; an invalid or missing file raises a `LissomError`."""
     return load_json(path, parse_pose_script, largest=LARGEST)
 
 
 def parse_pose_script(content: object) -> PoseScript:
     """Turn decoded JSON into a script.
 
-    Raises
-    ------
-    LissomError
-        If a field is unknown, missing or of the wrong kind, a key names an unknown handle, or the
-        frames are out of order.
+    Raises a `LissomError` for unknown, missing or wrong fields, unknown handles, and frames out of
+    order.
     """
     read = as_object(content, "the script")
     if "figures" in read and "layers" not in read:
-        # Its name in earlier scripts.
+        # The name of the field in earlier scripts.
         content = {("layers" if name == "figures" else name): read[name] for name in read}
         read = as_object(content, "the script")
     own = STAGE_FIELDS if "layers" in read else OWN_FIELDS
@@ -212,7 +202,7 @@ def parse_pose_script(content: object) -> PoseScript:
 
 
 def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScript:
-    """Return what a script says of one layer; `where` begins the names of its fields."""
+    """Return the script of one layer; `where` begins the names of its fields in errors."""
     own: dict[str, Any] = {**usual, **_options(script, where)}
     if where:
         own["layer"] = as_text(script["layer"], f"{where}layer")
@@ -261,7 +251,6 @@ def _handle(content: object, where: str) -> ScriptHandle:
 
 
 def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Return those of the optional settings that the script gives."""
     options: dict[str, Any] = {}
     if "variant" in script:
         if script["variant"] not in VARIANTS:

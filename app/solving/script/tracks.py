@@ -1,4 +1,4 @@
-"""Clocks of a pose script: tracks and springs of single handles, and cycles of all of a layer."""
+"""Tracks, springs and cycles in a pose script."""
 
 from collections.abc import Mapping, Sequence
 from math import radians
@@ -30,7 +30,7 @@ TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passin
 SPRING_NUMBERS = ("frequency", "damping", "lag", "strength", "stretch")
 SPRING_FIELDS = ("handle", "preset", "root", *SPRING_NUMBERS)
 CYCLE_FIELDS = ("from", "to", "until")
-# What the places of a track's keys are called, by what it goes with.
+# Field of a track key's position, by the space of the track.
 PLACES = {"pose": "offset", "picture": "at"}
 NEEDLESS_VELOCITY = (
     '{where} has a velocity, which is of keys that are passed through; give it "passing": '
@@ -42,7 +42,7 @@ NO_BASIS = "{where}.with must be pose or picture, not {content}"
 
 
 def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
-    """Return the tracks of a layer; their handles are told by their places among the names."""
+    """Return the tracks of a layer; they refer to handles by index into the names."""
     numbers = {name: number for number, name in enumerate(handles)}
     tracks = tuple(
         _track(each, f"{where}[{index}]", numbers)
@@ -53,7 +53,7 @@ def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[T
 
 
 def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[Spring, ...]:
-    """Return the springs of a layer, likewise."""
+    """Return the springs of a layer; they refer to handles by index into the names."""
     numbers = {name: number for number, name in enumerate(handles)}
     springs = tuple(
         _spring(each, f"{where}[{index}]", numbers)
@@ -64,12 +64,12 @@ def parse_springs(content: object, where: str, handles: Sequence[str]) -> tuple[
 
 
 def parse_cycles(content: object, where: str, keys: Sequence[int]) -> tuple[Cycle, ...]:
-    """Return the cycles of a layer with keys at some frames, in the order of their own frames."""
+    """Return the cycles of a layer with keys at these frames, in order."""
     cycles = [
         _cycle(each, f"{where}[{index}]") for index, each in enumerate(as_list(content, where))
     ]
     cycles.sort(key=lambda cycle: cycle.first)
-    # A key at the end of a stretch may be its first one again.
+    # A key at the end of a cycle may repeat its first key.
     seams = {cycle.last for cycle in cycles if cycle.until != cycle.last}
     try:
         require_no_overlap(cycles)
@@ -83,7 +83,7 @@ def parse_cycles(content: object, where: str, keys: Sequence[int]) -> tuple[Cycl
 def check_loop_periods(
     tracks: Sequence[Track], springs: Sequence[Spring], period: int, where: str
 ) -> None:
-    """Refuse what does not come round in a loop of so many frames."""
+    """Refuse tracks and springs that cannot repeat in a loop of this length."""
     for index, track in enumerate(tracks):
         if track.delay > period:
             raise LissomError(
@@ -176,7 +176,6 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
 
 
 def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple[int, ...]:
-    """Return the handles of a track."""
     if "handle" in track:
         return (_number(track["handle"], f"{where}.handle", handles),)
     names = as_list(track["handles"], f"{where}.handles")
@@ -197,7 +196,7 @@ def _number(name: object, where: str, handles: Mapping[str, int]) -> int:
 def _require_one_each(
     groups: Sequence[tuple[int, ...]], where: str, handles: Sequence[str]
 ) -> None:
-    """Refuse a handle that two tracks have, or two springs."""
+    """Refuse a handle in two tracks, or with two springs."""
     seen: dict[int, int] = {}
     for index, group in enumerate(groups):
         for number in group:

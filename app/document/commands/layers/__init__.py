@@ -1,4 +1,4 @@
-"""Commands on layers as layers: their order, groups and joints, and when each is seen.
+"""Commands on layers: order, groups, attachments, switch groups, visibility and channels.
 
 In: a document, and ids of its layers.
 Out: the changed document.

@@ -1,4 +1,4 @@
-"""Commands on what has keys of its own: the camera, and how layers fade, move and are ordered."""
+"""Commands on keys of the camera, and of a layer's opacity, transform and draw order."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -19,25 +19,23 @@ Moving = TypeVar("Moving", TransformKey, OpacityKey)
 
 @command("Key the camera")
 def key_camera(document: Document, key: CameraKey) -> Document:
-    """Let the camera have a key, in place of the one at its frame, whose way on it keeps."""
+    """Set the camera key at a frame; an existing key keeps its easing and tangent mode."""
     return _filmed(document, _with(document.camera, key, [key.frame]))
 
 
 @command("Move camera key")
 def move_camera_key(document: Document, frame: int, to: int) -> Document:
-    """Move the key of the camera at a frame to another one."""
     return _filmed(document, retime.with_moved_keys(document.camera, {frame}, to - frame))
 
 
 @command("Delete camera key")
 def delete_camera_key(document: Document, frame: int) -> Document:
-    """Delete the key of the camera at a frame; without any, frames show the canvas."""
+    """Delete the camera key at a frame; without keys, frames show the canvas."""
     return _filmed(document, retime.without_keys(document.camera, {frame}))
 
 
 @layer_command("Key opacity")
 def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
-    """Let a layer be so opaque at a frame, and fade evenly from key to key."""
     row = layer.opacity_keys
     new = OpacityKey(frame=keyed_frame(layer, row, frame), opacity=float(opacity))
     changed = _with(row, new, _like(layer, row, new.frame))
@@ -46,7 +44,7 @@ def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
 
 @layer_command("Delete opacity key")
 def delete_opacity_key(layer: Layer, frame: int) -> Layer:
-    """Delete a key of a layer's opacity; without any it stays as opaque as the last one had it."""
+    """Delete an opacity key; the layer keeps the opacity of the last deleted key."""
     row = layer.opacity_keys
     left = retime.without_keys(row, {keyed_frame(layer, row, frame)})
     if left:
@@ -56,7 +54,6 @@ def delete_opacity_key(layer: Layer, frame: int) -> Layer:
 
 @layer_command("Key movement")
 def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer:
-    """Let a whole layer be moved and turned so at a frame, beside where its poses have it."""
     row = layer.transform_keys
     new = TransformKey(frame=keyed_frame(layer, row, frame), shift=shift, turn=float(turn))
     changed = _with(row, new, _like(layer, row, new.frame))
@@ -65,7 +62,6 @@ def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer
 
 @layer_command("Delete movement key")
 def delete_movement_key(layer: Layer, frame: int) -> Layer:
-    """Delete a key of a layer's movement; without any it is where its poses have it."""
     row = layer.transform_keys
     left = retime.without_keys(row, {keyed_frame(layer, row, frame)})
     return replace(layer, transform_keys=left)
@@ -73,10 +69,7 @@ def delete_movement_key(layer: Layer, frame: int) -> Layer:
 
 @layer_command("Set order from here on")
 def place_at(layer: Layer, placing: DrawOrderKey) -> Layer:
-    """Paint a layer right in front of another one, or behind it, from a frame on.
-
-    In repeats, from that frame on in all of them.
-    """
+    """Draw a layer directly in front of or behind another one from a frame on."""
     at = change_frame(layer.draw_order_keys, layer.cycles, placing.frame)
     placing = replace(placing, frame=at)
     others = [each for each in layer.draw_order_keys if each.frame != placing.frame]
@@ -86,14 +79,14 @@ def place_at(layer: Layer, placing: DrawOrderKey) -> Layer:
 
 @layer_command("Change no order here")
 def unplace_at(layer: Layer, frame: int) -> Layer:
-    """Take back what is said of a layer's order from a frame on."""
+    """Delete the draw order key at a frame."""
     at = change_frame(layer.draw_order_keys, layer.cycles, frame)
     placings = tuple(each for each in layer.draw_order_keys if each.frame != at)
     return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
 
 
 def _like(layer: Layer, row: Keys[Moving], frame: int) -> list[int]:
-    """Return a frame, and that of the key which is the one there again: where a cycle ends."""
+    """Return the frame and, if it starts a cycle, the frame of the equal key at the cycle's end."""
     cycle = repeating_cycle(layer, row)
     if cycle is not None and (frame, frame + cycle.period) == (row[0].frame, row[-1].frame):
         return [frame, row[-1].frame]
@@ -101,9 +94,9 @@ def _like(layer: Layer, row: Keys[Moving], frame: int) -> list[int]:
 
 
 def _with(row: Keys[Key], key: Key, frames: Collection[int]) -> Keys[Key]:
-    """Return a row with a key, or with ones like it for those at some frames.
+    """Return the keys with one key at its frame, or with equal keys at several frames.
 
-    Their ways on are kept, and by how many whole turns the later ones have turned around.
+    Existing keys keep easing, tangent mode and, relative to the first, their rotation.
     """
     olds = [each for each in row if each.frame in frames]
     if not olds:
@@ -128,7 +121,7 @@ def _with(row: Keys[Key], key: Key, frames: Collection[int]) -> Keys[Key]:
 
 
 def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:
-    """Return a document with another camera, and with room for its keys."""
+    """Return a document with other camera keys; its frames grow to contain the keys."""
     if camera is document.camera:
         return document
     ends = [document.frames.first, document.frames.last, *(key.frame for key in camera)]

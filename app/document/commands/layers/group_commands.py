@@ -1,4 +1,4 @@
-"""Commands on groups of layers: which are in them, and how they are painted as one."""
+"""Commands on groups of layers: members, order, opacity and blend modes."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -18,10 +18,10 @@ from app.errors import LissomError
 
 @command("Group layers")
 def group_layers(document: Document, identities: Collection[int], path: str) -> Document:
-    """Put layers in a group, or with "" out of all groups; groups that are missing are made.
+    """Put layers in a group, or with "" outside all groups; missing groups are created.
 
-    They keep their order, and lie in front of those that the group has already, or, where it has
-    none, where the foremost of them was.
+    The layers keep their order and go in front of the group's layers. In an empty group, they go
+    where the foremost of them was.
     """
     missing = _missing_groups(document, path)
     chosen = [layer for layer in document.layers if layer.id in identities]
@@ -41,7 +41,7 @@ def group_layers(document: Document, identities: Collection[int], path: str) -> 
 
 @command("Add groups")
 def add_groups(document: Document, groups: Sequence[Group]) -> Document:
-    """Add those of these groups that are not there, with no layer in them yet."""
+    """Add missing groups, still without layers."""
     known = {group.name for group in document.groups}
     new = tuple(group for group in groups if group.name not in known)
     return replace(document, groups=(*document.groups, *new)) if new else document
@@ -49,16 +49,16 @@ def add_groups(document: Document, groups: Sequence[Group]) -> Document:
 
 @command("Move group")
 def move_group_into(document: Document, path: str, around: str) -> Document:
-    """Put a group as it is in another one, in front of what that has, or with "" in none."""
+    """Move a group into another group, in front of its layers, or with "" outside all groups."""
     _, others = _apart(document, path)
     return _put_group(document, path, around, _place_in_group(document.layers, others, around))
 
 
 @command("Move group")
 def reorder_group(document: Document, path: str, beside: int, *, in_front: bool) -> Document:
-    """Put a group as it is right in front of a layer that is not in it, or behind that.
+    """Move a group directly in front of or behind a layer outside the group.
 
-    It joins and leaves other groups as a layer does that is moved there.
+    The group joins and leaves outer groups as a moved layer does.
     """
     run, others = _apart(document, path)
     place = others.index(document.layer(beside)) + in_front
@@ -68,7 +68,7 @@ def reorder_group(document: Document, path: str, beside: int, *, in_front: bool)
 
 @command("Rename group")
 def rename_group(document: Document, path: str, name: str) -> Document:
-    """Give a group another name, which no other one beside it may have."""
+    """Rename a group; no group beside it may have the name."""
     document.group(path)
     name = name.strip()
     if "/" in name:
@@ -83,9 +83,9 @@ def rename_group(document: Document, path: str, name: str) -> Document:
 
 @command("Ungroup layers")
 def ungroup_layers(document: Document, path: str) -> Document:
-    """Let the layers of a group be by themselves, as visible and as opaque as they were.
+    """Dissolve a group; its layers and subgroups take over its opacity and stay hidden if it was.
 
-    Where layers of the group overlap, they shine through each other from now on.
+    Overlapping layers of a translucent group shine through each other afterwards.
     """
     gone, around = document.group(path), path.rpartition("/")[0]
     taken = {group.name for group in document.groups if path not in ancestor_paths(group.name)}
@@ -113,19 +113,16 @@ def ungroup_layers(document: Document, path: str) -> Document:
 
 @command("Set group's opacity")
 def set_group_opacity(document: Document, path: str, opacity: float) -> Document:
-    """Set how opaque the layers of a group are together."""
     return _changed(document, path, opacity=float(opacity))
 
 
 @command("Show or hide group")
 def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document:
-    """Hide all layers of a group at all times, or show them again."""
     return _changed(document, path, hidden=hidden)
 
 
 @command("Set group's blend")
 def set_group_blend(document: Document, path: str, blend: GroupBlend) -> Document:
-    """Set how the colours of a group meet those behind it."""
     return _changed(document, path, blend=blend)
 
 
@@ -135,7 +132,7 @@ def _missing_groups(document: Document, path: str) -> list[Group]:
 
 
 def _place_in_group(before: Sequence[Layer], others: Sequence[Layer], path: str) -> int:
-    """Return where layers come among the others that join a group, or are the first in it."""
+    """Return the index for layers that join a group, or are its first, among the other layers."""
     for around in reversed(ancestor_paths(path)):
         members = [
             index for index, other in enumerate(others) if around in ancestor_paths(other.group)
@@ -145,21 +142,21 @@ def _place_in_group(before: Sequence[Layer], others: Sequence[Layer], path: str)
     kept = {id(other) for other in others}
     foremost = max(index for index, layer in enumerate(before) if id(layer) not in kept)
     place = sum(id(layer) in kept for layer in before[:foremost])
-    # Not amid another group.
+    # Not inside another group.
     while 0 < place < len(others) and common_path(others[place - 1].group, others[place].group):
         place += 1
     return place
 
 
 def _apart(document: Document, path: str) -> tuple[list[Layer], list[Layer]]:
-    """Return the layers of a group, and all others."""
+    """Return the layers of a group, and all other layers."""
     document.group(path)
     run = [layer for layer in document.layers if path in ancestor_paths(layer.group)]
     return run, [layer for layer in document.layers if layer not in run]
 
 
 def _put_group(document: Document, path: str, around: str, place: int) -> Document:
-    """Return the document with a group in another one, at a place among all other layers."""
+    """Return the document with a group inside another, at an index among the other layers."""
     if path in ancestor_paths(around):
         raise LissomError(f"The group {path!r} cannot be put in itself.")
     run, others = _apart(document, path)
@@ -171,14 +168,14 @@ def _put_group(document: Document, path: str, around: str, place: int) -> Docume
     rest = [group for group in document.groups if group not in inner]
     to = unique_name(f"{around}/{name}".removeprefix("/"), {group.name for group in rest})
     whole = replace(document, size=document.canvas)
-    # Each group after the one that it is in.
+    # An outer group comes before the groups inside it.
     return without_empty_groups(_moved(whole, layers, [*rest, *inner], {path: to}))
 
 
 def _moved(
     document: Document, layers: Sequence[Layer], groups: Sequence[Group], to: Mapping[str, str]
 ) -> Document:
-    """Return the document with these layers and groups, where some groups have other paths."""
+    """Return the document with these layers and groups, and with some group paths renamed."""
 
     def moved(path: str) -> str:
         for outer in reversed(ancestor_paths(path)):

@@ -1,4 +1,4 @@
-"""Showing what is hidden."""
+"""Showing a hidden layer."""
 
 from dataclasses import replace
 
@@ -7,9 +7,9 @@ from app.document.model import Document
 
 
 def with_layer_shown(document: Document, identity: int) -> Document:
-    """Return a document in which neither a layer nor a group that it is in is hidden.
+    """Return a document in which neither the layer nor a group around it is hidden.
 
-    What such a group has in it besides is hidden by itself then: the layer alone comes to be seen.
+    The other members of these groups become hidden themselves, so that only the layer appears.
     """
     layer = document.layer(identity)
     around = ancestor_paths(layer.group)
@@ -18,7 +18,7 @@ def with_layer_shown(document: Document, identity: int) -> Document:
         return document
 
     def was_hidden(path: str) -> bool:
-        """Tell whether what lies in a group at a path is hidden no more, but for the layer."""
+        """Return whether members of this group were hidden by a group that is now shown."""
         return path in around and not hidden.isdisjoint(ancestor_paths(path))
 
     layers = tuple(

@@ -1,4 +1,4 @@
-"""Commands on the layers as layers: which there are, in what order, seen when, hung on what."""
+"""Commands on layers: add, delete, order, blend, visibility, attachments and depth."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -22,29 +22,28 @@ LAST_LAYER = "A document has at least one layer; add another one first."
 
 @command("Add layer")
 def add_layer(document: Document, layer: Layer, index: int | None = None) -> Document:
-    """Add a layer in front of all others, or at an index in the order from back to front.
+    """Add a layer in front of all others, or at an index from back to front.
 
-    Its id must be a free one, as `free_identity` gives it; its name is numbered where it is taken.
+    The id must be free, as from `next_layer_id`. A name in use gets a number.
     """
     layers = list(document.layers)
     place = len(layers) if index is None else index
     group, name = group_at(layers, place, layer), unique_layer_name(document, layer.name)
     layers.insert(place, replace(layer, name=name, group=group))
-    # A canvas that was one picture's stays what it was.
+    # The canvas keeps its size even if it was that of the rearmost picture.
     return replace(document, layers=tuple(layers), size=document.canvas)
 
 
 @command("Add layers")
 def append_import_log(document: Document, summary: ImportLog) -> Document:
-    """Keep what was told when layers were brought in, after what was told before."""
     return replace(document, import_log=document.import_log + summary) if summary else document
 
 
 @command("Replace layer")
 def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
-    """Put another layer with the same id in a layer's place.
+    """Replace a layer with another of the same id.
 
-    What hangs on it does so as before, or at the nearest points where it is not there any more.
+    Child layers stay attached. A joint beside the new shape moves to its nearest point.
     """
     size = document.canvas
     changed = keep_attachments(identity)(document.with_layer(replace(layer, id=identity)))
@@ -53,7 +52,7 @@ def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
 
 @command("Keep joints")
 def keep_attachments(document: Document, identity: int) -> Document:
-    """Move joints that are beside a layer now to the nearest points of it."""
+    """Move joints that are not on the layer's shape to the nearest points of the shape."""
     domain = document.layer(identity).domain
     for child in document.layers:
         places = np.array([joint.parent_point for joint in child.attachments], dtype=np.complex128)
@@ -71,7 +70,7 @@ def keep_attachments(document: Document, identity: int) -> Document:
 
 @command("Duplicate layer")
 def duplicate_layer(document: Document, identity: int) -> Document:
-    """Put a copy of a layer in front of it, which takes turns with it where it takes turns."""
+    """Put a copy of a layer in front of it, in the same switch group."""
     layer = document.layer(identity)
     index = document.layers.index(layer)
     copy = replace(
@@ -87,7 +86,7 @@ def duplicate_layer(document: Document, identity: int) -> Document:
 
 @command("Delete layer")
 def remove_layer(document: Document, identity: int) -> Document:
-    """Remove a layer. What hung on it hangs as it did before that, else on nothing."""
+    """Delete a layer, and the keys of other layers that refer to the layer."""
     document.layer(identity)
     if len(document.layers) == 1:
         raise LissomError(LAST_LAYER)
@@ -100,10 +99,10 @@ def remove_layer(document: Document, identity: int) -> Document:
 
 @command("Move layer")
 def move_layer(document: Document, identity: int, index: int) -> Document:
-    """Put a layer at an index in the order from back to front.
+    """Move a layer to an index in the order from back to front.
 
-    It stays in its groups as long as it lies beside others of them, and joins those amid which it
-    comes to lie.
+    The layer stays in its groups as long as it lies next to another member. It joins groups between
+    whose members it lies.
     """
     layer = document.layer(identity)
     others = [other for other in document.layers if other is not layer]
@@ -119,49 +118,47 @@ def move_layer(document: Document, identity: int, index: int) -> Document:
 
 @command("Rename layer")
 def rename_layer(document: Document, identity: int, name: str) -> Document:
-    """Give a layer another name, which no other one may have."""
+    """Rename a layer; the name must be free."""
     return _with(document, identity, name=name.strip())
 
 
 @command("Set opacity")
 def set_opacity(document: Document, identity: int, opacity: float) -> Document:
-    """Set how opaque a layer is painted."""
     return _with(document, identity, opacity=float(opacity))
 
 
 @command("Set blend")
 def set_blend(document: Document, identity: int, blend: BlendMode) -> Document:
-    """Set how the colours of a layer meet those behind it."""
     return _with(document, identity, blend=blend)
 
 
 @command("Clip layer")
 def set_clipped(document: Document, identity: int, *, clipped: bool) -> Document:
-    """Let a layer be seen only where what lies below it in its group is, or everywhere again."""
+    """Turn clipping of a layer to the layer or group below it on or off."""
     return _with(document, identity, clipped=clipped)
 
 
 @command("Show or hide layer")
 def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
-    """Hide a layer at all times, or show it again."""
+    """Hide a layer at all frames, or show it."""
     return _with(document, identity, hidden=hidden)
 
 
 @command("Show layer")
 def show_layer(document: Document, identity: int) -> Document:
-    """Show a layer in whatever groups, and of those that were hidden nothing else."""
+    """Show a layer and the groups around it; their other members become hidden."""
     return with_layer_shown(document, identity)
 
 
 @command("Lock or unlock layer")
 def set_locked(document: Document, identity: int, *, locked: bool) -> Document:
-    """Let clicks on the drawing pass through a layer, or stop at it again."""
+    """Let clicks on the drawing pass through a layer, or not."""
     return _with(document, identity, locked=locked)
 
 
 @command("Set reference")
 def set_reference(document: Document, identity: int, *, reference: bool) -> Document:
-    """Leave a layer out of exports, or take it in again."""
+    """Exclude a layer from exports, or include it."""
     return _with(document, identity, reference=reference)
 
 
@@ -169,10 +166,10 @@ def set_reference(document: Document, identity: int, *, reference: bool) -> Docu
 def key_visibility(
     document: Document, identity: int, frame: int, *, visible: bool | None
 ) -> Document:
-    """Show or hide a layer from a frame on; None takes back what was said at that frame.
+    """Show or hide a layer from a frame on; None deletes the visibility key at that frame.
 
-    In repeats, from that frame on in all of them. One that was hidden at all times is shown there,
-    and hidden until then.
+    In a cycle, the key repeats. A layer that was hidden at all frames stays hidden before the
+    frame.
     """
     layer = document.layer(identity)
     frame = change_frame(layer.visibility_keys, layer.cycles, frame)
@@ -184,7 +181,7 @@ def key_visibility(
     others = [switch for switch in switches if switch.frame != frame]
     if visible is not None:
         if not others and not switches and frame > 0:
-            # What was seen before stays so.
+            # The layer keeps its visibility before the frame.
             others = [VisibilityKey(0, not visible)]
         others.append(VisibilityKey(frame, visible))
     switches = tuple(sorted(others, key=lambda switch: switch.frame))
@@ -193,7 +190,6 @@ def key_visibility(
 
 @layer_command("Move visibility")
 def move_visibility_key(layer: Layer, frame: int, to: int) -> Layer:
-    """Move the frame at which a layer is shown or hidden."""
     moved = [switch for switch in layer.visibility_keys if switch.frame == frame]
     if not moved:
         raise LissomError(f"{layer.name!r} is neither shown nor hidden at frame {frame}.")
@@ -206,10 +202,10 @@ def move_visibility_key(layer: Layer, frame: int, to: int) -> Layer:
 
 @command("Attach")
 def attach_layer(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
-    """Hang a layer by its anchor on a point of another one from a frame on; circles are refused.
+    """Attach a layer by its anchor to a point of another layer from a frame on.
 
-    What began to hold at that frame does no longer. `app.motion` finds the point and the turn with
-    which nothing moves at a frame.
+    An attachment key at that frame is replaced, and circles are refused. `app.motion` computes the
+    joint that keeps the layer in place.
     """
     joints = [each for each in document.layer(identity).attachments if each.frame != joint.frame]
     joints = sorted([*joints, joint], key=lambda each: each.frame)
@@ -218,14 +214,13 @@ def attach_layer(document: Document, identity: int, anchor: complex, joint: Atta
 
 @layer_command("Attach as before")
 def delete_attachment_key(layer: Layer, frame: int) -> Layer:
-    """Take back what a layer hangs on from a frame on: what held before it still does."""
+    """Delete the attachment key at a frame; the attachment before it stays in effect."""
     joints = tuple(joint for joint in layer.attachments if joint.frame != frame)
     return layer if joints == layer.attachments else replace(layer, attachments=joints)
 
 
 @layer_command("Move joint in time")
 def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
-    """Let what a layer hangs on from a frame on hold from another frame on."""
     moved = next((joint for joint in layer.attachments if joint.frame == frame), None)
     if moved is None:
         raise LissomError(f"{layer.name!r} is not attached anew at frame {frame}.")
@@ -238,15 +233,9 @@ def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
 
 @command("Detach")
 def detach_layer(document: Document, identity: int, factor: complex, shift: complex) -> Document:
-    """Let a layer hang on nothing at any time, turned and moved as it was seen at one moment.
+    """Remove all parents of a layer, and transform its poses to where it was seen at one frame.
 
-    Parameters
-    ----------
-    identity : int
-    factor : complex
-        Of modulus 1: by which all poses are turned.
-    shift : complex
-        By which they are moved then.
+    All poses are rotated by `factor`, of modulus 1, and then translated by `shift`.
     """
     layer = document.layer(identity)
     if not layer.attachments:
@@ -257,13 +246,13 @@ def detach_layer(document: Document, identity: int, factor: complex, shift: comp
 
 @layer_command("Set depth")
 def set_depth(layer: Layer, identity: int, front: float, extent: float | None) -> Layer:
-    """Set what is in front around a handle, where no key says otherwise, and how far around it."""
+    """Set the default depth around a handle and its radius."""
     return with_handles(layer, {identity}, front=float(front), extent=extent)
 
 
 @layer_command("Set depth from here on")
 def key_depth(layer: Layer, frame: int, identity: int, front: float | None) -> Layer:
-    """Set what is in front around a handle from a key on; None says nothing at that key."""
+    """Set the depth around a handle from a key on; None removes it from that key."""
     key = layer.key(frame)
     handle = layer.handle(identity)
     fronts = {i: depth for i, depth in key.depths.items() if i != handle.id}
@@ -275,41 +264,40 @@ def key_depth(layer: Layer, frame: int, identity: int, front: float | None) -> L
 
 
 def next_layer_id(document: Document) -> int:
-    """Return an id that no layer has."""
     return 1 + max(layer.id for layer in document.layers)
 
 
 def unique_layer_name(document: Document, name: str) -> str:
-    """Return a name for a layer that no other one has: this one, or this one with a number."""
+    """Return a free layer name: this name, or this name with a number."""
     return unique_name(name, {layer.name for layer in document.layers})
 
 
 def unique_name(name: str, taken: Collection[str]) -> str:
-    """Return a name that is not taken: this one, or this one with a number."""
+    """Return a free name: this name, or this name with a number."""
     return with_number(name, taken, 2) if name in taken else name
 
 
 def without_empty_groups(document: Document) -> Document:
-    """Return the document without groups that no layer is in any more."""
+    """Return the document without groups that contain no layer."""
     filled = {path for layer in document.layers for path in ancestor_paths(layer.group)}
     groups = tuple(group for group in document.groups if group.name in filled)
     return document if groups == document.groups else replace(document, groups=groups)
 
 
 def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
-    """Return the group that a layer is in which is put at an index among others."""
+    """Return the group of a layer after it is put at an index among the others."""
     own, beside = layer.group, [each.group for each in others[max(index - 1, 0) : index + 1]]
     amid = common_path(*beside) if len(beside) == 2 else ""
     if amid and amid not in ancestor_paths(own):
         return amid
     stays = max((common_path(own, group) for group in beside), key=len, default="")
     shared = max((common_path(own, each.group) for each in others), key=len, default="")
-    # With all of what else is in its groups elsewhere, it leaves them; alone in one, it keeps it.
+    # A layer leaves groups whose other members all lie elsewhere; it keeps a group of its own.
     return own if stays == shared else stays
 
 
 def _without_references_to(layer: Layer, other: int) -> Layer:
-    """Return a layer that neither hangs on another one at any time nor is painted beside it."""
+    """Return a layer without attachment and draw order keys that refer to another layer."""
     joints = tuple(joint for joint in layer.attachments if joint.parent != other)
     placings = tuple(placing for placing in layer.draw_order_keys if placing.beside != other)
     if (joints, placings) == (layer.attachments, layer.draw_order_keys):

@@ -1,4 +1,4 @@
-"""Commands on choices: layers of one place that take turns, such as mouths."""
+"""Commands on switch groups: layers of which exactly one is visible, such as mouths."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
@@ -13,10 +13,10 @@ from app.errors import LissomError
 
 @command("Let layers take turns")
 def create_switch_group(document: Document, name: str, layers: Sequence[int]) -> Document:
-    """Let layers take turns, which are not in another choice.
+    """Create a switch group from layers that are in no other switch group.
 
-    Where they were shown and hidden at frames of their own, the one in front of those that were
-    seen is seen; where none was, the last one still is.
+    Visibility keys become switch keys: at each frame the foremost visible layer is chosen. Where
+    none is visible, the previous choice stays.
     """
     members = [document.layer(identity) for identity in layers]
     starts = {switch.frame for layer in members for switch in layer.visibility_keys}
@@ -27,7 +27,7 @@ def create_switch_group(document: Document, name: str, layers: Sequence[int]) ->
         if seen is not None and (not turns or seen != turns[-1].layer):
             turns.append(SwitchKey(frame, seen))
     if [turn.layer for turn in turns] == list(layers[:1]):
-        turns = []  # the first one, at all times
+        turns = []  # the first layer at all frames is the default
     for layer in members:
         document = _without_visibility_keys(document, layer.id)
     choice = SwitchGroup(name=name.strip(), layers=tuple(layers), keys=tuple(turns))
@@ -36,7 +36,7 @@ def create_switch_group(document: Document, name: str, layers: Sequence[int]) ->
 
 @command("Choose from here on")
 def choose_at(document: Document, identity: int, frame: int) -> Document:
-    """Let a layer be the one of its choice that is seen from a frame on; in repeats, from all."""
+    """Show a layer of its switch group from a frame on; in a cycle, the key repeats."""
     choice = _switch_group_of(document, identity)
     if with_repeats(document, choice).layer_at(frame) == identity:
         return document
@@ -48,7 +48,7 @@ def choose_at(document: Document, identity: int, frame: int) -> Document:
 
 @command("Change nothing here")
 def unchoose_at(document: Document, name: str, frame: int) -> Document:
-    """Take back what a choice says at a frame: what was seen before it is still seen."""
+    """Delete the switch key at a frame; the layer visible before it stays visible."""
     choice = document.switch_group(name)
     left = _plain(turn for turn in choice.keys if turn.frame != frame)
     return _replace_switch_group(document, choice, replace(choice, keys=left))
@@ -56,7 +56,7 @@ def unchoose_at(document: Document, name: str, frame: int) -> Document:
 
 @command("Move choice in time")
 def move_turn(document: Document, name: str, frame: int, to: int) -> Document:
-    """Move the frame from which on a choice shows a layer, in place of what begins there."""
+    """Move a switch key to another frame, in place of a key there."""
     choice = document.switch_group(name)
     moved = next((turn for turn in choice.keys if turn.frame == frame), None)
     if moved is None:
@@ -68,14 +68,14 @@ def move_turn(document: Document, name: str, frame: int, to: int) -> Document:
 
 @command("Rename choice")
 def rename_switch_group(document: Document, name: str, new: str) -> Document:
-    """Give a choice another name, which no other one may have."""
+    """Rename a switch group; the name must be free."""
     choice = document.switch_group(name)
     return _replace_switch_group(document, choice, replace(choice, name=new.strip()))
 
 
 @command("Take into the choice")
 def add_to_switch_group(document: Document, name: str, layers: Sequence[int]) -> Document:
-    """Take layers into a choice, as the last ones; each is seen where it is chosen only."""
+    """Add layers to a switch group as the last ones; switch keys decide their visibility."""
     choice = document.switch_group(name)
     new = tuple(identity for identity in layers if identity not in choice.layers)
     if not new:
@@ -87,9 +87,9 @@ def add_to_switch_group(document: Document, name: str, layers: Sequence[int]) ->
 
 @command("Take out of the choice")
 def remove_from_switch_group(document: Document, identity: int) -> Document:
-    """Take a layer out of its choice; by itself it is seen when it was.
+    """Remove a layer from its switch group; it keeps its visibility as keys of its own.
 
-    Of the others the one before is seen then, too. A choice of one layer is none.
+    At its frames the group shows the previous layer. A group of one layer is deleted.
     """
     choice = _switch_group_of(document, identity)
     rest = _without(choice, identity)
@@ -100,13 +100,13 @@ def remove_from_switch_group(document: Document, identity: int) -> Document:
 
 @command("Let layers take turns no more")
 def delete_switch_group(document: Document, name: str) -> Document:
-    """Let each layer of a choice be seen when it was, by itself."""
+    """Delete a switch group; each layer keeps its visibility as keys of its own."""
     choice = document.switch_group(name)
     return _replace_switch_group(document, choice, None, freed=choice.layers)
 
 
 def without_switch_member(document: Document, identity: int) -> Document:
-    """Return a document in which a layer that is about to be removed is in no choice."""
+    """Return a document whose switch groups do not contain a layer that is about to be deleted."""
     choice = document.switch_group_of(identity)
     if choice is None:
         return document
@@ -115,7 +115,7 @@ def without_switch_member(document: Document, identity: int) -> Document:
 
 
 def _without_visibility_keys(document: Document, identity: int) -> Document:
-    """Return a document in which nothing but a choice decides when a layer is seen."""
+    """Return a document in which only a switch group decides the visibility of the layer."""
     document = with_layer_shown(document, identity)
     layer = document.layer(identity)
     return (
@@ -137,10 +137,10 @@ def _replace_switch_group(
     changed: SwitchGroup | None,
     freed: Collection[int] = (),
 ) -> Document:
-    """Return a document with another choice, or none, and layers that are seen as it had them."""
+    """Return a document with a changed or deleted switch group, and freed layers with own keys."""
     if changed == choice:
         return document
-    # Whatever groups hide.
+    # Groups that are hidden do not count.
     visible = replace(document, groups=tuple(replace(g, hidden=False) for g in document.groups))
     layers = tuple(
         replace(each, visibility_keys=visibility_keys(visible, each), hidden=False)
@@ -153,13 +153,13 @@ def _replace_switch_group(
 
 
 def _put(turns: Iterable[SwitchKey], new: SwitchKey) -> tuple[SwitchKey, ...]:
-    """Return turns with another one in place of what begins at its frame."""
+    """Return switch keys with one key added or replaced."""
     others = [turn for turn in turns if turn.frame != new.frame]
     return _plain(sorted([*others, new]))
 
 
 def _plain(turns: Iterable[SwitchKey]) -> tuple[SwitchKey, ...]:
-    """Return turns without those that change nothing."""
+    """Return switch keys without repetitions of the layer before."""
     plain: list[SwitchKey] = []
     for turn in turns:
         if not plain or turn.layer != plain[-1].layer:

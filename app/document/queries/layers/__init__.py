@@ -1,7 +1,7 @@
-"""What follows from a document about its layers as layers: what is seen, where, and as one.
+"""States of layers at a frame: visibility, order, compositing, clipping, depth and camera.
 
 In: documents.
-Out: answers; nothing is changed.
+Out: derived values; the document does not change.
 Imports: the values of `app.document`.
 """
 

@@ -1,4 +1,4 @@
-"""What is clipped by what: a layer or a group, with all that is seen only where it is."""
+"""Clipping: the base layer or group, and the layers and groups clipped to it."""
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
@@ -10,17 +10,17 @@ from app.document.model import Document
 
 
 class ClipStack(NamedTuple):
-    """The ids of a layer, or of those of a group, and of what is clipped by it in front of it."""
+    """Layer ids of a clipping base and of the layers in front that are clipped to it."""
 
     base: tuple[int, ...]
     clipped: tuple[int, ...]
-    units: tuple[int | str, ...]  # the same: a layer by its id, a group by its path
+    units: tuple[int | str, ...]  # the clipped layers by id and the clipped groups by path
 
 
 def group_runs(layers: Sequence[Layer], depth: int) -> list[tuple[str, list[Layer]]]:
-    """Return layers that follow each other in one group, with its path; "" of others, each.
+    """Return runs of consecutive layers of one group with its path; "" for each ungrouped layer.
 
-    All are in the same groups down to the depth.
+    All layers are in the same groups down to the depth.
     """
     found: list[tuple[str, list[Layer]]] = []
     for layer in layers:
@@ -32,12 +32,12 @@ def group_runs(layers: Sequence[Layer], depth: int) -> list[tuple[str, list[Laye
 
 
 def clip_stacks(document: Document) -> tuple[ClipStack, ...]:
-    """Return what is clipped by what as the layers lie in a document."""
+    """Return the clipping bases of a document with their clipped layers."""
     return tuple(_clip_stacks(document, document.layers, 0))
 
 
 def without_foreign_clips(document: Document, identities: Collection[int]) -> Document:
-    """Return a document in which some layers, by their ids, are not clipped by what is no such."""
+    """Return a copy in which layers are not clipped if their base is not among these ids."""
     free = {
         unit
         for stack in clip_stacks(document)

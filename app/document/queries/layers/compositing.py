@@ -1,4 +1,4 @@
-"""Which layers are composited together before they meet what lies behind them."""
+"""Grouping of layers that are composited before they blend with their backdrop."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,20 +15,21 @@ Drawn = TypeVar("Drawn")
 
 @dataclass(frozen=True, slots=True)
 class CompositeGroup(Generic[Drawn]):
-    """What is painted over each other first, and then over all that lies behind, as one."""
+    """Parts that are composited first; the result then blends with the backdrop."""
 
     parts: tuple["Drawn | CompositeGroup[Drawn]", ...]  # from back to front
     opacity: float = 1.0  # in [0, 1]
     blend: BlendMode = "normal"
-    # Whether it is painted only where that is which lies behind it in the composite around it, as
-    # if that were opaque there.
+    # Whether the group is visible only within the alpha of its backdrop in the outer composite, and
+    # blends with that backdrop as if it were opaque.
     clipped: bool = False
-    # Whether its parts are painted over what lies behind at once, and that is faded in then.
+    # Pass-through group: its parts blend directly with the backdrop; the group's opacity is applied
+    # to the result.
     is_pass_through: bool = False
 
     @property
     def is_plain(self) -> bool:
-        """Whether its parts could as well be painted one by one."""
+        """Whether drawing the parts one by one gives the same result."""
         return (
             self.opacity == 1
             and self.blend == "normal"
@@ -37,7 +38,7 @@ class CompositeGroup(Generic[Drawn]):
 
     @property
     def needs_backdrop(self) -> bool:
-        """Whether it matters to its parts what lies behind, other than that they cover it."""
+        """Whether the colours of the parts depend on the backdrop other than by covering it."""
         return any(
             isinstance(each, CompositeGroup) and (each.blend != "normal" or each.is_pass_through)
             for each in self.parts
@@ -46,32 +47,27 @@ class CompositeGroup(Generic[Drawn]):
 
 @dataclass(slots=True)
 class _ClipUnit(Generic[Drawn]):
-    """A layer or a run of a group, and what is cut by it."""
+    """A layer or a run of a group, with the layers and groups clipped to it."""
 
     whole: CompositeGroup[Drawn]
-    is_pass_through: bool = False  # whether its parts meet what lies behind it
+    is_pass_through: bool = False  # whether the parts blend directly with the backdrop
     clipped: list[CompositeGroup[Drawn]] = field(default_factory=list)
 
 
 def composite_layers(
     document: Document, drawn: Mapping[int, Drawn], frame: float
 ) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
-    """Return how what is drawn of layers is composited at a frame, from back to front.
+    """Return the compositing of drawn layers at a frame, from back to front.
 
-    Parameters
-    ----------
-    drawn : mapping of int to Drawn
-        By the ids of the layers that are seen. Of a group's layers each run without others
-        between is composited by itself; what is cut by something that is not seen is not, either.
-    frame : float
-        It tells the order of the layers, and how opaque they are.
+    `drawn` has the visible layers by id. Each run of a group is composited separately. Layers
+    clipped to an invisible base are invisible.
     """
     opacities = {layer.id: opacity_at(document, layer, frame) for layer in document.layers}
     return _parts(_Painted(document, drawn, opacities), layers_in_draw_order(document, frame), 0)
 
 
 class _Painted(NamedTuple, Generic[Drawn]):
-    """What is drawn of the layers of a document, and how opaque they are, by their ids."""
+    """The drawn layers of a document and their opacities, by id."""
 
     document: Document
     drawn: Mapping[int, Drawn]
@@ -81,7 +77,7 @@ class _Painted(NamedTuple, Generic[Drawn]):
 def _parts(
     given: _Painted[Drawn], layers: Sequence[Layer], depth: int
 ) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
-    """Return the parts of layers that are in the same groups down to this depth."""
+    """Return the compositing of layers that share their groups down to this depth."""
     units: list[_ClipUnit[Drawn]] = []
     for path, run in group_runs(layers, depth):
         unit: _ClipUnit[Drawn]
@@ -103,8 +99,8 @@ def _parts(
 
 
 def _painted(unit: _ClipUnit[Drawn]) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
-    """Return the parts that a unit is painted by: its own, or one."""
-    # With nothing below it, it is cut by nothing.
+    """Return the parts of a unit: its own parts, or one group."""
+    # Without a base below, a clipped layer is not clipped.
     whole = CompositeGroup(unit.whole.parts, unit.whole.opacity, unit.whole.blend)
     cut = [each for each in unit.clipped if each.parts]
     if not whole.parts:

@@ -1,4 +1,4 @@
-"""What is in front at a frame."""
+"""Depth of the drawing at a frame."""
 
 from typing import NamedTuple
 
@@ -6,12 +6,12 @@ from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from engine.geometry import diameter
 
-# Of the drawing's diameter: how far a depth reaches that is given no extent.
+# Default radius of a depth as a fraction of the drawing's diameter.
 DEFAULT_DEPTH_EXTENT = 0.15
 
 
 class DepthPoint(NamedTuple):
-    """A point of the drawing that is in front, or behind, and how far around it that holds."""
+    """A point of the drawing with a depth and its radius."""
 
     place: complex  # at rest
     depth: float  # from −1, behind, to 1, in front
@@ -19,11 +19,11 @@ class DepthPoint(NamedTuple):
 
 
 def depth_points_at(clip: Clip, frame: float) -> tuple[DepthPoint, ...]:
-    """Return what is in front, or behind, at a frame; what is neither is left out.
+    """Return the points with a depth other than 0 at a frame.
 
-    A key's depths hold from its frame on until another key gives others; before the first one the
-    handles' own do, or in a loop what the last one left. In a cycle each repeat begins with what
-    was in front before the first one.
+    A key's depths hold from its frame on until a later key changes them. Before the first key, the
+    depths of the handles hold, or in a loop the depths after the last key. Each repeat of a cycle
+    begins with the depths before the first one.
     """
     layer = clip.layer
     depths = {handle.id: handle.depth for handle in layer.handles}
@@ -44,9 +44,9 @@ def depth_points_at(clip: Clip, frame: float) -> tuple[DepthPoint, ...]:
 
 
 def _has_been(layer: Layer, key: int, frame: float) -> bool:
-    """Tell whether what a key says holds at a frame, as far as no later one says else.
+    """Return whether a key's depths have taken effect at a frame.
 
-    What those of a cycle say holds until a repeat, or all of them, are over.
+    Depths of a key in a cycle hold until the repeat or all repeats end.
     """
     cycle = layer.cycle_containing(key)
     if cycle is None:

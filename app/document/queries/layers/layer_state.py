@@ -1,4 +1,4 @@
-"""What the camera shows at a frame, and where, how opaque and in which order layers are."""
+"""Camera, transform, opacity and draw order at a frame."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
 
 Key = TypeVar("Key", CameraKey, TransformKey, OpacityKey)
 
-# By how much two keys may differ that want the same: pixels, radians, logarithms, and opacity.
+# Keys closer than this count as equal: pixels, radians, logarithms of zoom, and opacity.
 SAME_PLACE, SAME_TURN, SAME_ZOOM, SAME_OPACITY = 0.01, 1e-4, 1e-5, 1e-4
 CENTRE = KeyedProperty[CameraKey, complex](lambda key: key.centre, SAME_PLACE)
 ZOOM = KeyedProperty[CameraKey, float](lambda key: log(key.zoom), SAME_ZOOM)
@@ -37,29 +37,27 @@ OPACITY = KeyedProperty[OpacityKey, float](lambda key: key.opacity, SAME_OPACITY
 
 
 class CameraState(NamedTuple):
-    """What the camera shows."""
-
-    centre: complex  # the point of the plane in the middle of the frame
+    centre: complex  # point of the scene in the centre of the frame
     zoom: float  # above 0
-    turn: float  # by how much things are seen turned, counter-clockwise, in radians
+    turn: float  # rotation of the picture, counter-clockwise, in radians
 
     def canvas_motion(self, canvas: tuple[int, int]) -> Similarity:
-        """Return which motion of all things makes the canvas show what the camera does."""
+        """Return the similarity that maps the visible part of the scene to the canvas."""
         factor = self.zoom * complex(np.exp(1j * self.turn))
         return Similarity(factor, complex(*canvas) / 2 - factor * self.centre)
 
     def frame_corners(self, canvas: tuple[int, int]) -> Complexes:
-        """Return the corners of what is seen (4,), counter-clockwise from the lower left one."""
+        """Return the corners (4,) of the visible part, counter-clockwise from the lower left."""
         seen, (width, height) = self.canvas_motion(canvas), canvas
         corners = (0j, complex(width, 0), complex(width, height), complex(0, height))
         return np.array([seen.apply_inverse(corner) for corner in corners])
 
 
 def camera_at(document: Document, frame: float) -> CameraState | None:
-    """Return what the camera shows at a frame; None where there is none.
+    """Return the camera at a frame; None without camera keys.
 
-    It is held before its first key and after its last one; in a loop the last one leads on to the
-    first one.
+    The camera holds before its first key and after its last. In a loop, a segment leads from the
+    last key to the first.
     """
     keys = document.camera
     if not keys:
@@ -72,7 +70,7 @@ def camera_at(document: Document, frame: float) -> CameraState | None:
 
 
 def transform_at(document: Document, layer: Layer, frame: float) -> RigidMotion:
-    """Return by which a layer is moved as a whole at a frame, as the camera is."""
+    """Return the rigid motion of a whole layer at a frame."""
     keys, cycle = layer.transform_keys, repeating_cycle(layer, layer.transform_keys)
     if not keys:
         return IDENTITY_MOTION
@@ -83,7 +81,7 @@ def transform_at(document: Document, layer: Layer, frame: float) -> RigidMotion:
 
 
 def opacity_at(document: Document, layer: Layer, frame: float) -> float:
-    """Return how opaque a layer is at a frame, 0 to 1."""
+    """Return the opacity of a layer at a frame, 0 to 1."""
     keys = layer.opacity_keys
     if not keys:
         return layer.opacity
@@ -94,10 +92,10 @@ def opacity_at(document: Document, layer: Layer, frame: float) -> float:
 def repeating_cycle(
     layer: Layer, keys: Sequence[TransformKey] | Sequence[OpacityKey]
 ) -> Cycle | None:
-    """Return the cycle of a layer with which its movement or its opacity repeats, if one does.
+    """Return the cycle with which transform or opacity keys repeat, if any.
 
-    That has all of their keys, and where one is at its end it is as that at its beginning, but for
-    whole turns. What goes on elsewhere has its own time.
+    The cycle contains all keys. A key at its end equals the key at its beginning except for full
+    turns.
     """
     if len(keys) < 2:
         return None
@@ -113,10 +111,7 @@ def repeating_cycle(
 def keyed_frame(
     layer: Layer, keys: Sequence[TransformKey] | Sequence[OpacityKey], frame: int
 ) -> int:
-    """Return the frame at which a layer's movement or opacity at a frame is keyed.
-
-    It is another one where they repeat.
-    """
+    """Return the frame whose key affects this frame; in repeats, an earlier frame."""
     cycle = repeating_cycle(layer, keys)
     return int(cycle.source_frame(frame)) if cycle is not None and cycle.covers(frame) else frame
 
@@ -131,7 +126,7 @@ def _alike(first: TransformKey | OpacityKey, last: TransformKey | OpacityKey) ->
 
 
 def draw_order_key_at(document: Document, layer: Layer, frame: float) -> DrawOrderKey | None:
-    """Return beside what a layer is painted at a frame; None before that is said."""
+    """Return the draw order key in effect at a frame; None before the first."""
     placings = repeated(
         layer.draw_order_keys, layer.cycles, document.frames.last, DEFAULT_DRAW_ORDER
     )
@@ -140,11 +135,11 @@ def draw_order_key_at(document: Document, layer: Layer, frame: float) -> DrawOrd
 
 
 def layers_in_draw_order(document: Document, frame: float) -> tuple[Layer, ...]:
-    """Return the layers from the one behind all others at a frame to the one in front.
+    """Return the layers at a frame from back to front.
 
-    Those that are placed beside another one then come there one after the other, each after that
-    other one; in a circle, the one whose place is oldest comes first. What is clipped goes with
-    what clips it, unless it is placed itself, and nothing comes between these.
+    Layers with a draw order key move next to their reference layer, each after the reference layer
+    has moved. In a circle, the layer with the oldest key moves first. Clipped layers move with
+    their base unless they have keys of their own, and no layer goes between them.
     """
     placed: dict[int, tuple[int, int, bool]] = {}
     for layer in document.layers:
@@ -162,10 +157,10 @@ def layers_in_draw_order(document: Document, frame: float) -> tuple[Layer, ...]:
         cut = [each for stack in clipping if stack.base == (moved,) for each in stack.clipped]
         along = [moved, *(each for each in cut if each not in own)]
         if beside in along:
-            # It is there already: what it clips goes with it.
+            # A clipped layer moves with its base.
             continue
         order = [each for each in order if each not in along]
-        # What is clipped by a group's layer is so inside of the group.
+        # Clipping to a layer inside a group stays inside the group.
         around = {beside}
         for stack in clipping:
             whole = {*stack.base, *stack.clipped}
@@ -184,7 +179,7 @@ def _value_at(
     frame: float,
     cycle: Cycle | None = None,
 ) -> Value:
-    """Return what moves between keys at a frame; from rest and to rest where it is held."""
+    """Return the interpolated value at a frame, constant outside the keys."""
     frame, period = document.loop_frame(frame), document.frames.last - document.frames.first
     if cycle is not None:
         frame, period = cycle.clamped_source_frame(frame, document.frames.last), cycle.period
@@ -204,7 +199,7 @@ def _value_at(
 def _key_sequence(
     keys: tuple[Key, ...], moved: KeyedProperty[Key, Value], period: int
 ) -> KeySequence[Key]:
-    """Return how keys are passed; where they come round the last one leads on to the first one."""
+    """Return the key sequence; with a period, the last key leads to the first."""
     gap = None
     if period:
         gap = period - (keys[-1].frame - keys[0].frame)

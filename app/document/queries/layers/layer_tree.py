@@ -1,4 +1,4 @@
-"""The layers as a tree, as they are listed: groups and choices, and what is in them."""
+"""The layers as a tree of groups and switch groups for the layer list."""
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
@@ -10,26 +10,25 @@ from app.document.model import Document
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TreeRow:
-    """A row of the tree: a group, a choice, or a layer, of which one is given."""
+    """A row of the tree: a group, a switch group or a layer; exactly one is set."""
 
     key: str  # unique in the tree
-    depth: int  # in how many rows above it lies
-    layers: tuple[int, ...]  # the ids of the layers in it, from front to back
-    is_open: bool = True  # whether the rows in it are listed
+    depth: int  # nesting depth
+    layers: tuple[int, ...]  # ids of the layers inside, from front to back
+    is_open: bool = True  # whether its rows are listed
     group: Group | None = None
     switch_group: SwitchGroup | None = None
     layer: Layer | None = None
 
     @property
     def toggle(self) -> str:
-        """What tells whether it is open otherwise than usual; empty for a layer."""
+        """Name under which the open state is stored; empty for a layer."""
         if self.group is not None:
             return f"group {self.group.name}"
         return "" if self.switch_group is None else f"choice {self.switch_group.name}"
 
     @property
     def name(self) -> str:
-        """What it is called."""
         if self.group is not None:
             return self.group.name.rpartition("/")[2]
         named = self.switch_group or self.layer
@@ -39,22 +38,15 @@ class TreeRow:
 def layer_tree(
     document: Document, toggled: Collection[str] = (), kept: Collection[int] = ()
 ) -> tuple[TreeRow, ...]:
-    """Return the rows of a document's layers, the one in front on top.
+    """Return the rows of the layer list, the frontmost layer first.
 
-    Groups are open and choices closed, unless they are among those that are toggled. Layers
-    that take turns are listed together where the foremost of them is; of a group each run without
-    others between is a row.
-
-    Parameters
-    ----------
-    document : Document
-    toggled : collection of str
-    kept : collection of int
-        The ids of layers that are listed even where a row around them is closed.
+    Groups are open and switch groups closed unless toggled. The members of a switch group are
+    listed together at the foremost member. Each run of a group is a row. Layers with an id in
+    `kept` are listed even in a closed row.
     """
     rows = _whole_tree(document, toggled)
     listed: list[TreeRow] = []
-    closed: int | None = None  # the depth of the row around that is closed
+    closed: int | None = None  # depth of the closed row around
     for row in rows:
         if closed is not None and row.depth > closed:
             if row.layer is not None and row.layer.id in kept:
@@ -66,10 +58,10 @@ def layer_tree(
 
 
 def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, str]:
-    """Return on how many others a layer hangs at a frame, one on the other, and in words on which.
+    """Return the number of a layer's ancestors at a frame, and a label with its parent.
 
-    The words are empty where it hangs on nothing at any time; an ellipsis tells of others at other
-    times.
+    The label is empty for a layer that never has a parent. An ellipsis stands for other parents at
+    other frames.
     """
     parents = {joint.parent for joint in layer.attachments if joint.parent is not None}
     _, *carriers = document.parent_chain(layer.id, frame)
@@ -115,9 +107,9 @@ _Listed = tuple[Layer, SwitchGroup | None, str]
 
 
 def _in_order(document: Document) -> list[_Listed]:
-    """Return the layers from front to back, with the choices and the groups that they are in.
+    """Return the layers from front to back with their switch groups and groups.
 
-    Those that take turns follow each other, where the foremost of them is.
+    Members of a switch group are consecutive, at the foremost member.
     """
     order: list[_Listed] = []
     told: set[str] = set()
@@ -133,7 +125,7 @@ def _in_order(document: Document) -> list[_Listed]:
 
 
 def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
-    """Return the ids of the layers from one on that are in a group without others between."""
+    """Return the ids of the run of consecutive layers of a group that begins at an index."""
     run = []
     for layer, _, where in order[first:]:
         if path not in ancestor_paths(where):

@@ -1,4 +1,4 @@
-"""Layers that look as if they take turns."""
+"""Suggestions of layers for switch groups."""
 
 import re
 from collections import Counter
@@ -7,21 +7,21 @@ from app.document.layer import Layer
 from app.document.layers import ancestor_paths
 from app.document.model import Document
 
-# Of these there is one at a time.
+# Parts of which a character has one.
 MOUTHS = re.compile(r"mouths?|lips?|visemes?|phonemes?", re.IGNORECASE)
-# Of these there are two sides, which do not take turns: only where no more than one is seen.
+# Parts with two sides, which are visible together: suggested only if at most one is visible.
 SIDES = re.compile(r"eyes?|(eye)?lids?|brows?|blinks?|hands?|fists?|poses?", re.IGNORECASE)
 
 
 def suggest_switch_groups(document: Document) -> tuple[tuple[str, tuple[int, ...]], ...]:
-    """Return paths of groups that are named like mouths, eyes or hands, with the ids of layers.
+    """Return group paths named like mouths, eyes or hands, with the ids of their layers.
 
-    Layers whose names are as "mouth/ah" count as if they were in such a group. Those of which a
-    layer is seen at frames of its own, or takes turns already, are left out.
+    A layer name such as "mouth/ah" counts as a group. Groups with a layer that has visibility keys
+    or a switch group are left out.
     """
     together: dict[str, list[Layer]] = {group.name: [] for group in document.groups}
     for layer in document.layers:
-        # What is painted onto another one, as a tongue onto a mouth, takes no turns with it.
+        # Clipped layers, such as a tongue in a mouth, are not alternatives.
         if not layer.clipped:
             together.setdefault(_place(layer), []).append(layer)
     found = []
@@ -39,9 +39,9 @@ def suggest_switch_groups(document: Document) -> tuple[tuple[str, tuple[int, ...
 
 
 def subgroups_with_layers(document: Document, path: str) -> tuple[str, ...]:
-    """Return the names of groups right in a group that have several layers.
+    """Return the names of direct subgroups with several layers.
 
-    These would take turns one by one, as lips and teeth of one mouth: none of them is a whole.
+    A switch group of their layers would show parts of a whole one by one, such as lips and teeth.
     """
     inside = Counter(each for layer in document.layers for each in ancestor_paths(layer.group))
     found = (group.name.rpartition("/") for group in document.groups if inside[group.name] > 1)
@@ -49,8 +49,8 @@ def subgroups_with_layers(document: Document, path: str) -> tuple[str, ...]:
 
 
 def _place(layer: Layer) -> str:
-    """Return the path of the group that a layer is in, by its name, too."""
-    # Where a name was taken, its group's path stands before it.
+    """Return the path of a layer's group, with the groups in the layer's name."""
+    # If a name was in use, the importer put the group's path before it.
     name = layer.name.removeprefix(f"{layer.group}/") if layer.group else layer.name
     around = [part.strip() for part in name.split("/")[:-1]]
     return "/".join(filter(None, [layer.group, *around]))

@@ -1,4 +1,4 @@
-"""What is seen at a frame."""
+"""Visibility at a frame."""
 
 from bisect import bisect_right
 from dataclasses import replace
@@ -15,17 +15,16 @@ Change = TypeVar("Change", VisibilityKey, DrawOrderKey, SwitchKey)
 
 
 def is_visible(document: Document, layer: Layer, frame: float) -> bool:
-    """Tell whether a layer of a document is seen at a frame."""
     switches = visibility_keys(document, layer)
     count = bisect_right(switches, frame, key=lambda switch: switch.frame)
     return switches[max(count - 1, 0)].visible if switches else True
 
 
 def visibility_keys(document: Document, layer: Layer) -> tuple[VisibilityKey, ...]:
-    """Return when a layer comes to be seen or hidden; it begins as the first switch says.
+    """Return the visibility keys in effect; the first holds before its frame too.
 
-    Always seen without any. In a group that is hidden nothing is. A choice decides alone; other
-    layers are hidden, or shown and hidden by their switches.
+    Without keys, the layer is always visible. A hidden group hides its layers. A switch group alone
+    decides the visibility of its members.
     """
     if document.is_in_hidden(layer):
         return (VisibilityKey(0, visible=False),)
@@ -42,7 +41,7 @@ def visibility_keys(document: Document, layer: Layer) -> tuple[VisibilityKey, ..
 def _visibility_keys_in(
     choice: SwitchGroup, identity: int, first: int
 ) -> tuple[VisibilityKey, ...]:
-    """Return when a layer of a choice comes to be seen or hidden, from the first frame on."""
+    """Return a member's visibility keys, derived from the switch keys, from `first` on."""
     switches: list[VisibilityKey] = []
     begun = SwitchKey(first, choice.layer_at(first))
     for frame, seen in (begun, *(turn for turn in choice.keys if turn.frame > first)):
@@ -53,10 +52,10 @@ def _visibility_keys_in(
 
 
 def switch_cycle(document: Document, choice: SwitchGroup) -> Cycle | None:
-    """Return the cycle with which the turns of a choice repeat, if they do.
+    """Return the cycle with which the switch keys of a group repeat, if any.
 
-    That is one that all of its layers have, in which all of its turns are; at the end the one
-    that is seen at the beginning may be again.
+    All layers of the group have the cycle, and it contains all switch keys. A key at its end may
+    repeat the layer at its beginning.
     """
     shared, *others = (document.layer(each).cycles for each in choice.layers)
     for cycle in shared:
@@ -66,9 +65,9 @@ def switch_cycle(document: Document, choice: SwitchGroup) -> Cycle | None:
 
 
 def with_repeats(document: Document, choice: SwitchGroup, end: int | None = None) -> SwitchGroup:
-    """Return a choice with its turns in the repeats of the cycle of its layers, if it has one.
+    """Return a switch group with its keys repeated in the cycle of its layers, if any.
 
-    Up to a frame, or the scene's last one.
+    The repeats extend to `end`, or to the document's last frame.
     """
     cycle = switch_cycle(document, choice)
     if cycle is None:
@@ -82,20 +81,20 @@ def with_repeats(document: Document, choice: SwitchGroup, end: int | None = None
 def _repeated_switch_group(choice: SwitchGroup, cycle: Cycle, end: int) -> SwitchGroup:
     rest = (SwitchKey(cycle.first, choice.layer_at(cycle.first)),)
     turns = repeated(choice.keys, (cycle,), end, rest)
-    # A repeat may begin with what was seen at the end of the one before.
+    # A repeat may begin with the layer shown at the end of the one before.
     changes = (turn for before, turn in pairwise(turns) if turn.layer != before.layer)
     return replace(choice, keys=(turns[0], *changes))
 
 
 def turn_frame(document: Document, choice: SwitchGroup, frame: int) -> int:
-    """Return the frame at which it is said what of a choice a frame shows: another in repeats."""
+    """Return the frame whose switch key affects this frame; in repeats, an earlier frame."""
     cycle = switch_cycle(document, choice)
     is_repeat = cycle is not None and cycle.covers(frame) and frame != cycle.until
     return int(cycle.source_frame(frame)) if cycle is not None and is_repeat else frame
 
 
 def is_switch_in_cycle(choice: SwitchGroup, cycle: Cycle) -> bool:
-    """Tell whether all changes of a choice, but for those before and after, are in a cycle."""
+    """Return whether all changes of a switch group near a cycle lie within it."""
     again = SwitchKey(cycle.last, choice.layer_at(cycle.first))
     return cycle.contains_changes(turn.frame for turn in choice.keys if turn != again)
 
@@ -103,10 +102,10 @@ def is_switch_in_cycle(choice: SwitchGroup, cycle: Cycle) -> bool:
 def repeated(
     changes: tuple[Change, ...], cycles: tuple[Cycle, ...], end: int, rest: tuple[Change, ...]
 ) -> tuple[Change, ...]:
-    """Return switches, placings or turns with those of cycles in each repeat, up to the end.
+    """Return visibility, order or switch keys with copies in each repeat, up to the end.
 
-    Each repeat, and what follows the last one, begins as the stretch does: before the first change
-    as `rest` has it.
+    Each repeat, and the time after the last, begins with the state at the cycle's first frame;
+    `rest` is the state before the first key.
     """
     return _repeated(changes, cycles, end, rest) if changes and cycles else changes
 
@@ -139,9 +138,9 @@ def change_frame(
     cycles: tuple[Cycle, ...],
     frame: int,
 ) -> int:
-    """Return the frame at which switches or placings say what a frame shows: another in repeats.
+    """Return the frame whose key affects this frame; in repeats, an earlier frame.
 
-    What a repeat has of its own is said there.
+    A key within a repeat affects its own frame.
     """
     frames = [each.frame for each in changes]
     if frame not in frames:
