@@ -96,8 +96,8 @@ def _report(error: Exception, words: Sequence[str]) -> int:
     """Print a report of the program's own failure that may be passed on."""
     reports = importlib.import_module("app.reports")
     files = [Path(word) for word in words if {".", os.sep}.intersection(word)]
-    trace = reports.trace_in_words(error, files)
-    print(reports.problem_report(graphics="", actions=(), trace=trace), file=sys.stderr)
+    trace = reports.format_trace(error, files)
+    print(reports.format_problem_report(graphics="", actions=(), trace=trace), file=sys.stderr)
     print_notice(
         "this command failed, as told above; nothing is sent, and names of files are left out"
     )

@@ -97,7 +97,7 @@ def lock_handles(layer: Layer, identities: Collection[int], *, locked: bool) -> 
 @layer_command("Free or keep still")
 def unpin_handles(layer: Layer, identities: Collection[int], *, free: bool) -> Layer:
     """Turn auto-pin off or on for handles."""
-    return with_handles(layer, identities, free=free)
+    return with_handles(layer, identities, is_unpinned=free)
 
 
 @layer_command("Group handles")

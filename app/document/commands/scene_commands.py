@@ -106,7 +106,7 @@ def scale_time(document: Document, factor: float) -> Document:
         markers=scale.retimed(
             document.markers, "markers", lambda marker, at: replace(marker, frame=at)
         ),
-        choices=tuple(
+        switch_groups=tuple(
             replace(
                 choice,
                 keys=scale.retimed(

@@ -149,7 +149,7 @@ def set_reach(layer: Layer, handle: int, reach: float) -> Layer:
 @layer_command("Set turning")
 def set_turning(layer: Layer, handle: int, *, turns: bool) -> Layer:
     """Set whether a track rotates the shape at its handles."""
-    return _with(layer, handle, turns=turns)
+    return _with(layer, handle, keys_rotation=turns)
 
 
 @layer_command("Switch track on or off")
@@ -180,7 +180,7 @@ def plant_track(
         replace(key, place=place, velocity=velocity)
         for key, place, velocity in zip(track.keys, places, velocities, strict=True)
     )
-    return _with(layer, handle, planted=planted, keys=keys)
+    return _with(layer, handle, is_scene_space=planted, keys=keys)
 
 
 @layer_command("Set handles of track")

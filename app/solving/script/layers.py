@@ -194,7 +194,7 @@ def _parse_keys(
         at = f"{where}.keys[{index}]"
         read = read_fields(entry, at, fields)
         easing, passing = read_easing_and_tangent(read, at)
-        keys.append(make(read, at, frame=read_frame(read, at), easing=easing, passing=passing))
+        keys.append(make(read, at, frame=read_frame(read, at), easing=easing, tangent_mode=passing))
     check_frame_order([key.frame for key in keys], f"{where}.keys are")
     return tuple(keys)
 

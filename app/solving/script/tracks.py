@@ -115,11 +115,11 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         Track,
         where,
         handles=_numbers(track, where, handles),
-        planted=goes_with == "picture",
+        is_scene_space=goes_with == "picture",
         keys=parsed,
         delay=as_whole(track.get("delay", 0), f"{where}.delay"),
         reach=as_number(track.get("reach", 1.0), f"{where}.reach"),
-        turns=any("turn" in key for key in keys),
+        keys_rotation=any("turn" in key for key in keys),
     )
 
 
@@ -149,7 +149,7 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
         place=as_point(key[place], f"{where}.{place}"),
         turn=radians(as_number(key.get("turn", 0.0), f"{where}.turn")),
         easing=easing,
-        passing=passing,
+        tangent_mode=passing,
         velocity=velocity,
     )
 

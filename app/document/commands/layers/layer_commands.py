@@ -185,7 +185,7 @@ def key_visibility(
             others = [VisibilityKey(0, not visible)]
         others.append(VisibilityKey(frame, visible))
     switches = tuple(sorted(others, key=lambda switch: switch.frame))
-    return _with(document, identity, switches=switches)
+    return _with(document, identity, visibility_keys=switches)
 
 
 @layer_command("Move visibility")
@@ -209,7 +209,7 @@ def attach_layer(document: Document, identity: int, anchor: complex, joint: Atta
     """
     joints = [each for each in document.layer(identity).attachments if each.frame != joint.frame]
     joints = sorted([*joints, joint], key=lambda each: each.frame)
-    return _with(document, identity, anchor=anchor, joints=tuple(joints))
+    return _with(document, identity, anchor=anchor, attachments=tuple(joints))
 
 
 @layer_command("Attach as before")
@@ -241,13 +241,13 @@ def detach_layer(document: Document, identity: int, factor: complex, shift: comp
     if not layer.attachments:
         return document
     poses = (_transformed_pose(layer, pose, factor, shift) for pose in layer.poses)
-    return document.with_layer(layer.with_poses(poses, joints=()))
+    return document.with_layer(layer.with_poses(poses, attachments=()))
 
 
 @layer_command("Set depth")
 def set_depth(layer: Layer, identity: int, front: float, extent: float | None) -> Layer:
     """Set the default depth around a handle and its radius."""
-    return with_handles(layer, {identity}, front=float(front), extent=extent)
+    return with_handles(layer, {identity}, depth=float(front), extent=extent)
 
 
 @layer_command("Set depth from here on")

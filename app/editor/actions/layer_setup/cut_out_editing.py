@@ -134,7 +134,7 @@ def remove_knife_cut(session: Session, project: Project, place: complex, reach: 
     away = [_away_from(slit, place - project.layer.corner) for slit in slits]
     if min(away, default=np.inf) <= reach:
         nearest = away.index(min(away))
-        change_cut_out(session, slits=slits[:nearest] + slits[nearest + 1 :])
+        change_cut_out(session, cut_lines=slits[:nearest] + slits[nearest + 1 :])
 
 
 def _away_from(slit: CutLine, point: complex) -> float:
@@ -153,12 +153,12 @@ def toggle_hole(session: Session, project: Project, place: complex) -> None:
     others = tuple(other for other in swapped if holes.number_at(other) != number)
     # The middle of the hole, since the click may have been at its rim.
     named = (*swapped, holes.middles[number])
-    change_cut_out(session, swapped=others if len(others) < len(swapped) else named)
+    change_cut_out(session, toggled_holes=others if len(others) < len(swapped) else named)
 
 
 def clear_cut_out_strokes(session: Session) -> None:
     """Delete all strokes, knife lines and the mask."""
-    change_cut_out(session, strokes=(), slits=(), mask=None)
+    change_cut_out(session, strokes=(), cut_lines=(), mask=None)
 
 
 def ask_mask_to_load(session: Session) -> None:
