@@ -67,7 +67,8 @@ class SpriteSheetOptions(FormatOptions):
         label="Frames are",
         choices=((True, "Trimmed"), (False, "All alike")),
         flag="trim",
-        description="keep only what is seen of a frame on a sprite sheet (default: the project's, yes)",
+        description="keep only what is seen of a frame on a sprite sheet (default: the project's, "
+        "yes)",
     )
     padding: int = _option(
         2,
@@ -99,9 +100,9 @@ class MeshOptions(FormatOptions):
         label="Triangles",
         tip="Of each layer, about: more of them bend more smoothly, in a larger file",
         flag="triangles",
-        about="of a model, about (default: 4000)",
-        least=100,
-        most=2_000_000,  # the largest number of triangles of a domain
+        description="of a model, about (default: 4000)",
+        minimum=100,
+        maximum=2_000_000,  # the largest number of triangles of a domain
     )
     tolerance: float | None = _option(
         None,
@@ -110,8 +111,8 @@ class MeshOptions(FormatOptions):
         "them, which every viewer shows; a tolerance of your own takes as many as it needs",
         choices=((None, "½ px, 8 shapes"), (0.5, "Own")),
         flag="tolerance",
-        description="how far a model may be from the motion, in pixels, with as many shapes as that "
-        "takes (default: 0.5, with 8 shapes at most)",
+        description="how far a model may be from the motion, in pixels, with as many shapes as "
+        "that takes (default: 0.5, with 8 shapes at most)",
         minimum=0.001,
         maximum=100,
     )

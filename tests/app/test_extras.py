@@ -54,7 +54,7 @@ def test_pipx_puts_it_beside(home):
 def test_uv_has_no_pip(home, monkeypatch):
     receipt = home / "uv-receipt.toml"
     receipt.touch()
-    told = f"uv pip install --python {home} '{errors.required_library('layers')}'"
+    told = f"uv pip install --python {home} '{errors.required_library('figures')}'"
     assert errors.install_hint("layers") == told
     receipt.unlink()
     monkeypatch.setattr(errors, "find_spec", lambda _: None)

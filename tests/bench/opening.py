@@ -107,12 +107,12 @@ def _of_layer(name: str, make: Callable[[int], Any]) -> Filling:
 
 
 def _key(number: int, **own: Any) -> Content:
-    return {"frame": number, "easing": "linear", "passing": "through", **own}
+    return {"frame": number, "easing": "linear", "tangent_mode": "through", **own}
 
 
 def _turns(content: Content, size: int) -> None:
     turns = _many(size, lambda number: [number, number % 2])
-    content["choices"] = [{"name": "mouth", "layers": [0, 1], "turns": turns}]
+    content["switch_groups"] = [{"name": "mouth", "layers": [0, 1], "keys": turns}]
 
 
 def _hang(content: Content, joints: list[Content]) -> None:
@@ -122,7 +122,13 @@ def _hang(content: Content, joints: list[Content]) -> None:
 
 
 def _joint(frame: int, to: int | None) -> Content:
-    return {"frame": frame, "to": to, "at": [0, 0], "turns": True, "rest": 0.0}
+    return {
+        "frame": frame,
+        "parent": to,
+        "parent_point": [0, 0],
+        "inherits_rotation": True,
+        "rest_rotation": 0.0,
+    }
 
 
 def _joints(content: Content, size: int) -> None:
@@ -152,7 +158,7 @@ def _repeats(content: Content, size: int) -> None:
     layer = content["layers"][0]
     repeat = {"first": 0, "last": 2, "until": None}
     layer |= {"keys": layer["keys"][:1], "cycles": [repeat]}
-    layer["switches"] = [[0, True], [1, False]]
+    layer["visibility_keys"] = [[0, True], [1, False]]
     content["frames"] = [0, 59 * size // 1_000]
 
 
@@ -161,7 +167,7 @@ MOTION = {
     "kind": "anything",
     "joints": {},
     "facing": 1,
-    "rounds": 1,
+    "repeat_count": 1,
     "digest": "",
     "parameters": {
         "speed": 1.0,
@@ -179,11 +185,12 @@ FILLINGS: dict[str, Filling] = {
     "camera keys": _of_scene("camera", lambda n: _key(n, centre=[0, 0], zoom=1.0, turn=0.0)),
     "turns of a switch": _turns,
     "fields not known": _of_scene("later", lambda number: {"value": number}),
-    "visibility keys": _of_layer("switches", lambda number: [number, number % 2 == 0]),
-    "movement keys": _of_layer("movement", lambda n: _key(n, shift=[0, 0], turn=0.0)),
-    "opacity keys": _of_layer("opacities", lambda number: _key(number, opacity=0.5)),
+    "visibility keys": _of_layer("visibility_keys", lambda number: [number, number % 2 == 0]),
+    "movement keys": _of_layer("transform_keys", lambda n: _key(n, shift=[0, 0], turn=0.0)),
+    "opacity keys": _of_layer("opacity_keys", lambda number: _key(number, opacity=0.5)),
     "draw order keys": _of_layer(
-        "placings", lambda number: {"frame": number, "beside": 1, "in_front": number % 2 == 0}
+        "draw_order_keys",
+        lambda number: {"frame": number, "beside": 1, "in_front": number % 2 == 0},
     ),
     "track keys": _track,
     "joints": _joints,

@@ -82,7 +82,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             else:
                 is_whole = isinstance(usual, int)
                 how = {"metavar": "N" if is_whole else "PX", "type": int if is_whole else float}
-            parser.add_argument(f"--{option.flag}", dest=name, help=option.about, **how)
+            parser.add_argument(f"--{option.flag}", dest=name, help=option.description, **how)
     parser.add_argument("--layer", metavar="NAME", help="export this layer alone")
     # Its name in earlier versions.
     parser.add_argument("--figure", dest="layer", metavar="NAME", help=argparse.SUPPRESS)

@@ -13,7 +13,7 @@ from app.editor.tools.tool import PointerHit, to_scene
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Moving(PoseTool):
+class MoveTool(PoseTool):
     """The pointer moves a layer; `last` is the active layer before the press."""
 
     last: int

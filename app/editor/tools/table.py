@@ -14,7 +14,7 @@ from app.editor.tools.edit_tools import (
     StiffnessBrushTool,
 )
 from app.editor.tools.mirror_axis_tool import MirrorAxisTool
-from app.editor.tools.move_tool import Moving
+from app.editor.tools.move_tool import MoveTool
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.rotate_tool import RotateTool
 from app.editor.tools.select_tools import PickLayerTool, SelectTool
@@ -23,11 +23,11 @@ from app.editor.tools.tool import Tool
 CUTTING_TOOLS: Final[tuple[type[Tool], ...]] = (CutBrushTool, KnifeTool, CutClickTool)
 STIFFNESS_TOOLS: Final[tuple[type[Tool], ...]] = (StiffnessBrushTool, BoneTool)
 JOINT_TOOLS: Final[tuple[type[Tool], ...]] = (JointTool,)
-MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (MirrorAxisTool, Moving, AnchorTool)
+MOVING_TOOLS: Final[tuple[type[Tool], ...]] = (MirrorAxisTool, MoveTool, AnchorTool)
 # The first tool that takes a press gets it; hints are shown in this order.
 TOOLS: Final[tuple[type[Tool], ...]] = (
     MirrorAxisTool,
-    Moving,
+    MoveTool,
     AttachTool,
     PickLayerTool,
     PoseTool,

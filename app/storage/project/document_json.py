@@ -285,8 +285,20 @@ DOMAIN = nested_record(
     Field("mask", FLAG, lambda layer: layer.cut_out.mask is not None, legacy_default=False),
     Field("strokes", list_of(STROKE), attrgetter("cut_out.strokes"), legacy_default=()),
     Field("holes", TEXT, attrgetter("cut_out.holes"), legacy_default="fill"),
-    Field("swapped", list_of(POINT), attrgetter("cut_out.swapped"), legacy_default=()),
-    Field("slits", list_of(WHOLE), lambda layer: _counts(layer.cut_out.cut_lines), default=()),
+    Field(
+        "toggled_holes",
+        list_of(POINT),
+        attrgetter("cut_out.toggled_holes"),
+        legacy_default=(),
+        legacy_name="swapped",
+    ),
+    Field(
+        "cut_lines",
+        list_of(WHOLE),
+        lambda layer: _counts(layer.cut_out.cut_lines),
+        default=(),
+        legacy_name="slits",
+    ),
     Field("parted", FLAG, lambda layer: layer.domain.closed is not None, default=False),
     Field("stale", FLAG, attrgetter("is_stale"), legacy_default=False),
 )
@@ -534,6 +546,8 @@ def _cut_out(fields: dict[str, Any], members: LayerMembers, size: tuple[int, int
             "strokes": tuple(
                 Stroke(points=way, **stroke) for stroke, way in zip(strokes, ways, strict=True)
             ),
-            "slits": tuple(CutLine(points=way) for way in members.lines("slits", fields["slits"])),
+            "cut_lines": tuple(
+                CutLine(points=way) for way in members.lines("slits", fields["cut_lines"])
+            ),
         }
     )

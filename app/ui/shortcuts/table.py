@@ -460,7 +460,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             "H",
             icon=icons.ICON_FA_CIRCLE_DOT,
             hint="Show or hide the handles",
-            parted=True,
+            has_separator=True,
         ),
         "wireframe": _overlay(
             "Wireframe",

@@ -227,7 +227,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     monkeypatch.setattr(window, "has_display", lambda: True)
     monkeypatch.setattr(window, "Window", LeftWindow)
-    monkeypatch.setattr(window, "end_within", lambda *_: None)
+    monkeypatch.setattr(window, "exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     assert main(["window"]) == 0
     assert left.is_set()

@@ -13,7 +13,7 @@ from app.render.view import View
 def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatch):
     monkeypatch.setattr(doctor.sys, "platform", "linux")
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    monkeypatch.setattr(doctor, "missing", lambda extra: f"install {extra}")
+    monkeypatch.setattr(doctor, "install_hint", lambda extra: f"install {extra}")
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     assert main(["doctor"]) == 0
@@ -45,7 +45,7 @@ def test_what_is_there_is_named(capsys, monkeypatch):
 def test_without_a_backend_that_works_the_status_is_1(capsys, monkeypatch):
     monkeypatch.setattr(
         doctor,
-        "probe",
+        "probe_backend",
         lambda backend: BackendReport(backend=backend, problem="sudo apt install it"),
     )
     assert main(["doctor"]) == 1

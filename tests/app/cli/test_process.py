@@ -37,14 +37,14 @@ def say(*words):
     print(*words, flush=True)
 wake = None
 {before}
-heard = process.Endings(wake)
+heard = process.SignalHandler(wake)
 try:
     with heard:
         say("ready")
         {work}
 except KeyboardInterrupt:
     {after}
-sys.exit(heard.status)
+sys.exit(heard.exit_status)
 """
 
 
@@ -52,15 +52,15 @@ sys.exit(heard.status)
 CRASH = """
 import os, sys
 from pathlib import Path
-from app.cli.process import faults_told_to
+from app.cli.process import redirect_faulthandler
 from app.storage import open_faults
-with faults_told_to(open_faults(Path(sys.argv[1]))):
+with redirect_faulthandler(open_faults(Path(sys.argv[1]))):
     os.abort()
 """
 
 
 @contextmanager
-def listening(*, work, before="", after="say(heard.name)"):
+def listening(*, work, before="", after="say(heard.signal_name)"):
     """Start a process that listens to signals, and wait until it does."""
     with subprocess.Popen(
         [sys.executable, "-c", LISTEN.format(before=before, work=work, after=after)],
@@ -178,7 +178,7 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
     monkeypatch.setattr(window, "has_display", lambda: True)
     monkeypatch.setattr(window, "Window", EndedWindow)
     monkeypatch.setattr(EndedWindow, "error", error)
-    monkeypatch.setattr(window, "end_within", lambda *_: None)
+    monkeypatch.setattr(window, "exit_within", lambda *_: None)
     monkeypatch.setattr("app.cli.process.exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
@@ -231,7 +231,7 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
     monkeypatch.setattr("app.cli.process.ctypes.CDLL", lambda _: display)
     monkeypatch.setattr(window, "has_display", lambda: True)
     monkeypatch.setattr(window, "Window", LostWindow)
-    monkeypatch.setattr(window, "end_within", lambda *_: None)
+    monkeypatch.setattr(window, "exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
     main(["window"])

@@ -374,7 +374,8 @@ def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
     assert "repeat" not in told
     identity = next(each.id for each in document.layers if each.name == "patch")
     names = [
-        [each.name for each in document.carriers(identity, frame)[1:2]] for frame in (1, 4, 16, 22)
+        [each.name for each in document.parent_chain(identity, frame)[1:2]]
+        for frame in (1, 4, 16, 22)
     ]
     assert names == [["arm"], ["body"], ["body"], ["arm"]]
     placed = ParentTransforms(document).placement

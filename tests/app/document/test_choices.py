@@ -8,11 +8,11 @@ from documents import disc_document, disc_domain, random_command
 from messages import says
 
 from app.document.commands import (
-    choice_commands as choices,
     cycle_commands,
     group_commands as groups,
     layer_commands,
     scene_commands,
+    switch_group_commands as choices,
 )
 from app.document.layers import SwitchGroup, SwitchKey, VisibilityKey
 from app.document.model import NO_LAYER

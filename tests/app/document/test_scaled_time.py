@@ -34,18 +34,26 @@ CHANNELS = {
             Track(handles=(0,), keys=tuple(TrackKey(frame=frame, place=0j) for frame in at)),
         )
     },
-    "movement": lambda at: {"movement": tuple(TransformKey(frame=frame) for frame in at)},
-    "opacities": lambda at: {"opacities": tuple(OpacityKey(frame=f, opacity=1.0) for f in at)},
-    "placings": lambda at: {"placings": tuple(DrawOrderKey(frame, None) for frame in at)},
-    "switches": lambda at: {"switches": tuple(VisibilityKey(frame, visible=True) for frame in at)},
-    "joints": lambda at: {
-        "joints": tuple(Attachment(parent=None, frame=frame) for frame in at),
+    "transform_keys": lambda at: {
+        "transform_keys": tuple(TransformKey(frame=frame) for frame in at)
+    },
+    "opacity_keys": lambda at: {
+        "opacity_keys": tuple(OpacityKey(frame=f, opacity=1.0) for f in at)
+    },
+    "draw_order_keys": lambda at: {
+        "draw_order_keys": tuple(DrawOrderKey(frame, None) for frame in at)
+    },
+    "visibility_keys": lambda at: {
+        "visibility_keys": tuple(VisibilityKey(frame, visible=True) for frame in at)
+    },
+    "attachments": lambda at: {
+        "attachments": tuple(Attachment(parent=None, frame=frame) for frame in at),
         "anchor": 100 + 100j,
     },
     "markers": lambda at: {"markers": tuple(Marker(frame=frame, name=f"m{frame}") for frame in at)},
     "camera": lambda at: {"camera": tuple(CameraKey(frame=frame, centre=0j) for frame in at)},
-    "choices": lambda at: {
-        "choices": (
+    "switch_groups": lambda at: {
+        "switch_groups": (
             SwitchGroup(
                 name="mouth", layers=(0, 1), keys=tuple(SwitchKey(f, f % 4 // 2) for f in at)
             ),
@@ -58,17 +66,19 @@ def keyed(channel, at, first=0):
     """Return a document of two layers with keys of one channel at some frames."""
     key = Keyframe(frame=first, pose=POSE)
     document = altered(ALONE, keys=(key,), frames=FrameRange(first, 48))
-    document = altered(document, **CHANNELS[channel](at)) if channel != "choices" else document
+    document = (
+        altered(document, **CHANNELS[channel](at)) if channel != "switch_groups" else document
+    )
     other = replace(document.layers[0], id=1, name="other", attachments=(), draw_order_keys=())
     document = replace(document, layers=(*document.layers, other))
-    return replace(document, **CHANNELS[channel](at)) if channel == "choices" else document
+    return replace(document, **CHANNELS[channel](at)) if channel == "switch_groups" else document
 
 
 def frames_of(document, channel):
     """Return the frames of the keys of a channel."""
     if channel == "tracks":
         return [key.frame for key in document.layers[0].tracks[0].keys]
-    if channel == "choices":
+    if channel == "switch_groups":
         return [turn.frame for turn in document.switch_groups[0].keys]
     rows = document if hasattr(document, channel) else document.layers[0]
     return [key.frame for key in getattr(rows, channel)]
@@ -87,7 +97,9 @@ def test_scaled_time_refuses_keys_that_meet(channel):
         scale_time(0.5)(document)
 
 
-@pytest.mark.parametrize("channel", ["placings", "switches", "joints", "choices"])
+@pytest.mark.parametrize(
+    "channel", ["draw_order_keys", "visibility_keys", "attachments", "switch_groups"]
+)
 def test_scaled_time_keeps_what_holds_as_it_begins(channel):
     document = keyed(channel, (0, 2, 25), first=20)
     assert frames_of(scale_time(2.0)(document), channel) == [0, 30]

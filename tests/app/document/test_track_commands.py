@@ -202,9 +202,9 @@ def test_what_a_track_is_like_is_set():
     for command, name, value in (
         (tracks.set_delay(0, 0, 5), "delay", 5),
         (tracks.set_reach(0, 0, 0.25), "reach", 0.25),
-        (tracks.set_turning(0, 0, turns=True), "turns", True),
+        (tracks.set_turning(0, 0, turns=True), "keys_rotation", True),
         (tracks.enable_track(0, 0, enabled=False), "enabled", False),
-        (tracks.plant_track(0, 0, [1, 2j], planted=True), "planted", True),
+        (tracks.plant_track(0, 0, [1, 2j], planted=True), "is_scene_space", True),
         (tracks.set_track_handles(0, 0, [2, 0]), "handles", (2, 0)),
     ):
         history = History(document, saved=True)

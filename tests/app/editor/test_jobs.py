@@ -375,7 +375,7 @@ import threading
 import numpy as np
 import scipy.linalg
 import app.editor
-from app.editor.work.jobs import Job, Jobs, Kind
+from app.editor.work.jobs import Job, Jobs, JobKind
 from app.errors import CANCELLED, tell
 
 begun = threading.Event()
@@ -387,7 +387,7 @@ def factorise():
     scipy.linalg.lu_factor(matrix)
 
 jobs = Jobs()
-jobs.put(Job(kind=Kind("factors"), work=factorise, done=print, failed=print))
+jobs.put(Job(kind=JobKind("factors"), work=factorise, done=print, failed=print))
 begun.wait()
 # So that the end comes when the other thread is deep in its work.
 for _ in range(4):

@@ -29,9 +29,9 @@ def test_playhead_goes_to_both_ends_of_what_plays(session):
 
 def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
     project = session.project
-    monkeypatch.setattr(type(project), "chosen_track", 0)
+    monkeypatch.setattr(type(project), "selected_track", 0)
     assert not tracking.is_track_drag_pending(session, project)
-    session.pointer = object()
+    session.active_tool = object()
     assert tracking.is_track_drag_pending(session, project)
-    monkeypatch.setattr(type(project), "chosen_track", None)
+    monkeypatch.setattr(type(project), "selected_track", None)
     assert not tracking.is_track_drag_pending(session, project)

@@ -181,7 +181,7 @@ def test_a_handle_that_is_locked_goes_evenly_between_the_places_that_it_reaches(
     assert drift(locked) < 0.05
 
 
-@pytest.mark.parametrize("change", [{"easing": HOLD}, {"turns": 1}])
+@pytest.mark.parametrize("change", [{"easing": HOLD}, {"revolutions": 1}])
 def test_a_hold_and_a_whole_turn_are_left_as_they_are(change):
     document = posed()
     first, *rest = document.layers[0].keys

@@ -27,8 +27,8 @@ import sys
 sys.path[:0] = [{str(TESTS / "support")!r}, {str(TESTS.parent)!r}]
 from pathlib import Path
 from documents import disc_document
-from app.storage.autosave import UNKNOWN, Autosave
-Autosave(Path(sys.argv[1])).write(disc_document(), UNKNOWN)
+from app.storage.autosave import UNKNOWN_SOURCE, Autosave
+Autosave(Path(sys.argv[1])).write(disc_document(), UNKNOWN_SOURCE)
 print("kept", flush=True)
 sys.stdin.read()
 """

@@ -278,7 +278,7 @@ KNOWN = {
     "first": 0,
     "start": 0,
     "last": 8,
-    "rounds": 1,
+    "repeat_count": 1,
     "digest": "",
     "parameters": {
         "speed": 1.0,
@@ -297,7 +297,7 @@ UNKNOWN_MOTIONS = (
     (BETWEEN | {"joints": {"top": 7}}, "is the handle 7, which is not there"),
     (BETWEEN | {"first": -1}, "A motion goes from a frame to a later one"),
     (BETWEEN | {"last": LAST_FRAME + 1}, "A motion goes from a frame to a later one"),
-    (BETWEEN | {"rounds": 10**30}, "A motion is there once to 1,000 times"),
+    (BETWEEN | {"repeat_count": 10**30}, "A motion is there once to 1,000 times"),
     (BETWEEN | {"parameters": {"speed": 1e300}}, "lacks the field 'size'"),
     ({"later": [1, 2.5, None, "x"]}, "lacks the field 'motion'"),
     ("hop", "must be an object"),
@@ -343,11 +343,11 @@ REFUSED = (
     (lambda c: c["layers"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
     (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
     (
-        lambda c: c.update(choices=[{"name": "{", "layers": [0, 1], "turns": [[10**6, 0]]}]),
+        lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 1], "keys": [[10**6, 0]]}]),
         "frame from 0 to 999,999",
     ),
     (
-        lambda c: c.update(choices=[{"name": "{", "layers": [0, 0], "turns": []}]),
+        lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 0], "keys": []}]),
         "A choice has the layer 0 twice",
     ),
     (

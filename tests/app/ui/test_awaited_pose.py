@@ -103,7 +103,7 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
         robot.mouse_up(0)
 
     window.run(play)
-    bent.selected = frozenset({1})
+    bent.selected_handles = frozenset({1})
     for _ in range(3):
         window.act(posing.nudge_handles, 5j)
     assert FRAME not in bent.layer.key_frames
@@ -116,7 +116,7 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
 
 
 def test_a_turn_goes_on_from_the_in_between(window, bent, come):
-    bent.selected = frozenset({1})
+    bent.selected_handles = frozenset({1})
     window.frames(2)
 
     def turn(robot):

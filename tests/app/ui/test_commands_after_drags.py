@@ -47,7 +47,7 @@ def ready(window, loose, tmp_path, monkeypatch):
     playback.scrub(window.session, 0)
     window.settle()
     copying.copy_pose_or_keys(window.session)
-    loose.selected = frozenset({0})
+    loose.selected_handles = frozenset({0})
     return loose
 
 
@@ -79,7 +79,7 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
         }
         lost = [what for what, is_held in held.items() if not is_held]
         assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
-        ready.selected = frozenset({0})
+        ready.selected_handles = frozenset({0})
     assert not pull.is_at_rest
     monkeypatch.setattr(session.jobs, "deliver", deliver)
     window.until(lambda: not ready.pending)

@@ -152,10 +152,10 @@ def test_rows_buttons_and_keys_under_the_pointer(window, check):
 def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     session = window.session
     viewing.toggle_auto_key(session)
-    loose.selected = frozenset({1})
+    loose.selected_handles = frozenset({1})
     posing.nudge_handles(session, 30j)
     window.settle()
-    assert loose.preview_pose is not None
+    assert loose.unkeyed_pose is not None
     check("unkeyed")
     cut_out_editing.toggle_cut_tool(session, "remove")
     window.show_tab("Cut-out")

@@ -188,7 +188,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
     window, loose, play, item
 ):
     editing.select_handles(window.session, frozenset({1}))
-    loose.chosen = frozenset({0, 24})
+    loose.selected_frames = frozenset({0, 24})
 
     def scrub(hand):
         hand.to_timeline(6, "ruler")
@@ -197,7 +197,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
         hand.robot.mouse_up(0)
 
     play(scrub)
-    assert loose.chosen == {0, 24}, "to look at another frame lets go of nothing"
+    assert loose.selected_frames == {0, 24}, "to look at another frame lets go of nothing"
 
     def click(hand):
         # Beyond the last key there is nothing but the ground.
@@ -207,7 +207,7 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
     play(click)
     assert not loose.selected_keys
     if item == "ruler":
-        assert loose.selected == {1}
+        assert loose.selected_handles == {1}
         assert loose.playhead.frame == 30
 
 

@@ -287,10 +287,10 @@ def test_without_auto_key_a_pose_is_loose_until_it_is_inserted(window, bar):
     window.run(lambda robot: drag(robot, window, start, start + 100j))
     window.settle()
     assert [key.frame for key in bar.document.layers[0].keys] == [0]
-    assert bar.preview_pose is not None
+    assert bar.unkeyed_pose is not None
     window.run(lambda robot: robot.key_press(int(window.Key.i)))
     window.settle()
-    assert bar.preview_pose is None
+    assert bar.unkeyed_pose is None
     assert [key.frame for key in bar.document.layers[0].keys] == [0, 12]
 
 
@@ -553,12 +553,12 @@ def test_f_fits_the_selected_handles_or_the_shape(window, bent):
         robot.key_press(int(window.Key.f))
 
     whole = corners(bent.layer_runtime.shown.positions)
-    bent.selected = frozenset()
+    bent.selected_handles = frozenset()
     move_away(window)
     window.run(press)
     check_fitted(window, bent, *whole)
     for selected in ({1}, {0, 1}):
-        bent.selected = frozenset(selected)
+        bent.selected_handles = frozenset(selected)
         move_away(window)
         window.run(press)
         places = handle_places(bent)

@@ -136,7 +136,7 @@ def test_all_parts_can_fail_at_once_and_come_back(window, parts):
         part.draw = Broken()
     window.session.dialog = Question(title="Well", text="Well?", answers=())
     window.frames(FRAMES)
-    seen = [part.draw.option_fields for part in parts.values() if part.failure is not None]
+    seen = [part.draw.asked for part in parts.values() if part.failure is not None]
     assert set(seen) == {1}
     assert len(seen) >= 10
     for name, part in parts.items():
@@ -215,7 +215,7 @@ def test_failing_menu_of_a_handle_leaves_nothing_open(window, parts, bar, monkey
 
     window.run(open_menu)
     assert imgui.get_current_context().open_popup_stack.size() == 1
-    monkeypatch.setattr(viewport, "with_key", Broken())
+    monkeypatch.setattr(viewport, "format_modified", Broken())
     window.frames(2)
     assert parts["The panel Viewport"].failure
     assert imgui.get_current_context().open_popup_stack.size() == 0
@@ -231,7 +231,7 @@ def test_failing_dialog_can_be_closed(window, parts):
 
 @pytest.mark.usefixtures("bar")
 def test_failing_keys_take_nothing_along(window, parts, monkeypatch):
-    monkeypatch.setattr("app.ui.window.window_frame.pressed", Broken())
+    monkeypatch.setattr("app.ui.window.window_frame.collect_key_actions", Broken())
     window.frames(3)
     assert all(part.failure is None for part in parts.values())
 
@@ -239,7 +239,7 @@ def test_failing_keys_take_nothing_along(window, parts, monkeypatch):
 @pytest.mark.usefixtures("bar")
 def test_failing_upkeep_rests_until_something_changes(window, monkeypatch):
     broken = Broken()
-    monkeypatch.setattr(window.program.shell, "_upkeep", [FrameStep(broken, lambda _: None)])
+    monkeypatch.setattr(window.program.shell, "_update_steps", [FrameStep(broken, lambda _: None)])
     window.frames(FRAMES)
     assert broken.asked == 1
     window.clock.now += guard.PAUSE

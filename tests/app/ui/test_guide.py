@@ -123,7 +123,7 @@ def test_the_giraffe_bows(window):
     export = project.document.export
     assert (export.format, export.size) == (tutorials.FORMAT, tutorials.SIZE)
     window.frames(3)
-    aim, goal = session.tutorial.update_targets, session.tutorial.target_place
+    aim, goal = session.tutorial.handle_place, session.tutorial.target_place
     pupil.tap(aim)
     assert pupil.step == "time"
     pupil.drag_playhead(0.5)

@@ -441,7 +441,16 @@ def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
     def as_layer():
         now = scene.document.layer(arm)
         assert abs(ParentTransforms(scene.document).placement(arm, 12).shift - there.shift) < 1e-6
-        names = ("joints", "opacities", "placings", "cycles", "group", "blend", "hidden", "corner")
+        names = (
+            "attachments",
+            "opacity_keys",
+            "draw_order_keys",
+            "cycles",
+            "group",
+            "blend",
+            "hidden",
+            "corner",
+        )
         for name in names:
             assert getattr(now, name) == getattr(before, name)
         return now

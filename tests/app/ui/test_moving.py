@@ -75,7 +75,7 @@ def test_ctrl_and_shift_from_beside(window, loose):
 
 def test_arrows_move_all_of_it_only_with_the_tool(window, loose):
     before, session = wanted(loose), window.session
-    loose.selected = frozenset()
+    loose.selected_handles = frozenset()
     press(window, imgui.Key.v, imgui.Key.up_arrow, SHIFT | int(imgui.Key.left_arrow))
     assert playback.current_frame(session, loose) == BENT
     assert moved(loose, before, 1j - 10)

@@ -118,7 +118,7 @@ def later(window):
 
 def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
     window.act(files.ask_file_to_open)
-    asked = program.option_fields()
+    asked = program.asked()
     assert "--file-selection" in asked
     assert "--save" not in asked
     assert f"--filename={window.session.usual_folder}/" in asked
@@ -139,7 +139,7 @@ def test_a_picture_is_opened_and_the_window_does_not_wait(window, program):
 
 def test_saving_asks_before_it_replaces_and_adds_the_suffix(program, ask, chosen, tmp_path):
     ask()
-    asked = program.option_fields()
+    asked = program.asked()
     assert "--save" in asked
     assert "--confirm-overwrite" in asked
     assert f"--filename={tmp_path}/walk.png" in asked
@@ -154,7 +154,7 @@ def test_a_name_that_its_suffix_makes_an_existing_one_is_asked_about(
 ):
     (tmp_path / "run.png").write_bytes(b"")
     ask()
-    program.option_fields()
+    program.asked()
     program.answer(f"{tmp_path}/run\n")
     program.wait_for_the_window()
     assert chosen == []
@@ -170,7 +170,7 @@ def test_frames_land_in_a_folder_of_their_own_where_other_files_are(program, ask
     desktop.mkdir()
     (desktop / "letter.txt").write_text("")
     ask(suffixes=(), name="walk frames", folder=desktop)
-    program.option_fields()
+    program.asked()
     program.answer(str(desktop))
     program.wait_for_the_window()
     assert chosen == [desktop / "walk frames"]
@@ -178,7 +178,7 @@ def test_frames_land_in_a_folder_of_their_own_where_other_files_are(program, ask
 
 def test_a_folder_is_chosen_as_such(program, ask, chosen, tmp_path):
     ask(suffixes=(), name="walk frames")
-    assert "--directory" in program.option_fields()
+    assert "--directory" in program.asked()
     empty = tmp_path / "empty"
     empty.mkdir()
     program.answer(f"{empty}\n")
@@ -190,9 +190,7 @@ def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
     window, program, ask, chosen, tmp_path
 ):
     ask(folder=tmp_path / os.fsdecode(b"caf\xe9"), name=os.fsdecode(b"\xe9.png"))
-    assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(
-        program.option_fields()
-    )
+    assert f"--filename={tmp_path}/caf\N{REPLACEMENT CHARACTER}/" in " ".join(program.asked())
     program.answer(os.fsdecode(b"/caf\xe9.png"))
     program.wait_for_the_window()
     assert not window.session.system_dialogs
@@ -202,7 +200,7 @@ def test_a_name_that_is_not_utf_8_is_left_to_our_own_browser(
 
 def test_cancelling_the_dialog_closes_it(window, program, ask, chosen):
     ask()
-    program.option_fields()
+    program.asked()
     later(window)
     window.frames(3)
     program.answer("", status=1)
@@ -226,7 +224,7 @@ def test_a_program_that_cannot_show_anything_is_replaced_by_our_browser(
 
 def test_the_person_may_prefer_our_browser(window, program, ask, chosen, tmp_path):
     ask()
-    program.option_fields()
+    program.asked()
     window.run(lambda robot: robot.item_click("//###dialog/Use Lissom's own dialog"))
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Save"))
@@ -237,7 +235,7 @@ def test_the_person_may_prefer_our_browser(window, program, ask, chosen, tmp_pat
 @pytest.mark.parametrize("way", ["Cancel", "escape"])
 def test_the_window_can_cancel_a_dialog_that_hangs(window, program, ask, chosen, way):
     ask()
-    program.option_fields()
+    program.asked()
     if way == "Cancel":
         window.run(lambda robot: robot.item_click("//###dialog/Cancel"))
     else:
@@ -252,7 +250,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
     project = window.open(sample_images() / "bar.png")
     window.act(posing.add_handle, complex(*project.document.canvas) / 2)
     ask()
-    program.option_fields()
+    program.asked()
     window.act(saving.request_quit)
     window.frames(2)
     assert isinstance(window.session.dialog, Question)
@@ -262,7 +260,7 @@ def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
 
 def test_the_window_takes_the_dialog_with_it(window, program, ask):
     ask()
-    program.option_fields()
+    program.asked()
     window.program.shell.release()
     assert not is_running(program)
 

@@ -109,7 +109,7 @@ def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key)
         goal = drag_bar(window, loose)
         viewing.toggle_auto_key(window.session)
     window.settle()
-    assert (loose.preview_pose is None) == auto_key
+    assert (loose.unkeyed_pose is None) == auto_key
     if auto_key:
         check_at_rest(loose.document, goal)
 
@@ -297,7 +297,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     window.settle()
     posing.set_targets(window.session, {1: Target(position=700 + 30j)})
     window.settle()
-    assert loose.preview_pose is not None
+    assert loose.unkeyed_pose is not None
     # Also by the autosave.
     window.clock.now += 60
     window.settle()
@@ -362,7 +362,7 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, l
     playback.scrub(window.session, 7)
     window.frames()
     before = loose.document
-    loose.selected = frozenset({added})
+    loose.selected_handles = frozenset({added})
     posing.mirror_handles(window.session)
     assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.toasts]
     editing.undo(window.session)
@@ -374,7 +374,7 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(w
     before, handles = loose.document, loose.layer.handles
     with window.session.jobs.held(posing.POSING):
         drag_bar(window, loose)
-        loose.selected = frozenset({added})
+        loose.selected_handles = frozenset({added})
         posing.mirror_handles(window.session)
         (pull,) = loose.pulls
         assert pull.kept is None

@@ -52,7 +52,7 @@ def broken(window, bar, monkeypatch):
 
     window.session.preferences = type(window.session.preferences)(recent=(SECRET,))
     with monkeypatch.context() as patch:
-        patch.setattr(timeline, "draw_bar", fail)
+        patch.setattr(timeline, "draw_transport_bar", fail)
         window.frames(2)
     yield bar
     window.session.toasts = []

@@ -96,7 +96,7 @@ def test_messages_that_are_gone_leave_nothing(window):
 
 def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window, bar, monkeypatch):
     window, given = slow_window, []
-    monkeypatch.setattr(memory, "give_back", lambda: given.append(window.clock.now))
+    monkeypatch.setattr(memory, "trim_heap", lambda: given.append(window.clock.now))
     second = round(1 / harness.FRAME)
 
     def rest():

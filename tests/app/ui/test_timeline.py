@@ -319,21 +319,21 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     window.run(lambda robot: robot.key_press(int(window.Key.j)))
     window.settle()
     assert project.paths.value is None  # nothing is selected
-    project.selected = frozenset({1})
+    project.selected_handles = frozenset({1})
     window.settle()
     paths = project.paths.value
     assert project.paths.follows(project.clip)
-    assert paths.places.shape == (61, 2)
+    assert paths.positions.shape == (61, 2)
     places = CENTRE + RADIUS / 2 * np.exp(1j * np.array([0.0, 0.3, -0.3, 0.1]))
     np.testing.assert_allclose(paths.places[list(FRAMES), 1], places, atol=1e-6)
     shown = project.layer_runtime.shown
     with_path, _ = mark_all(window.session, project, shown, PALETTES["dark"])
-    project.selected = frozenset()
+    project.selected_handles = frozenset()
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
     keys.set_tangent_mode(window.session, {0: frozenset({12})}, TangentMode.CORNER)
-    project.selected = frozenset({1})
+    project.selected_handles = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.places - paths.places)[6:20].max() > 0.1
     window.session.overlays = replace(window.session.overlays, paths=False)
@@ -353,7 +353,7 @@ def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
     assert describe_motion_limit(window.session) == (
         "The motion stops at frame 12 to keep within the stretch limit"
     )
-    resolving.relax_limits(window.session)
+    resolving.relax_motion_limits(window.session)
     window.settle()
     assert project.layer.bounds != tight
     assert project.layer.key(12).pose is squeezed

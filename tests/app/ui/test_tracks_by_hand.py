@@ -254,8 +254,8 @@ def test_a_pose_has_what_a_track_adds_on_it_and_not_in_it(window, brief, auto_ke
 
     drag(window, other, other + 12j, then=then)
     assert max(abs(place - shown_at) for place in seen) < 4, "nothing pops"
-    pose = brief.preview_pose or brief.layer.key(HALF).pose
-    assert (brief.preview_pose is None) == auto_key
+    pose = brief.unkeyed_pose or brief.layer.key(HALF).pose
+    assert (brief.unkeyed_pose is None) == auto_key
     position = brief.layer.handle(END).position
     own = complex(brief.layer.map_of(pose)(np.array([position]))[0])
     assert abs(own - still) < 6, "the pose is where the body has the handle"

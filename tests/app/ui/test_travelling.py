@@ -28,7 +28,7 @@ def open_walker(window, folder):
     project = window.open(path)
     # No test is to have it from another one's hands.
     project.file_lock.release()
-    project.hold = project.path = None
+    project.file_lock = project.path = None
     choose(window, "near leg")
     for handle, way in ((1, 18 + 8j), (2, -20 + 30j)):
         editing.select_handles(window.session, frozenset({handle}))

@@ -110,9 +110,9 @@ def test_undo_takes_a_loose_pose_back_first(window, loose):
     before = loose.document
     posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
-    assert loose.preview_pose is not None
+    assert loose.unkeyed_pose is not None
     window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
-    assert loose.preview_pose is None
+    assert loose.unkeyed_pose is None
     assert loose.document is before
 
 
@@ -124,22 +124,22 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
     for shift in (-30j, -60j, -90j):
         posing.set_targets(session, {1: Target(position=place_of(loose, 1) + shift)})
         window.settle()
-        poses.append(loose.preview_pose)
+        poses.append(loose.unkeyed_pose)
     assert len(set(poses)) == 4
     for pose in poses[-2::-1]:
         editing.undo(session)
-        assert loose.preview_pose is pose
+        assert loose.unkeyed_pose is pose
     assert loose.document is before
     for pose in poses[1:]:
         editing.redo(session)
-        assert loose.preview_pose is pose
+        assert loose.unkeyed_pose is pose
     window.frames(2)
     assert loose.layer_runtime.shown.pose is poses[-1]
     posing.insert_key(session)
-    assert loose.preview_pose is None
+    assert loose.unkeyed_pose is None
     assert loose.layer.key(24).pose is poses[-1]
     editing.undo(session)
-    assert (loose.document, loose.preview_pose) == (before, poses[-1])
+    assert (loose.document, loose.unkeyed_pose) == (before, poses[-1])
 
 
 def test_a_loose_pose_waits_at_its_frame(window, loose):
@@ -147,19 +147,19 @@ def test_a_loose_pose_waits_at_its_frame(window, loose):
     window.act(viewing.toggle_auto_key)
     posing.set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
-    pose = loose.preview_pose
+    pose = loose.unkeyed_pose
     playback.scrub(session, 24)
-    assert loose.preview_pose is pose
+    assert loose.unkeyed_pose is pose
     playback.scrub(session, 7)
     window.settle()
-    assert loose.preview_pose is None
+    assert loose.unkeyed_pose is None
     assert loose.layer_runtime.shown.pose is None
     playback.toggle_play(session)
     playback.seek(session, 24)
-    assert loose.preview_pose is None
+    assert loose.unkeyed_pose is None
     playback.scrub(session, 24)
     window.settle()
-    assert loose.preview_pose is pose
+    assert loose.unkeyed_pose is pose
     assert loose.layer_runtime.shown.pose is pose
 
 
@@ -297,7 +297,7 @@ def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
     window.run(lambda robot: press(robot, window.Key.delete))
     window.settle()
     assert [handle.id for handle in loose.document.layers[0].handles] == [1]
-    assert loose.preview_pose is not None
+    assert loose.unkeyed_pose is not None
     np.testing.assert_allclose(loose.layer_runtime.shown.positions, before, rtol=0, atol=1e-9)
 
 
@@ -311,7 +311,7 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
     resolving.rebuild_mesh(session)
     window.settle()
     assert len(loose.document.layers[0].domain.cage) != len(cage)
-    assert loose.preview_pose is None
+    assert loose.unkeyed_pose is None
     assert loose.meshing is None
     assert loose.layer_runtime.shown.is_current
 
@@ -441,7 +441,7 @@ def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
 
 FAILURES = {
     "In-betweens": (
-        "app.motion.inbetween_cache.prepare_intervals",
+        "app.motion.inbetween_cache.compute_segments",
         lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Measuring": (
@@ -457,7 +457,7 @@ FAILURES = {
         lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Solving the keys": (
-        "app.editor.actions.layer_setup.resolving.go_on",
+        "app.editor.actions.layer_setup.resolving.step_resolver",
         resolving.solve_keys_again,
     ),
     "Rebuilding": (
@@ -472,7 +472,7 @@ FAILURES = {
         lambda session: posing.set_targets(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
-        "app.editor.actions.posing.inserting.pose_at",
+        "app.editor.actions.posing.inserting.fit_shown_pose",
         lambda session: keys.insert_key_in_row_at(session, 12),
     ),
     "Saving": (
@@ -535,7 +535,7 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
             ended.set()
 
     monkeypatch.setattr(jobs, "_clock", window.clock)
-    monkeypatch.setattr("app.motion.inbetween_cache.prepare_intervals", endless)
+    monkeypatch.setattr("app.motion.inbetween_cache.compute_segments", endless)
     window.act(keys.set_inbetween_method, "nu")
     window.until(lambda: any(jobs.share_of(kind) == 0.4 for kind in jobs.kinds))
     window.clock.now += SLOW
@@ -605,7 +605,7 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
     assert len(other.document.layers[0].keys) == 1
     assert other.history.undo_label is None
     assert other.extent.source in (None, extent_key(other.document))
-    assert (other.pull, other.key_resolver, other.preview_pose) == (None, None, None)
+    assert (other.pull, other.key_resolver, other.unkeyed_pose) == (None, None, None)
     assert other.layer_runtime.shown.is_current
     assert loose.document is closed
     assert closed.layers[0].handles == before.layers[0].handles

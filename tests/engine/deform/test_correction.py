@@ -360,19 +360,19 @@ def test_points_outside_the_domain_are_refused(outside):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"moves": np.full(6, np.nan + 0j)},
-        {"moves": np.full(6, np.inf + 0j)},
-        {"moves": np.zeros(5, complex)},
+        {"offsets": np.full(6, np.nan + 0j)},
+        {"offsets": np.full(6, np.inf + 0j)},
+        {"offsets": np.zeros(5, complex)},
         {"weights": np.full(6, np.nan)},
         {"weights": np.full(6, 1.5)},
         {"weights": np.full(6, -0.1)},
-        {"forces": np.full(6, np.nan)},
-        {"turns": np.full(6, np.inf)},
-        {"give": np.full(6, -1.0)},
+        {"max_forces": np.full(6, np.nan)},
+        {"rotations": np.full(6, np.inf)},
+        {"compliances": np.full(6, -1.0)},
     ],
 )
 def test_targets_are_refused_that_no_point_can_have(changes):
     known = corrector("star")
-    given = {"moves": np.zeros(6, complex), "weights": np.ones(6), "is_anchored": True} | changes
+    given = {"offsets": np.zeros(6, complex), "weights": np.ones(6), "is_anchored": True} | changes
     with pytest.raises(EngineError):
         solve_correction(known, bent(known.paths.nodes), PointTargets(**given))

@@ -30,13 +30,13 @@ UNSEEN = {
     "reference": True,
     "locked": True,
     "hidden": True,
-    "switches": (VisibilityKey(4, visible=False),),
+    "visibility_keys": (VisibilityKey(4, visible=False),),
     "opacity": 0.5,
-    "opacities": (OpacityKey(frame=3, opacity=0.5),),
+    "opacity_keys": (OpacityKey(frame=3, opacity=0.5),),
     "blend": "multiply",
     "clipped": True,
     "group": "all",
-    "placings": (DrawOrderKey(4, None),),
+    "draw_order_keys": (DrawOrderKey(4, None),),
     "unknown": {"later": 1},
 }
 SEEN = {
@@ -44,7 +44,7 @@ SEEN = {
     "stiffness": np.full(12, 2.0),
     "bounds": Bounds(k=0.4),
     "springs": (Spring(handle=0, frequency=2, damping=0.2),),
-    "stillness": False,
+    "has_auto_pins": False,
     "anchor": 90 + 90j,
 }
 
@@ -81,7 +81,7 @@ def test_names_and_groups_of_handles_are_no_motion():
         ({"name": "nose"}, True),
         ({"group": "face"}, True),
         ({"unknown": {"later": 1}}, True),
-        ({"free": True}, False),
+        ({"is_unpinned": True}, False),
         ({"position": 70 + 100j}, False),
     ):
         handles = (replace(handle, **change), *others)

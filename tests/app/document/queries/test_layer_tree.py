@@ -6,9 +6,9 @@ import pytest
 from documents import disc_document, disc_domain
 
 from app.document.commands import (
-    choice_commands as choices,
     group_commands as groups,
     layer_commands as layers,
+    switch_group_commands as choices,
 )
 from app.document.queries import layer_tree
 

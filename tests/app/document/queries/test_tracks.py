@@ -119,7 +119,7 @@ def test_a_track_begins_and_ends_at_rest_beside_what_is_not_moved(easing, loop):
     ends = (PLACES[2] - places(track, [37 - STEP], shown)[0]) / STEP
     assert abs(ends) < 1e-3 or easing == PRESETS["in"]
     # A person who wants otherwise says so.
-    straight = track_of(4, 14, 34, passing=[TangentMode.CORNER] * 3, delay=3)
+    straight = track_of(4, 14, 34, tangent_mode=[TangentMode.CORNER] * 3, delay=3)
     begin = (places(straight, [7 + STEP], shown)[0] - PLACES[0]) / STEP
     assert_allclose(begin, (PLACES[1] - PLACES[0]) / 10, rtol=0, atol=1e-3)
 
@@ -168,9 +168,9 @@ def test_easings_that_stand_still_or_jump_at_a_key_leave_no_velocity_there(befor
 @pytest.mark.parametrize("passing", [TangentMode.CORNER, TangentMode.STOP])
 def test_a_velocity_is_of_keys_that_are_passed_through(passing):
     passings = [TangentMode.SMOOTH, passing, TangentMode.SMOOTH]
-    led = track_of(0, 10, 30, passing=passings, velocity=[None, 99j, None])
+    led = track_of(0, 10, 30, tangent_mode=passings, velocity=[None, 99j, None])
     frames = np.linspace(0, 30, 61)
-    assert (places(led, frames) == places(track_of(0, 10, 30, passing=passings), frames)).all()
+    assert (places(led, frames) == places(track_of(0, 10, 30, tangent_mode=passings), frames)).all()
 
 
 def test_the_seam_of_a_loop_has_one_velocity_or_none():
@@ -208,14 +208,14 @@ def test_where_no_key_tells_a_velocity_a_new_one_has_none():
 
 def test_a_corner_comes_and_goes_straight():
     passings = [TangentMode.CORNER] * 3
-    track = track_of(0, 10, 30, passing=passings)
+    track = track_of(0, 10, 30, tangent_mode=passings)
     frames = np.linspace(0, 30, 61)
     straight = np.interp(frames, [0, 10, 30], PLACES[:3])
     assert_allclose(places(track, frames), straight, rtol=0, atol=1e-14)
 
 
 def test_a_stop_and_a_place_that_is_given_twice_come_to_rest():
-    stopped = track_of(0, 10, 30, passing=["through", "stop", "through"])
+    stopped = track_of(0, 10, 30, tangent_mode=["through", "stop", "through"])
     twice = track_of(0, 10, 20, 30, places=[0, 5 + 1j, 5.004 + 1j, 2j])
     for track, frame in ((stopped, 10), (twice, 10), (twice, 20)):
         assert_allclose(slopes(track, frame), [0, 0], rtol=0, atol=2e-3)

@@ -147,12 +147,12 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     editing.select_handles(session, frozenset({0}))
     posing.nudge_handles(session, 4j)
     settle(session)
-    unkeyed = project.preview_pose
+    unkeyed = project.unkeyed_pose
     assert unkeyed is not None
     pasting.paste_copied(session)
-    assert project.preview_pose is None
+    assert project.unkeyed_pose is None
     editing.undo(session)
-    assert project.preview_pose is unkeyed
-    project.chosen = frozenset()
+    assert project.unkeyed_pose is unkeyed
+    project.selected_frames = frozenset()
     copying.copy_pose_or_keys(session)
     assert session.copied[0].keys[0].pose is unkeyed

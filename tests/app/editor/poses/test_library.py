@@ -66,11 +66,11 @@ def test_without_auto_key_a_blend_waits_to_be_inserted(session):
         library.end_pose_blend(session)
         settle(session)
         assert project.layer.key_frames == {0, 6}
-        assert project.preview_pose is not None
-    assert project.preview_pose is kept.pose
+        assert project.unkeyed_pose is not None
+    assert project.unkeyed_pose is kept.pose
     editing.undo(session)
     editing.undo(session)
-    assert project.preview_pose is None
+    assert project.unkeyed_pose is None
 
 
 def test_names_are_not_given_twice(session):

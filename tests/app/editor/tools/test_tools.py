@@ -66,18 +66,18 @@ ON_RING = PointerHit(place=LEFT + 20, on_shape=True, on_ring=True)
 @pytest.mark.parametrize(
     ("spot", "name"),
     [
-        (AT_LEFT, "Pulling"),
-        (ON_SHAPE, "Pulling"),
-        (replace(ON_SHAPE, alt=True), "Pulling"),
-        (replace(AT_LEFT, alt=True), "Turning"),
-        (ON_RING, "Turning"),
-        (replace(AT_LEFT, ctrl=True), "Anchoring"),
-        (replace(ON_SHAPE, ctrl=True), "Anchoring"),
-        (replace(AT_LEFT, shift=True), "Selecting"),
-        (replace(ON_SHAPE, shift=True), "Selecting"),
-        (BESIDE, "Selecting"),
-        (replace(BESIDE, ctrl=True), "Selecting"),
-        (replace(BESIDE, ctrl=True, shift=True), "Moving"),
+        (AT_LEFT, "PoseTool"),
+        (ON_SHAPE, "PoseTool"),
+        (replace(ON_SHAPE, alt=True), "PoseTool"),
+        (replace(AT_LEFT, alt=True), "RotateTool"),
+        (ON_RING, "RotateTool"),
+        (replace(AT_LEFT, ctrl=True), "AnchorTool"),
+        (replace(ON_SHAPE, ctrl=True), "AnchorTool"),
+        (replace(AT_LEFT, shift=True), "SelectTool"),
+        (replace(ON_SHAPE, shift=True), "SelectTool"),
+        (BESIDE, "SelectTool"),
+        (replace(BESIDE, ctrl=True), "SelectTool"),
+        (replace(BESIDE, ctrl=True, shift=True), "MoveTool"),
     ],
 )
 def test_a_press_is_for_one_tool(session, spot, name):
@@ -252,11 +252,11 @@ def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
     drag(session, AT_LEFT, LEFT + 3)
     tool_pointer.type_in_tool(session, "4")
     tool_pointer.type_in_tool(session, "0")
-    assert [mark.text for mark in session.active_tool.marks] == ["40 px"]
+    assert [mark.text for mark in session.active_tool.tool_overlays] == ["40 px"]
     tool_pointer.move_pointer(session, LEFT + 6j)
     assert wish(session).position == pytest.approx(LEFT + 40j)
     tool_pointer.type_in_tool(session, "y")
-    assert [mark.text for mark in session.active_tool.marks] == ["Y 40 px"]
+    assert [mark.text for mark in session.active_tool.tool_overlays] == ["Y 40 px"]
     assert wish(session).position == pytest.approx(LEFT - 40j)
     tool_pointer.release_pointer(session, LEFT)
     assert wish(session).position == pytest.approx(LEFT - 40j)
