@@ -87,7 +87,7 @@ def main(folder: Path, out: Path) -> None:
 
 def files(folder: Path) -> dict[str, bytes]:
     """Return what the package has beside the folder, by its place."""
-    entries = desktop.contents("/usr/bin/lissom")
+    entries = desktop.build_desktop_files("/usr/bin/lissom")
     (licence,) = folder.glob("_internal/lissom-*.dist-info/licenses/LICENSE")
     libraries = "\n".join(
         f"{name} {version(name)}: {licence_of(name)}"

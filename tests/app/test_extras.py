@@ -55,10 +55,10 @@ def test_uv_has_no_pip(home, monkeypatch):
     receipt = home / "uv-receipt.toml"
     receipt.touch()
     told = f"uv pip install --python {home} '{errors.required_library('figures')}'"
-    assert errors.install_hint("layers") == told
+    assert errors.install_hint("figures") == told
     receipt.unlink()
     monkeypatch.setattr(errors, "find_spec", lambda _: None)
-    assert errors.install_hint("layers") == told
+    assert errors.install_hint("figures") == told
 
 
 @pytest.mark.usefixtures("home")

@@ -62,7 +62,7 @@ MISUSES = {
     "domain_of_polygon": lambda _: engine.domain_of_polygon([0, 1, 1j], 5),
     "HarmonicMap": lambda _: engine.HarmonicMap(cage=1, phi=1, psi=1),
     "HarmonicMap.identity": lambda _: engine.HarmonicMap.identity("abc"),
-    "map of ragged lists": lambda bar: bar.at_rest([[1], [1, 2]]),
+    "map of ragged lists": lambda bar: bar.rest_map([[1], [1, 2]]),
     "Handles.place": lambda bar: engine.Handles.place(bar.boundary.domain, [1]),
     "weights": lambda bar: engine.Handles.place(bar.boundary, [1 + 0.5j], ["a"]),
     "rotations": lambda bar: bar.handles.targets([1], ["a"]),
@@ -77,7 +77,7 @@ MISUSES = {
     "prove": lambda _: engine.prove([1]),
     "series": lambda _: engine.Series(pieces=(), error=0.0).values("a"),
     "reference": lambda bar: engine.Reference(
-        first=bar.at_rest, second=bar.at_rest, outline=bar.boundary.outline, anchor=1 + 0.5j
+        first=bar.rest_map, second=bar.rest_map, outline=bar.boundary.outline, anchor=1 + 0.5j
     ).frame("linear", bar.handles.points, 0.5),
 }
 

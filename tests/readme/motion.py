@@ -62,7 +62,7 @@ def _passing(folder: Path, _: Path) -> None:
 
 def _figure_5(folder: Path, scratch: Path) -> None:
     """The paper's Figure 5, in as many tones as it needs."""
-    _lissom("layers", "--only=5", f"--out={scratch}")
+    _lissom("figures", "--only=5", f"--out={scratch}")
     with Image.open(scratch / "figure_5.png") as figure:
         sheet = Image.new("RGB", figure.size, "white")
         sheet.paste(figure, mask=figure.getchannel("A"))

@@ -67,7 +67,7 @@ def _onion_skin(window: Harness) -> None:
         window.settle()
         window.act(library.save_pose_to_library)
         window.settle()
-        window.act(library.rename_library_pose, project.figure.library[-1].name, name)
+        window.act(library.rename_library_pose, project.layer.library[-1].name, name)
     window.act(playback.seek, 37)
     window.act(viewing.toggle_overlay, "onion")
     window.show_tab("Poses")
@@ -76,7 +76,7 @@ def _onion_skin(window: Harness) -> None:
 def _layers(window: Harness) -> None:
     """A child of many layers waves: the arms hang on the body, and mouths are seen in turns."""
     project = open_sample(window, "friend", frame=14)
-    arm = next(figure.id for figure in project.document.figures if figure.name == "left arm")
+    arm = next(layer.id for layer in project.document.layers if layer.name == "left arm")
     window.act(layering.set_active_layer, arm)
     window.act(editing.select_handles, frozenset({handle_named(project, "hand")}))
     window.show_tab("Layers")
@@ -121,7 +121,7 @@ def open_sample(window: Harness, sample: str, *, frame: int, theme: ThemeName = 
 
 def handle_named(project: Project, name: str) -> int:
     """Return the handle of a name."""
-    return next(handle.id for handle in project.figure.handles if handle.name == name)
+    return next(handle.id for handle in project.layer.handles if handle.name == name)
 
 
 PICTURES: dict[str, Callable[[Harness], None]] = {

@@ -28,7 +28,7 @@ POINTER_HELP = (
     PointerHelp("Drag beside the shape", "Select by a box"),
     PointerHelp(
         format_modified(CTRL, format_modified(SHIFT, "drag beside the shape")),
-        "Move the whole layer",
+        "Move whole drawing",
     ),
     PointerHelp("Right click a handle", "Menu"),
     PointerHelp("Arrows, with Shift ×10", "Nudge the selection, or the whole layer"),

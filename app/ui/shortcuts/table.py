@@ -271,7 +271,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             "Deselect", do(editing.deselect_all), "Escape", condition=_can_deselect
         ),
         "move": ActionSpec(
-            "Move the whole layer",
+            "Move whole drawing",
             do(move_tool.toggle_move_tool),
             "V",
             icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,

@@ -53,8 +53,8 @@ CRASH = """
 import os, sys
 from pathlib import Path
 from app.cli.process import redirect_faulthandler
-from app.storage import open_faults
-with redirect_faulthandler(open_faults(Path(sys.argv[1]))):
+from app.storage import open_fault_log
+with redirect_faulthandler(open_fault_log(Path(sys.argv[1]))):
     os.abort()
 """
 

@@ -242,8 +242,8 @@ def turning(document, *, cycle, turns, of=(0, 1, 2)):
     document = choices.create_switch_group("mouth", (0, 1, 2))(document)
     for identity in of:
         document = document.with_layer(replace(document.layer(identity), cycles=(cycle,)))
-    choice = replace(document.choices[0], turns=tuple(SwitchKey(*turn) for turn in turns))
-    return replace(document, choices=(choice,), frames=FrameRange(0, 100))
+    choice = replace(document.switch_groups[0], keys=tuple(SwitchKey(*turn) for turn in turns))
+    return replace(document, switch_groups=(choice,), frames=FrameRange(0, 100))
 
 
 TURNS = ((0, 0), (4, 1), (9, 2))

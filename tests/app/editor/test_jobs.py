@@ -376,7 +376,7 @@ import numpy as np
 import scipy.linalg
 import app.editor
 from app.editor.work.jobs import Job, Jobs, JobKind
-from app.errors import CANCELLED, tell
+from app.errors import CANCELLED, report_progress
 
 begun = threading.Event()
 matrix = np.random.default_rng(0).random((2000, 2000))

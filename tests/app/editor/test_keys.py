@@ -15,7 +15,7 @@ from app.editor.actions import editing
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import keys
 from app.editor.actions.timing.keys import NO_LAST_FRAME
-from app.editor.timeline_view import TrackRow, measure_target_errors
+from app.editor.timeline_view import TrackRow, measure_key_errors
 from app.editor.work import Derived
 from app.errors import LissomError
 
@@ -75,10 +75,10 @@ def test_handle_falls_short_no_longer_when_it_gets_a_spring():
         document, keys=(replace(layer.keys[0], pose=replace(pose, targets={0: away})),)
     )
     layer, shortfalls = document.layers[0], Derived({})
-    shortfalls.set(layer, measure_target_errors(layer, shortfalls))
+    shortfalls.set(layer, measure_key_errors(layer, shortfalls))
     (lags,) = shortfalls.value.values()
     assert lags == {0: pytest.approx(60)}
     spring = Spring(handle=0, frequency=2, damping=0.3)
     follower = track_commands.put_spring(0, spring)(document).layers[0]
-    (lags,) = measure_target_errors(follower, shortfalls).values()
+    (lags,) = measure_key_errors(follower, shortfalls).values()
     assert lags == {}

@@ -233,7 +233,7 @@ def test_what_lies_in_front_changes_when_it_should(browser, tmp_path, monkeypatc
     page = opened(browser, out)
     for frame, order in ((0, first), (2.9, first), (3, then), (1, first)):
         page.run(f"lissom.pause(); lissom.show({frame / document.fps + 1e-6})")
-        assert page.run("[...layers[0].order.slice(0, 3)]") == order[0].tolist()
+        assert page.run("[...figures[0].order.slice(0, 3)]") == order[0].tolist()
 
 
 def test_a_still_and_a_page_without_motion(browser, tmp_path):

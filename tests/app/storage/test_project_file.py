@@ -190,12 +190,6 @@ RENAMED = {
     "planted": "is_scene_space",
     "amount": "stiffness",
     "rounds": "repeat_count",
-    "to": "parent",
-    "at": "parent_point",
-    "rest": "rest_rotation",
-    "keeps": "keep_world_transform",
-    "since": "kept_since",
-    "leads": "blends_to_next",
     "stillness": "has_auto_pins",
     "switches": "visibility_keys",
     "opacities": "opacity_keys",
@@ -203,6 +197,14 @@ RENAMED = {
     "placings": "draw_order_keys",
     "swapped": "toggled_holes",
     "slits": "cut_lines",
+}
+OF_ATTACHMENTS = {
+    "to": "parent",
+    "at": "parent_point",
+    "rest": "rest_rotation",
+    "keeps": "keep_world_transform",
+    "since": "kept_since",
+    "leads": "blends_to_next",
 }
 # Turns were of keys, of tracks, of attachments and of switches.
 TURNS = {"targets": "revolutions", "delay": "keys_rotation", "rest": "inherits_rotation"}
@@ -214,10 +216,8 @@ def renamed(content):
         return [renamed(each) for each in content]
     if isinstance(content, dict):
         turns = next((new for name, new in TURNS.items() if name in content), "keys")
-        return {
-            {**RENAMED, "turns": turns}.get(name, name): renamed(each)
-            for name, each in content.items()
-        }
+        names = RENAMED | {"turns": turns} | (OF_ATTACHMENTS if "rest" in content else {})
+        return {names.get(name, name): renamed(each) for name, each in content.items()}
     return content
 
 

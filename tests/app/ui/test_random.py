@@ -651,8 +651,8 @@ class Walk:
                 self.act(layering.key_camera)
             case 5:
                 self.act(layering.create_switch, *{layer, other})
-            case 6 if self.document.choices:
-                self.act(layering.delete_switch, self.choice(self.document.choices).name)
+            case 6 if self.document.switch_groups:
+                self.act(layering.delete_switch, self.choice(self.document.switch_groups).name)
 
     def change_depth(self) -> None:
         layer = self.project.layer

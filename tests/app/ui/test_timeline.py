@@ -335,7 +335,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     keys.set_tangent_mode(window.session, {0: frozenset({12})}, TangentMode.CORNER)
     project.selected_handles = frozenset({1})
     window.settle()
-    assert np.abs(project.paths.value.places - paths.places)[6:20].max() > 0.1
+    assert np.abs(project.paths.value.positions - paths.positions)[6:20].max() > 0.1
     window.session.overlays = replace(window.session.overlays, paths=False)
 
 
