@@ -127,7 +127,7 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
     document = altered(
         document,
         tracks=(wag,),
-        switches=(VisibilityKey(0, visible=True), VisibilityKey(30, visible=False)),
+        visibility_keys=(VisibilityKey(0, visible=True), VisibilityKey(30, visible=False)),
     )
     keyed = cycle_commands.bake_cycle(0, 20, 92)(document)
     before, after = clip_of(document, 0), clip_of(keyed, 0)
@@ -218,7 +218,7 @@ def test_changes_in_one_repeat_are_made_in_all(change, is_on):
 def test_a_repeat_keeps_a_change_of_its_own_until_it_is_edited():
     switches = tuple(VisibilityKey(at, visible=at % 4 == 0) for at in (0, 30, 40, 50))
     document = cycle_commands.set_cycle(0, 20, 44, 68)(with_keys(0, 20, 28, 36, 44, 80))
-    document = switched(altered(document, switches=switches), 50, to=None)
+    document = switched(altered(document, visibility_keys=switches), 50, to=None)
     assert document.layers[0].visibility_keys == switches[:3]
 
 

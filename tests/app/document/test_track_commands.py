@@ -133,7 +133,7 @@ def test_how_time_runs_between_keys_of_a_track_and_how_they_are_passed():
 def led(*, planted=False):
     """Return a document with a track whose key at frame t is passed at (1, t), but the last."""
     keys = tuple(replace(key, velocity=complex(1, key.frame)) for key in row(4, 10, 20).keys[:2])
-    made = row(4, 10, 20, planted=planted)
+    made = row(4, 10, 20, is_scene_space=planted)
     return tracked(replace(made, keys=(*keys, made.keys[2])), mirror=AXIS)
 
 
@@ -254,7 +254,7 @@ def reached(layer, frame, handle):
 
 
 def test_a_planted_track_keeps_its_distance_from_what_it_is_of():
-    document = tracked(row(2, 19, handles=(0, 1), planted=True))
+    document = tracked(row(2, 19, handles=(0, 1), is_scene_space=True))
     layer = document.layers[0]
     wanted = [
         key.place + reached(layer, at, 1) - reached(layer, at, 0)
@@ -275,7 +275,7 @@ def test_a_planted_track_keeps_its_distance_from_what_it_is_of():
 
 @pytest.mark.parametrize("planted", [False, True])
 def test_a_mirrored_track_is_that_of_the_other_side(planted):
-    document = tracked(row(4, 10, planted=planted, turns=True), mirror=AXIS)
+    document = tracked(row(4, 10, is_scene_space=planted, keys_rotation=True), mirror=AXIS)
     keys = tuple(replace(key, turn=0.1 * key.frame) for key in only(document).keys)
     document = altered(document, tracks=(replace(only(document), keys=keys),))
     layer = tracks.mirror_track(0, 0)(document).layers[0]

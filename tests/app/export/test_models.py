@@ -132,7 +132,7 @@ def giraffe(tmp_path_factory):
     out = tmp_path_factory.mktemp("giraffe") / "giraffe.glb"
     second = replace(settings(), frames=FrameRange(0, 24), framing="canvas")
     project = load_project(sample_images() / "giraffe.lissom")
-    document, _ = exported(altered(project, stillness=False, variant="nu"), out, second)
+    document, _ = exported(altered(project, has_auto_pins=False, variant="nu"), out, second)
     return document, out
 
 

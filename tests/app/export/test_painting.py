@@ -283,7 +283,7 @@ def test_with_a_camera_every_framing_is_its_frame(gl, document):
 
 def test_a_fade_is_drawn(gl, document):
     keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=10, opacity=0.0))
-    faded = replace(altered(document, opacities=keys), frames=FrameRange(0, 12))
+    faded = replace(altered(document, opacity_keys=keys), frames=FrameRange(0, 12))
     with drawing(gl, faded, Sliding(document, 0)) as draw:
         alpha = draw(5.0)[..., 3]
         assert not draw(10.0).any()

@@ -56,7 +56,7 @@ def test_handles_stay_when_two_keys_have_them_at_one_place(loop, variant):
 
 
 def test_motion_is_the_closed_form_without_auto_pins():
-    document = with_layer(posed(), stillness=False)
+    document = with_layer(posed(), has_auto_pins=False)
     animation = animate(document)
     assert not any(animation.base.inbetweens(number).corrections for number in range(3))
     wandering = [animation.positions(float(t))[:3] for t in range(DRAWN + 1)]
@@ -99,7 +99,7 @@ def test_keys_stay_and_are_passed_smoothly_when_corrected(loop):
 
 def test_corrected_motion_does_not_jolt():
     times = np.arange(0, 30.01, 0.5)
-    both = (animated(posed()), animate(with_layer(posed(), stillness=False)))
+    both = (animated(posed()), animate(with_layer(posed(), has_auto_pins=False)))
     moved = [np.array([animation.positions(t) for t in times]) for animation in both]
     jolts = [np.abs(np.diff(places, 2, axis=0)).max() for places in moved]
     assert jolts[0] <= 2 * jolts[1]

@@ -236,7 +236,7 @@ def test_what_is_in_front_and_seen_repeats_with_it():
     ahead = [bool(depth_points_at(clip, frame)) for frame in (33, 34, 43, 44, 57, 58, 91, 92, 110)]
     assert ahead == [False, True, True, False, False, True, True, False, False]
     switches = (VisibilityKey(0, visible=True), VisibilityKey(30, visible=False))
-    document = altered(document, switches=switches)
+    document = altered(document, visibility_keys=switches)
     layer = document.layers[0]
     shown = [is_visible(document, layer, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
     assert shown == [True, False, False, True, True, False, False, True, True]
@@ -246,7 +246,7 @@ def test_what_moves_fades_and_is_ordered_repeats_with_it():
     wait, end = 2.5, WALK.until
     bob = tuple(TransformKey(frame=f, shift=s) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
     blink = tuple(OpacityKey(frame=f, opacity=o) for f, o in ((22, 1.0), (28, 0.2), (40, 1.0)))
-    document = cycling(*KEYS, cycle=WALK, last=120, movement=bob, opacities=blink)
+    document = cycling(*KEYS, cycle=WALK, last=120, transform_keys=bob, opacity_keys=blink)
     behind = replace(document.layers[0], id=1, name="behind", draw_order_keys=())
     weave = replace(document.layers[0], draw_order_keys=(DrawOrderKey(30, 1),))
     document = replace(document, layers=(weave, behind))

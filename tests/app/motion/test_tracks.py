@@ -98,8 +98,8 @@ def test_track_changes_nothing_outside_its_keys():
 
 def test_a_planted_handle_stays_in_the_picture():
     place = PLACES["right"] + 3 - 2j
-    planted = track(keys=((4, place), (26, place)), planted=True)
-    animation = animate(tracked(planted, stillness=False))
+    planted = track(keys=((4, place), (26, place)), is_scene_space=True)
+    animation = animate(tracked(planted, has_auto_pins=False))
     for frame in (4.0, 11.0, 18.5, 26.0):
         assert abs(animation.positions(frame)[2] - place) < 0.1
 
@@ -115,9 +115,9 @@ def planted_child():
         anchor=60 + 45j,
         attachments=(Attachment(parent=0, parent_point=60 + 45j),),
         bounds=RUBBERY.bounds,
-        tracks=(track("top", ((0, place), (8, place)), planted=True),),
+        tracks=(track("top", ((0, place), (8, place)), is_scene_space=True),),
     )
-    parent = with_layer(document, stillness=False).layers[0]
+    parent = with_layer(document, has_auto_pins=False).layers[0]
     return replace(document, layers=(parent, child)), place
 
 
@@ -137,7 +137,7 @@ def test_planted_handle_stays_in_the_scene_when_attached():
 
 def test_a_group_moves_together_and_a_handle_turns_where_that_is_asked():
     both = replace(track(), handles=(IDS["right"], IDS["top"]))
-    animation = animate(tracked(both, stillness=False))
+    animation = animate(tracked(both, has_auto_pins=False))
     moved = animation.positions(15.0) - animation.base.frame(15.0).positions
     assert abs(moved[IDS["top"]] - moved[IDS["right"]]) < 0.05
     keys = tuple(replace(key, place=0j, turn=0.3) for key in track().keys)
@@ -232,7 +232,7 @@ def test_certify_looks_at_few_of_very_many_frames(monkeypatch):
 
 
 def test_track_out_of_reach_keeps_limits_and_reports_its_error():
-    document = pulled(300 + 200j, "metric", stillness=False)
+    document = pulled(300 + 200j, "metric", has_auto_pins=False)
     report = certify_clip(clip_of(document, 0))
     assert report.verdict is Verdict.PROVEN
     assert report.corrected.excess.k == report.corrected.excess.sigma_a == 0
@@ -245,7 +245,7 @@ def test_track_out_of_reach_keeps_limits_and_reports_its_error():
 def test_a_smaller_reach_moves_less_of_the_drawing():
     moved = []
     for reach in (1.0, 0.2):
-        animation = animate(tracked(track(reach=reach), stillness=False))
+        animation = animate(tracked(track(reach=reach), has_auto_pins=False))
         moved.append(np.abs(animation.positions(10.0) - animation.base.frame(10.0).positions))
     assert moved[1].mean() < moved[0].mean()
     assert abs(moved[1][2] - moved[0][2]) < 0.1
@@ -535,7 +535,7 @@ def test_planted_track_is_solved_anew_when_the_parent_changes():
 
 def test_what_one_outline_knows_is_changed_by_one_thread_at_a_time(monkeypatch):
     monkeypatch.setattr("app.motion.inbetweens.frame_corrector.KEPT", 1)
-    animation = animate(tracked(track(), stillness=False))
+    animation = animate(tracked(track(), has_auto_pins=False))
     outline = animation.sampler.known
 
     class Guarded(dict):

@@ -337,8 +337,11 @@ REFUSED = (
     (lambda c: c.update(fps=0.01), "speed is from 1/60 to 1,000 frames"),
     (lambda c: c.update(fps=5e-324), "speed is from 1/60 to 1,000 frames"),
     (lambda c: c.update(fps=1000.1), "speed is from 1/60 to 1,000 frames"),
-    (lambda c: c["layers"][0].update(switches=[[-1, True]]), "frame from 0 to 999,999, not at -1"),
-    (lambda c: c["layers"][0].update(switches=[[10**6, True]]), "frame from 0 to 999,999"),
+    (
+        lambda c: c["layers"][0].update(visibility_keys=[[-1, True]]),
+        "frame from 0 to 999,999, not at -1",
+    ),
+    (lambda c: c["layers"][0].update(visibility_keys=[[10**6, True]]), "frame from 0 to 999,999"),
     (lambda c: c["layers"][0].update(id=MAX_ID + 1), "lacks layers/2147483648"),
     (lambda c: c["layers"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
     (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),

@@ -325,7 +325,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     assert project.paths.follows(project.clip)
     assert paths.positions.shape == (61, 2)
     places = CENTRE + RADIUS / 2 * np.exp(1j * np.array([0.0, 0.3, -0.3, 0.1]))
-    np.testing.assert_allclose(paths.places[list(FRAMES), 1], places, atol=1e-6)
+    np.testing.assert_allclose(paths.positions[list(FRAMES), 1], places, atol=1e-6)
     shown = project.layer_runtime.shown
     with_path, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     project.selected_handles = frozenset()

@@ -494,7 +494,7 @@ def test_a_new_key_on_a_way_with_velocities_leaves_the_way_as_it_is(window, bent
 
 
 def test_a_new_key_of_a_planted_track_is_where_the_handle_is(window, bent):
-    with_track(window, bent, keys=((4, 300 + 100j), (8, 310 + 100j)), planted=True)
+    with_track(window, bent, keys=((4, 300 + 100j), (8, 310 + 100j)), is_scene_space=True)
     window.act(playback.seek, 16)
     there = place_of(bent, RIGHT, 16)
     window.act(tracks.key_handles_at_playhead, (RIGHT,))

@@ -192,7 +192,7 @@ def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
     # It is a minimum of the new wish as it was of the old one, and a new search finds it again.
     gradients = []
     for each in (wish, left):
-        mine, jet = deformer.measured(state, each)
+        mine, jet = deformer.measure_state(state, each)
         gradients.append(mine.gradient(jet, mine.radial_derivatives(jet)))
     assert_allclose(*gradients, rtol=0, atol=1e-9)
     again = settled(deformer, left, state)

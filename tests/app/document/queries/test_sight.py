@@ -111,9 +111,9 @@ def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_
     assert export_frame_range(filmed(panned, loop=True)).last == 48
     # A wheel that has turned round is where it was.
     wheel = (TransformKey(frame=0), TransformKey(frame=48, turn=2 * pi))
-    assert export_frame_range(altered(EMPTY, movement=wheel, loop=True)).last == 47
+    assert export_frame_range(altered(EMPTY, transform_keys=wheel, loop=True)).last == 47
     rolled = (TransformKey(frame=0), TransformKey(frame=48, shift=1, turn=2 * pi))
-    assert export_frame_range(altered(EMPTY, movement=rolled, loop=True)).last == 48
+    assert export_frame_range(altered(EMPTY, transform_keys=rolled, loop=True)).last == 48
 
 
 def test_a_held_camera_jumps():
@@ -123,7 +123,7 @@ def test_a_held_camera_jumps():
 
 def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
     keys = (TransformKey(frame=0), TransformKey(frame=8, shift=10 + 5j, turn=pi / 2))
-    document = altered(EMPTY, movement=keys)
+    document = altered(EMPTY, transform_keys=keys)
     layer = document.layers[0]
     motion = transform_at(document, layer, 8)
     assert abs(layer.pivot - CENTRE) < 1e-9
@@ -138,7 +138,7 @@ def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
 
 def test_fades_are_even_and_stay_between_nothing_and_all():
     keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=12, opacity=0.2))
-    document = altered(EMPTY, opacities=keys, opacity=0.5)
+    document = altered(EMPTY, opacity_keys=keys, opacity=0.5)
     layer = document.layers[0]
     assert opacity_at(document, layer, 3) == pytest.approx(0.8, abs=1e-12)
     assert opacity_at(document, layer, 40) == 0.2
@@ -147,7 +147,7 @@ def test_fades_are_even_and_stay_between_nothing_and_all():
         OpacityKey(frame=6 * i, opacity=each, tangent_mode=TangentMode.SMOOTH)
         for i, each in enumerate(peaks)
     )
-    through = altered(EMPTY, opacities=keys)
+    through = altered(EMPTY, opacity_keys=keys)
     values = [opacity_at(through, through.layers[0], t) for t in np.arange(0, 30, 0.1)]
     assert max(values) == 1.0
     assert min(values) == 0.0
@@ -191,8 +191,8 @@ def test_time_edits_carry_all_of_them_along():
     document = altered(
         EMPTY,
         camera=KEYS,
-        movement=(TransformKey(frame=4), TransformKey(frame=8, shift=1j)),
-        opacities=(OpacityKey(frame=2, opacity=0.5),),
+        transform_keys=(TransformKey(frame=4), TransformKey(frame=8, shift=1j)),
+        opacity_keys=(OpacityKey(frame=2, opacity=0.5),),
         draw_order_keys=(DrawOrderKey(6, None),),
     )
     twice = scene_commands.scale_time(2.0)(document)

@@ -46,14 +46,14 @@ def test_new_keys_between_others_are_passed_through():
 def test_two_keys_are_blended_straight_whatever_is_set():
     assert ends(keyed(0, 20)) == [(1.0, 1.0)]
     assert segment_time_at(keyed(0, 20), 5).weight == 0.25
-    stopped = keyed(0, 20, passing=[TangentMode.STOP, TangentMode.STOP])
+    stopped = keyed(0, 20, tangent_mode=[TangentMode.STOP, TangentMode.STOP])
     assert_allclose(segment_time_at(stopped, 5).weight, 0.25**2 * (3 - 0.5), rtol=1e-15)
     assert not pose_segments(stopped)[0].has_smooth_tangent
 
 
 def test_a_corner_and_a_stop_take_no_heed_of_other_keys():
     passings = [TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP, TangentMode.SMOOTH]
-    clip = keyed(0, 10, 30, 48, passing=passings)
+    clip = keyed(0, 10, 30, 48, tangent_mode=passings)
     assert ends(clip) == [(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]
     assert segment_time_at(clip, 5).weight == 0.5
     slow, fast = segment_time_at(clip, 29.9).weight, segment_time_at(clip, 10.1).weight
@@ -67,7 +67,7 @@ def test_in_a_loop_the_motion_passes_its_first_and_last_key():
     frames = [[key.frame for key in transit.keys] for transit in pose_segments(closing)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 0], [10, 30, 0, 10]]
     # The last key is the first one again.
-    around = keyed(0, 10, 30, 48, loop=True, poses=[*POSES[:3], POSES[0]], turns=[1, 2, 3, 9])
+    around = keyed(0, 10, 30, 48, loop=True, poses=[*POSES[:3], POSES[0]], revolutions=[1, 2, 3, 9])
     assert ends(around) == ends(closing)
     frames = [[key.frame for key in transit.keys] for transit in pose_segments(around)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 48], [10, 30, 48, 10]]
