@@ -72,10 +72,10 @@ class Driven(window.Window):
         while not holds():
             time.sleep(0.002)
     def let(self, *action):
-        self.ask(do(*action))
+        self.queue_action(do(*action))
         self.wake()
     def anyway(self, _):
-        self.ask(self.session.dialog.answers[1][1])
+        self.queue_action(self.session.dialog.answers[1][1])
         self.let(close)
         self.until(lambda: self.session.project)
         print("opened", flush=True)
@@ -85,7 +85,7 @@ class Driven(window.Window):
         self.until(lambda: [m for m in self.session.project.document.markers if m.name == told])
         print("edited", number, flush=True)
     def save(self, number):
-        self.let(saving.write, asked, None)
+        self.let(saving.write_project, asked, None)
         history, session = self.session.project.history, self.session
         self.until(lambda: history.is_saved or isinstance(session.dialog, Question))
         print("saved" if history.is_saved else session.dialog.title, number, flush=True)

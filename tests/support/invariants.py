@@ -17,7 +17,7 @@ from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate, certify
 from engine.maps.harmonic_map import HarmonicMap
 
-OPEN = 0.05  # of a layer: what a joint is open, as coarse triangles have it
+OPEN = 0.05  # of the larger layer: the gap at a joint that coarse triangles may leave
 SLACK = 1e-6  # of a certificate's numbers, by which rounding may differ
 
 
@@ -46,7 +46,7 @@ def check_invariants(session: Session) -> None:
 
 
 def check_joints(project: Project) -> None:
-    """Fail where a layer is not drawn at the point that it hangs by."""
+    """Fail where a layer is not drawn at its joint with its parent."""
     for layer in project.document.layers:
         child, joint = (
             project.layer_runtimes[layer.id].shown,
@@ -69,7 +69,8 @@ def check_joints(project: Project) -> None:
         at = parent.placement.apply(np.array([parent.pivot_frame_at(joint.parent_point).position]))[
             0
         ]
-        size = np.abs(layer.domain.outline - layer.domain.outline.mean()).max()
+        # Both are drawn by triangles of their own.
+        size = max(abs(now.domain.outline - now.domain.outline.mean()).max() for _, now in pair)
         factor = (
             parent.placement.factor * parent.pivot_frame_at(joint.parent_point).rotation
             if joint.inherits_rotation

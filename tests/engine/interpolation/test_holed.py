@@ -303,7 +303,7 @@ def test_the_metric_variant_folds_nowhere_between_hard_keys(monkeypatch):
         assert distortion.k(fz, fzbar).max() <= proof.k
         assert distortion.sigma_b(fz, fzbar).min() >= proof.sigma_b
         around = frame.fz[: len(dz)] @ dz + frame.fzbar[: len(dz)] @ dz.conj()
-        assert abs(around) < 1e-10 * motion.sites.diameter
+        assert abs(around) < 1e-10 * motion.sampled_domain.diameter
     for key in (0.0, 1.0):
         beside, at = (motion.frame(time) for time in (abs(key - 1e-6), key))
         assert_allclose(beside.positions, at.positions, rtol=0, atol=1e-4)

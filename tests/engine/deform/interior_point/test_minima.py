@@ -199,7 +199,7 @@ def test_of_two_ways_to_a_tangled_pose_the_lower_is_kept_under_all_bounds():
     row = (Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2), Bounds(k=0.9, sigma_a=10.0, sigma_b=0.1))
     handles = Handles.place(boundary, CORNERS)
     ends = [settled(Deformer(boundary=boundary, handles=handles, bounds=b), targets) for b in row]
-    assert [end.outcome.way for end in ends] == [StartingPoint.RIGHT, StartingPoint.REST]
+    assert [end.outcome.starting_point for end in ends] == [StartingPoint.RIGHT, StartingPoint.REST]
     for end in ends:
         assert end.status is Status.AT_LIMITS
         assert end.statistics.optimality <= OPTIMAL
