@@ -135,7 +135,10 @@ class InbetweenCache:
             if known is None or not isinstance(known.inbetweens, Inbetweens):
                 return None
             inbetweens, time = known.inbetweens, moment.weight
-        moved = inbetweens.with_correction(correction.series, sampler.basis).frame(time)
+        # In-betweens of an earlier anchor were computed along other paths.
+        is_own = inbetweens.sampled_domain is sampler.sites
+        basis = sampler.basis if is_own else None
+        moved = inbetweens.with_correction(correction.series, basis).frame(time)
         triangles = self.mesh.order.triangles(clip, frame)
         return VertexArray(positions=moved.positions, triangles=triangles)
 
