@@ -24,7 +24,7 @@ def set_anchor(layer: Layer, anchor: complex | None) -> Layer:
     return layer if anchor == layer.anchor else replace(layer, anchor=anchor)
 
 
-@layer_command("Set stillness")
+@layer_command("Set auto-pins")
 def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
     """Turn auto-pin of a layer on or off."""
     return layer if stillness == layer.has_auto_pins else replace(layer, has_auto_pins=stillness)
