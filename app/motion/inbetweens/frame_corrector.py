@@ -93,7 +93,10 @@ class FrameCorrector:
         else:
             self._corrector, own = pins.prepare()
         stiffness = self._corrector.boundary.stiffness
-        self._of_what = self._corrector.points.tobytes(), stiffness.tobytes(), layer.bounds
+        self._of_what = (
+            *(self._corrector.points.tobytes(), stiffness.tobytes(), layer.bounds),
+            *(layer.anchor, self._is_anchored, variant),
+        )
         self._motion = KeyframeMotion(clip, variant, own, pins)
         self._own = SecondaryMotion(clip, carried)
 

@@ -39,6 +39,7 @@ from app.motion import (
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
+from app.motion.inbetweens import PoseSampler
 from app.motion.inbetweens.spring_offsets import MAX_SPRING_OFFSET, PIECE, SpringOffsets
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
@@ -511,6 +512,49 @@ def test_extent_and_exports_are_of_the_shown_frames():
     assert found.upper.real - bare.upper.real > 5
     shown = store.vertices(clip, 3, correction=frames.at(clip, 3)).positions
     assert_allclose(shown, places[3], rtol=0, atol=1e-2)
+
+
+def test_corrections_are_solved_anew_for_another_anchor_and_another_method():
+    """At a key, where nothing but the pose says what the in-betweens are."""
+    away = track("right", ((0, 14 - 6j), (2 * SHORT, 14 - 6j)), is_scene_space=False)
+    free = tracked(away, keys=posed(FEW, drawn=SHORT).layers[0].keys)
+    points = np.append([handle.position for handle in free.layers[0].handles], 60 + 45j)
+    sampler = animate(free, points).sampler
+    joint = Attachment(parent=1, parent_point=60 + 45j)
+    changes = (
+        {},
+        {"anchor": 60 + 45j},
+        {"anchor": 60 + 45j, "attachments": (joint,)},
+        {"variant": "eta"},
+        {"variant": "metric"},
+    )
+    for change in changes:
+        parent = replace(free.layers[0], id=1, name="parent", tracks=())
+        layer = replace(free.layers[0], **change)
+        clip = clip_of(replace(free, layers=(layer, parent)), 0)
+        sharing = PoseSampler(layer.domain, anchor=layer.anchor, points=points, sibling=sampler)
+        shared = Animation(clip, sampler=sharing, points=sharing.sites.points)
+        for frame in (0.0, float(SHORT)):
+            fresh = Animation(clip, points=points)
+            assert_allclose(shared.positions(frame), fresh.positions(frame), rtol=0, atol=1e-9)
+            if layer.attachments:
+                kept = shared.base.frame(frame).positions[-1]
+                assert shared.positions(frame)[-1] == pytest.approx(kept, abs=1e-6)
+
+
+def test_frames_of_an_earlier_anchor_are_corrected_along_their_own_paths():
+    first = pulled(14 - 6j, has_auto_pins=False)
+    clip, layer = clip_of(first, 0), first.layers[0]
+    moved = clip_of(with_layer(first, anchor=30 + 45j), 0)
+    store = InbetweenCache(mesh=DeformMesh.coarse(layer.domain))
+    for each in (clip, moved):
+        store.set_needed_clips([each], [clip], 0)
+        store.add(store.segments_job(each, store.missing_segments(each, 0))())
+    assert store.sampler.anchor == 30 + 45j
+    animation = Animation(clip)
+    correction = animation.corrections.correction_at(3.0)
+    shown = store.vertices(clip, 3, correction=correction).positions
+    assert_allclose(shown, animation.positions(3.0), rtol=0, atol=1e-2)
 
 
 def test_planted_track_is_solved_anew_when_the_parent_changes():
