@@ -16,19 +16,6 @@ ROOT = Path(__file__).parents[1]
 ROOTS = ("app", "engine")
 MOST_IN_A_ROOM = 12  # modules and sub-packages together, but for app and engine
 MOST_LOOSE = 5  # modules beside their packages
-# Rooms whose modules are found by their names, and that nothing else imports from.
-BY_NAME = {"app.cli", "app.cli.commands", "app.cli.usage"}
-
-# Modules whose functions are only called by the module's name: the verbs of actions and commands,
-# and the ways in to panels and to the parts of the command line.
-VERBS = (
-    "app.editor.actions.",
-    "app.editor.layering.",
-    "app.editor.tools.",
-    "app.document.commands.",
-    "app.cli.",
-    "app.ui.",
-)
 
 # What puts off loading a face until it is asked for.
 PUTTING_OFF = {"__getattr__", "__dir__"}
@@ -142,12 +129,13 @@ def test_faces_have_only_a_docstring_and_public_names():
             or (isinstance(each, ast.If) and ast.unparse(each.test) == "TYPE_CHECKING")
             for each in statements
         )
-        if not (is_documented and are_names):
+        # Only the packages directly below the roots show names.
+        if not (is_documented and are_names) or (statements and package.count(".") > 1):
             others.append(package)
     assert others == []
 
 
-def test_rooms_are_imported_through_their_faces():
+def test_names_of_a_face_are_imported_through_it():
     past_a_face = []
     for name in sorted(FILES):
         for node in statements_of(parsed(name)):
@@ -157,16 +145,17 @@ def test_rooms_are_imported_through_their_faces():
 
 
 def taken_past_a_face(name: str, node: ast.ImportFrom) -> list[str]:
-    """Return the names that an import of a module takes from a room, and its face does not show."""
+    """Return the names of a face that an import from outside takes from a module behind it."""
     module = node.module or ""
-    package = module if module in PACKAGES else module.rpartition(".")[0]
-    is_inside = name == package or name.startswith(f"{package}.")
-    if module.split(".")[0] not in ROOTS or is_inside or package in ROOTS or package in BY_NAME:
+    room = room_of(module)
+    if module in (room, *ROOTS) or room not in PACKAGES or room_of(name) == room:
         return []
-    if module != package:
-        return [module]
-    names = [alias.name for alias in node.names if f"{module}.{alias.name}" not in PACKAGES]
-    return [f"{package}.{taken}" for taken in names if taken not in public_names(package)]
+    return [f"{module}.{a.name}" for a in node.names if a.name in public_names(room)]
+
+
+def room_of(name: str) -> str:
+    """Return the package directly below a root that a module belongs to."""
+    return ".".join(name.split(".")[:2])
 
 
 def test_the_engine_computes_nothing_when_it_is_loaded():
@@ -223,14 +212,13 @@ def test_types_have_names_of_their_own():
     assert shared(modules) == {}
 
 
-def test_functions_that_faces_show_have_names_of_their_own():
+def test_functions_have_names_of_their_own_in_their_room():
     modules: dict[str, list[str]] = {}
     for name in FILES:
-        if name.startswith(VERBS):
+        if name.startswith(("app.cli.commands.", "app.cli.usage.")):
             continue
-        package = name if name in PACKAGES else name.rpartition(".")[0]
-        for function in defined_names(name)[1] & public_names(package):
-            modules.setdefault(function, []).append(name)
+        for function in defined_names(name)[1]:
+            modules.setdefault(f"{room_of(name)}: {function}", []).append(name)
     assert shared(modules) == {}
 
 

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 
-from app.storage.pictures import read_openraster
+from app.storage.pictures.openraster import read_openraster
 
 SAMPLES = Path(__file__).parents[1] / "sample_images"
 DRAWINGS = Path(__file__).parent / "drawings"

@@ -17,8 +17,8 @@ from app.motion import Animation, ParentTransforms, TriangleOrder
 from app.motion.deform_mesh import DeformMesh
 from app.motion.inbetween_cache import InbetweenCache
 from app.reports.certification import Verdict, certify_clip
-from app.solving.script import load_pose_script
-from app.storage.pictures import read_openraster
+from app.solving.script.pose_script import load_pose_script
+from app.storage.pictures.openraster import read_openraster
 from app.storage.project_file import load_project
 from app.ui.welcome import SAMPLE_FPS
 

@@ -7,23 +7,29 @@ Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, wi
 
 from app.document.checks import LAST_FRAME as LAST_FRAME
 from app.document.commands import (
-    Command as Command,
-    PoseReplacement as PoseReplacement,
-    combine_commands as combine_commands,
     cycle_commands as cycle_commands,
-    filming_commands as filming_commands,
-    group_commands as group_commands,
     handle_commands as handle_commands,
     key_commands as key_commands,
-    layer_commands as layer_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
     stiffness_commands as stiffness_commands,
-    switch_group_commands as switch_group_commands,
     track_commands as track_commands,
-    with_all_targets as with_all_targets,
+)
+from app.document.commands.command import (
+    Command as Command,
+    combine_commands as combine_commands,
     with_number as with_number,
+)
+from app.document.commands.layers import (
+    filming_commands as filming_commands,
+    group_commands as group_commands,
+    layer_commands as layer_commands,
+    switch_group_commands as switch_group_commands,
+)
+from app.document.commands.pose_commands import (
+    PoseReplacement as PoseReplacement,
+    with_all_targets as with_all_targets,
     with_replaced_pose as with_replaced_pose,
 )
 from app.document.history import History as History, PreviewPose as PreviewPose
@@ -42,106 +48,144 @@ from app.document.layer import (
     new_layer as new_layer,
     rest_pose as rest_pose,
 )
-from app.document.layers import (
+from app.document.layers.attachments import (
+    Attachment as Attachment,
+    attachments_repeat as attachments_repeat,
+)
+from app.document.layers.groups import (
     BLENDS as BLENDS,
     GROUP_BLENDS as GROUP_BLENDS,
     MAX_GROUP_DEPTH as MAX_GROUP_DEPTH,
-    Attachment as Attachment,
     BlendMode as BlendMode,
-    CameraKey as CameraKey,
-    DrawOrderKey as DrawOrderKey,
     Group as Group,
     GroupBlend as GroupBlend,
+    ancestor_paths as ancestor_paths,
+    common_path as common_path,
+)
+from app.document.layers.layer_keys import (
+    CameraKey as CameraKey,
+    DrawOrderKey as DrawOrderKey,
     OpacityKey as OpacityKey,
+    TransformKey as TransformKey,
+)
+from app.document.layers.visibility import (
     SwitchGroup as SwitchGroup,
     SwitchKey as SwitchKey,
-    TransformKey as TransformKey,
     VisibilityKey as VisibilityKey,
-    ancestor_paths as ancestor_paths,
-    attachments_repeat as attachments_repeat,
-    common_path as common_path,
 )
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
-from app.document.queries import (
-    DEFAULT_DEPTH_EXTENT as DEFAULT_DEPTH_EXTENT,
-    CameraState as CameraState,
-    Clip as Clip,
-    CompositeGroup as CompositeGroup,
-    DepthPoint as DepthPoint,
-    DistortionRange as DistortionRange,
-    PinnedSegment as PinnedSegment,
-    PoseSegment as PoseSegment,
-    Segment as Segment,
-    SegmentTime as SegmentTime,
-    TargetErrors as TargetErrors,
-    TrackSample as TrackSample,
-    TreeRow as TreeRow,
-    adjacent_segments as adjacent_segments,
-    bone_region as bone_region,
-    brushed_stiffness as brushed_stiffness,
-    camera_at as camera_at,
-    change_frame as change_frame,
-    changed_ranges as changed_ranges,
-    clip_of as clip_of,
-    clip_segments as clip_segments,
-    composite_layers as composite_layers,
-    depth_points_at as depth_points_at,
+from app.document.queries.applied_motion import (
     digest_keys as digest_keys,
-    draw_order_key_at as draw_order_key_at,
-    export_frame_range as export_frame_range,
-    frame_times as frame_times,
-    frames_for_fit as frames_for_fit,
-    have_same_stiffness as have_same_stiffness,
     is_motion_unedited as is_motion_unedited,
-    is_switch_in_cycle as is_switch_in_cycle,
-    is_visible as is_visible,
-    keyed_frame as keyed_frame,
-    keyed_pose_at as keyed_pose_at,
-    layer_tree as layer_tree,
-    layers_in_draw_order as layers_in_draw_order,
-    loop_segment as loop_segment,
-    measure_target_errors as measure_target_errors,
-    memoized_on as memoized_on,
-    misses_target as misses_target,
     motion_notices as motion_notices,
-    motion_source as motion_source,
-    opacity_at as opacity_at,
-    parent_label as parent_label,
+)
+from app.document.queries.auto_pins import (
+    PinnedSegment as PinnedSegment,
     pinned_handles as pinned_handles,
     pinned_segments as pinned_segments,
-    pose_segments as pose_segments,
-    repeating_cycle as repeating_cycle,
+)
+from app.document.queries.boundary_stiffness import (
+    bone_region as bone_region,
+    brushed_stiffness as brushed_stiffness,
+    have_same_stiffness as have_same_stiffness,
+    stiff_outline as stiff_outline,
+    with_stiffness as with_stiffness,
+)
+from app.document.queries.clips import (
+    Clip as Clip,
+    clip_of as clip_of,
+    motion_source as motion_source,
+)
+from app.document.queries.key_segments import (
+    Segment as Segment,
+    clip_segments as clip_segments,
+    loop_segment as loop_segment,
     segment_at_frame as segment_at_frame,
     segment_keys as segment_keys,
     segment_layout as segment_layout,
-    segment_time_at as segment_time_at,
-    spring_root as spring_root,
-    stiff_outline as stiff_outline,
+)
+from app.document.queries.layers.clipping import without_foreign_clips as without_foreign_clips
+from app.document.queries.layers.compositing import (
+    CompositeGroup as CompositeGroup,
+    composite_layers as composite_layers,
+)
+from app.document.queries.layers.depth import (
+    DEFAULT_DEPTH_EXTENT as DEFAULT_DEPTH_EXTENT,
+    DepthPoint as DepthPoint,
+    depth_points_at as depth_points_at,
+)
+from app.document.queries.layers.layer_state import (
+    CameraState as CameraState,
+    camera_at as camera_at,
+    draw_order_key_at as draw_order_key_at,
+    keyed_frame as keyed_frame,
+    layers_in_draw_order as layers_in_draw_order,
+    opacity_at as opacity_at,
+    repeating_cycle as repeating_cycle,
+    transform_at as transform_at,
+)
+from app.document.queries.layers.layer_tree import (
+    TreeRow as TreeRow,
+    layer_tree as layer_tree,
+    parent_label as parent_label,
+)
+from app.document.queries.layers.switch_suggestions import (
     subgroups_with_layers as subgroups_with_layers,
     suggest_switch_groups as suggest_switch_groups,
-    track_at as track_at,
-    track_cycle as track_cycle,
-    transform_at as transform_at,
+)
+from app.document.queries.layers.visibility import (
+    change_frame as change_frame,
+    is_switch_in_cycle as is_switch_in_cycle,
+    is_visible as is_visible,
     turn_frame as turn_frame,
-    velocity_at as velocity_at,
     visibility_keys as visibility_keys,
     with_repeats as with_repeats,
-    with_stiffness as with_stiffness,
-    without_foreign_clips as without_foreign_clips,
 )
-from app.document.rig import (
-    PAIRS as PAIRS,
+from app.document.queries.memo import memoized_on as memoized_on
+from app.document.queries.pose_tangents import (
+    PoseSegment as PoseSegment,
+    adjacent_segments as adjacent_segments,
+    pose_segments as pose_segments,
+)
+from app.document.queries.target_error import (
+    DistortionRange as DistortionRange,
+    TargetErrors as TargetErrors,
+    measure_target_errors as measure_target_errors,
+    misses_target as misses_target,
+)
+from app.document.queries.timeline import (
+    SegmentTime as SegmentTime,
+    changed_ranges as changed_ranges,
+    export_frame_range as export_frame_range,
+    frame_times as frame_times,
+    frames_for_fit as frames_for_fit,
+    keyed_pose_at as keyed_pose_at,
+    segment_time_at as segment_time_at,
+)
+from app.document.queries.tracks import (
+    TrackSample as TrackSample,
+    spring_root as spring_root,
+    track_at as track_at,
+    track_cycle as track_cycle,
+    velocity_at as velocity_at,
+)
+from app.document.rig.applied_motion import (
     AppliedMotion as AppliedMotion,
-    Bone as Bone,
-    SidePairs as SidePairs,
     UnreadMotion as UnreadMotion,
+    require_motions as require_motions,
+)
+from app.document.rig.mirror_names import (
+    PAIRS as PAIRS,
+    SidePairs as SidePairs,
     format_pairs as format_pairs,
     mirrored_handles as mirrored_handles,
     mirrored_handles_by_name as mirrored_handles_by_name,
     mirrored_name as mirrored_name,
     parse_pairs as parse_pairs,
-    require_motions as require_motions,
+)
+from app.document.rig.stiffness import (
+    Bone as Bone,
     transfer_painted_stiffness as transfer_painted_stiffness,
 )
 from app.document.settings import (
@@ -163,18 +207,18 @@ from app.document.settings import (
     find_limit_preset as find_limit_preset,
     relax_limits as relax_limits,
 )
-from app.document.timing import (
-    HOLD as HOLD,
-    LINEAR as LINEAR,
-    PRESETS as PRESETS,
-    SPRING_PRESETS as SPRING_PRESETS,
+from app.document.timing.cycles import (
     Cycle as Cycle,
-    Easing as Easing,
-    Spring as Spring,
-    TangentMode as TangentMode,
-    Track as Track,
-    TrackKey as TrackKey,
     require_no_overlap as require_no_overlap,
     require_repeatable_cycle as require_repeatable_cycle,
 )
+from app.document.timing.easing import (
+    HOLD as HOLD,
+    LINEAR as LINEAR,
+    PRESETS as PRESETS,
+    Easing as Easing,
+)
+from app.document.timing.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
+from app.document.timing.tangent_mode import TangentMode as TangentMode
+from app.document.timing.tracks import Track as Track, TrackKey as TrackKey
 from engine.variant import Baseline as Baseline, Variant as Variant

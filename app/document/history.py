@@ -2,7 +2,12 @@
 
 from dataclasses import dataclass, replace
 
-from app.document.commands import Command, PoseReplacement, with_all_targets, with_replaced_pose
+from app.document.commands.command import Command
+from app.document.commands.pose_commands import (
+    PoseReplacement,
+    with_all_targets,
+    with_replaced_pose,
+)
 from app.document.keyframe import Pose
 from app.document.layer import Layer, PictureFile
 from app.document.model import Document

@@ -17,7 +17,8 @@ from app.document.checks import (
     require_id,
     require_point,
 )
-from app.document.timing import HOLD, LINEAR, Easing, TangentMode, require_tangent_mode
+from app.document.timing.easing import HOLD, LINEAR, Easing
+from app.document.timing.tangent_mode import TangentMode, require_tangent_mode
 from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
 

@@ -20,28 +20,22 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
-from app.document.layers import (
-    BLENDS,
-    Attachment,
-    BlendMode,
+from app.document.layers.attachments import Attachment, require_attachments
+from app.document.layers.groups import BLENDS, BlendMode
+from app.document.layers.layer_keys import (
     DrawOrderKey,
     OpacityKey,
     TransformKey,
-    VisibilityKey,
     require_ascending_keys,
-    require_ascending_visibility_keys,
-    require_attachments,
 )
-from app.document.rig import (
-    SIDES,
-    AppliedMotion,
-    Bone,
-    UnreadMotion,
-    mirrored_handles_by_name,
-    require_motions,
-)
+from app.document.layers.visibility import VisibilityKey, require_ascending_visibility_keys
+from app.document.rig.applied_motion import AppliedMotion, UnreadMotion, require_motions
+from app.document.rig.mirror_names import SIDES, mirrored_handles_by_name
+from app.document.rig.stiffness import Bone
 from app.document.settings import NATURAL, VARIANTS, Meshing
-from app.document.timing import Cycle, Spring, Track, require_no_overlap, require_repeatable_cycle
+from app.document.timing.cycles import Cycle, require_no_overlap, require_repeatable_cycle
+from app.document.timing.springs import Spring
+from app.document.timing.tracks import Track
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES

@@ -15,18 +15,13 @@ from typing import NoReturn
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.layer import Layer
-from app.document.layers import (
-    Attachment,
-    CameraKey,
-    Group,
-    SwitchGroup,
-    ancestor_paths,
-    repeated_joints,
-    require_ascending_keys,
-)
-from app.document.rig import PAIRS, SidePairs, require_pairs
+from app.document.layers.attachments import Attachment, repeated_joints
+from app.document.layers.groups import Group, ancestor_paths
+from app.document.layers.layer_keys import CameraKey, require_ascending_keys
+from app.document.layers.visibility import SwitchGroup
+from app.document.rig.mirror_names import PAIRS, SidePairs, require_pairs
 from app.document.settings import ExportSettings, FrameRange, Marker, require_fps
-from app.document.timing import count_repeated_changes
+from app.document.timing.cycles import count_repeated_changes
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError
 
 NO_LAYER = "There is no layer with the id {identity}."

@@ -14,7 +14,7 @@ from app.document.checks import (
 )
 from app.export_formats import EXPORT_FORMATS, FormatSettings, expand_colour
 from engine.domain import MOST_TRIANGLES
-from engine.domain.outline import Detail
+from engine.domain.outline.enclosure import Detail
 from engine.maps import Bounds
 from engine.variant import Variant
 

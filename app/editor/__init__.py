@@ -67,9 +67,8 @@ from app.editor.timeline_view import (
     layer_of as layer_of,
     row_of as row_of,
 )
-from app.editor.work import (
+from app.editor.work.jobs import JobKind as JobKind, Jobs as Jobs
+from app.editor.work.layer_runtime import (
     ComparisonRuntime as ComparisonRuntime,
-    JobKind as JobKind,
-    Jobs as Jobs,
     LayerRuntime as LayerRuntime,
 )

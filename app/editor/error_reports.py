@@ -9,7 +9,7 @@ from typing import TypeVar
 from app.editor.action import Action, do
 from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.editor.session import Session
-from app.editor.work import Job, JobKind
+from app.editor.work.jobs import Job, JobKind
 from app.errors import EXPECTED_ERRORS
 from app.reports import format_problem_report, format_trace, redact_names
 from app.storage import (

@@ -14,7 +14,9 @@ from app.editor.action import Action
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Afterwards, Job, JobKind, Promise, Pull
+from app.editor.work.jobs import Job, JobKind
+from app.editor.work.promise import Afterwards, Promise
+from app.editor.work.pull import Pull
 
 Result = TypeVar("Result")
 

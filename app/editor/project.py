@@ -28,18 +28,12 @@ from app.document import (
     transform_at,
 )
 from app.editor.timeline_view import KeyRow, KeysByRow, TimelineState, TrackRow, row_of
-from app.editor.work import (
-    Afterwards,
-    ComparisonRuntime,
-    Derived,
-    LayerRuntime,
-    MotionJob,
-    MotionSetup,
-    Promise,
-    Pull,
-    Recording,
-    TrackDrag,
-)
+from app.editor.work.derived import Derived
+from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
+from app.editor.work.motion_setup import MotionJob, MotionSetup
+from app.editor.work.promise import Afterwards, Promise
+from app.editor.work.pull import Pull
+from app.editor.work.track_drag import Recording, TrackDrag
 from app.motion import (
     BoundingBox,
     MotionPaths,

@@ -11,7 +11,7 @@ from app.document import Baseline, Document, Keyframe, Layer, Meshing, Track, Tr
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
-from app.editor.work import Jobs
+from app.editor.work.jobs import Jobs
 from app.errors import display_message, printable
 from app.export import CachedVertices, ExportPlan
 from app.motion import BoundingBox

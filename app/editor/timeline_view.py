@@ -16,7 +16,7 @@ from app.document import (
     TrackKey,
     measure_target_errors,
 )
-from app.editor.work import Derived
+from app.editor.work.derived import Derived
 
 SMALLEST, LARGEST = 0.002, 4.0  # em per frame
 MARGIN = 1.4  # em left and right of fitted frames

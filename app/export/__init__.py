@@ -32,4 +32,4 @@ from app.export.plan import (
     list_overwritten_files as list_overwritten_files,
     plan_export as plan_export,
 )
-from app.export.writers import sheet_grid as sheet_grid
+from app.export.writers.spritesheet import sheet_grid as sheet_grid

@@ -6,10 +6,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from scipy.spatial import Delaunay
 
-from app.render.gpu import border_edges
+from app.render.gpu.mesh import border_edges
 from engine.arrays import Booleans, Complexes, Indices, Integers, Singles
 from engine.domain import MeshedDomain
-from engine.domain.meshing import Mesh, copy_draw_order
+from engine.domain.meshing.draw_order import copy_draw_order
+from engine.domain.meshing.mesh import Mesh
 from engine.geometry import as_xy
 
 TOLERANCE: Final = 0.05  # pixels from a vertex to its drawn place, at most

@@ -17,19 +17,14 @@ from app.export.plan import ExportPlan
 from app.export.run import export_frames
 from app.motion import TriangleOrder, VertexArray, bounding_box
 from app.render import TRANSPARENT, Backdrop, Colour, DrawnMesh, Renderer, Scene, View
-from app.render.gpu import (
-    Context,
-    GlError,
-    GpuMesh,
-    GpuPicture,
-    RenderTarget,
-    is_software,
-    largest_size,
-)
+from app.render.gpu.context import Context, GlError, is_software, largest_size
+from app.render.gpu.mesh import GpuMesh
+from app.render.gpu.picture import GpuPicture
+from app.render.gpu.target import RenderTarget
 from app.storage import Cancellation
 from engine.arrays import Bytes
 from engine.domain import find_closed_cuts
-from engine.domain.meshing import Mesh
+from engine.domain.meshing.mesh import Mesh
 from engine.geometry import IDENTITY_MOTION, Similarity
 
 _SMALL: Final = 0.75  # frame pixels per picture pixel

@@ -15,7 +15,7 @@ from app.export.morph_mesh import (
 )
 from app.export.plan import ExportPlan
 from app.export.run import wait_some
-from app.export.writers import SHAPE_WRITERS
+from app.export.writers.table import SHAPE_WRITERS
 from app.export_formats import EXPORT_FORMATS
 from app.storage import Cancellation, write_atomically
 from engine.arrays import Bytes

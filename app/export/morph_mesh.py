@@ -25,7 +25,8 @@ from app.export_formats import EXPORT_FORMATS
 from app.motion import TriangleOrder, bounding_box
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
-from engine.domain.meshing import copy_draw_order, triangulate
+from engine.domain.meshing.draw_order import copy_draw_order
+from engine.domain.meshing.triangulation import triangulate
 from engine.streaming import MorphTargets, build_morph_targets
 
 Value = TypeVar("Value")

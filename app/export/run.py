@@ -7,7 +7,8 @@ from queue import SimpleQueue
 from typing import Any, Final, NamedTuple, TypeVar
 
 from app.export.plan import ExportPlan
-from app.export.writers import FrameWriter, open_writer
+from app.export.writers.frame_writer import FrameWriter
+from app.export.writers.table import open_writer
 from app.export_formats import EXPORT_FORMATS
 from app.storage import Cancellation
 from engine.arrays import Bytes

@@ -16,7 +16,7 @@ from app.motion.displayed_frame import (
     hang_shown as hang_shown,
     show as show,
 )
-from app.motion.extents import (
+from app.motion.extents.extent import (
     BoundingBox as BoundingBox,
     bounding_box as bounding_box,
     extent_key as extent_key,
@@ -33,24 +33,26 @@ from app.motion.inbetween_jobs import (
     CacheUpdate as CacheUpdate,
     SeriesBuild as SeriesBuild,
 )
-from app.motion.inbetweens import (
-    Animation as Animation,
+from app.motion.inbetweens.animation import Animation as Animation
+from app.motion.inbetweens.frame_corrector import (
     BaseMotionFrame as BaseMotionFrame,
-    ParentMotion as ParentMotion,
-    PoseSampler as PoseSampler,
     needs_correction as needs_correction,
 )
-from app.motion.parenting import (
-    ParentTransforms as ParentTransforms,
+from app.motion.inbetweens.pose_sampler import PoseSampler as PoseSampler
+from app.motion.inbetweens.spring_offsets import ParentMotion as ParentMotion
+from app.motion.parenting.attach import (
     anchor_or_default as anchor_or_default,
     attach_in_place as attach_in_place,
+    reparent_in_place as reparent_in_place,
+)
+from app.motion.parenting.parent_transforms import (
+    ParentTransforms as ParentTransforms,
     find_parent_motion as find_parent_motion,
     hung_animations as hung_animations,
     layer_animation as layer_animation,
     parenting_key as parenting_key,
-    reparent_in_place as reparent_in_place,
 )
-from app.motion.tracing import MotionPaths as MotionPaths, trace_paths as trace_paths
+from app.motion.tracing.motion_paths import MotionPaths as MotionPaths, trace_paths as trace_paths
 from app.motion.triangle_order import TriangleOrder as TriangleOrder
 from app.motion.vertices import (
     StreamedVertices as StreamedVertices,

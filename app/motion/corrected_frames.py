@@ -5,15 +5,15 @@ from functools import partial
 from typing import NamedTuple
 
 from app.document import Clip, Document, clip_of
-from app.motion.inbetweens import (
+from app.motion.inbetweens.frame_corrector import (
     BaseMotionFrame,
     FrameCorrector,
-    PoseSampler,
-    SecondaryCorrection,
     have_same_base_frames,
     needs_correction,
 )
-from app.motion.parenting import find_parent_motion
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.parenting.parent_transforms import find_parent_motion
 
 BATCH = 2  # corrected frames per job, so that the worker soon takes more urgent jobs
 BASE_FRAMES_AT_ONCE = 6  # base frames per job

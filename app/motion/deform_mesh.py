@@ -9,7 +9,9 @@ from app.document import Pose
 from app.motion.triangle_order import TriangleOrder
 from engine.arrays import Booleans, Complexes, Floats, Integers
 from engine.domain import MeshedDomain
-from engine.domain.meshing import Mesh, copy_draw_order, triangulate
+from engine.domain.meshing.draw_order import copy_draw_order
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
 from engine.maps import Span
 
 # Triangles of the coarse meshes of all layers together, used while the full meshes are too slow,

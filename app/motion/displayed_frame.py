@@ -20,8 +20,9 @@ from app.motion.corrected_frames import CorrectedFrames
 from app.motion.deform_mesh import DeformMesh, MeshPoints
 from app.motion.inbetween_cache import InbetweenCache
 from app.motion.inbetween_jobs import SingleFrame
-from app.motion.inbetweens import SecondaryCorrection
-from app.motion.parenting import ParentTransforms, PivotFrame, compose_chain, parent_links
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.parenting.chain import PivotFrame, compose_chain, parent_links
+from app.motion.parenting.parent_transforms import ParentTransforms
 from app.motion.vertices import StreamedVertices, Vertices
 from engine.arrays import Complexes
 from engine.domain import MeshedDomain

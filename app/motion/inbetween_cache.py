@@ -28,13 +28,10 @@ from app.motion.inbetween_jobs import (
     compute_frame,
     compute_segments,
 )
-from app.motion.inbetweens import (
-    PoseSampler,
-    SecondaryCorrection,
-    SegmentKey,
-    needs_correction,
-    segment_key,
-)
+from app.motion.inbetweens.frame_corrector import needs_correction
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.secondary_correction import SecondaryCorrection
+from app.motion.inbetweens.segment_keys import SegmentKey, segment_key
 from app.motion.vertices import StreamedVertices, VertexArray, Vertices
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, InteriorKnot

@@ -7,7 +7,8 @@ import numpy as np
 
 from app.document import Clip, DepthPoint, depth_points_at
 from engine.arrays import Floats, Integers
-from engine.domain.meshing import Mesh, sort_by_depth, spread_depth
+from engine.domain.meshing.depth import sort_by_depth, spread_depth
+from engine.domain.meshing.mesh import Mesh
 
 _KEPT: Final = 8  # cached sets of depths per mesh: about as many as an animation alternates between
 

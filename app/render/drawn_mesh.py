@@ -3,14 +3,9 @@
 import moderngl
 
 from app.motion import StreamedVertices, Vertices
-from app.render.gpu import (
-    GpuMesh,
-    PosedMesh,
-    PositionBuffer,
-    SeriesBuffer,
-    is_software,
-    to_float32_points,
-)
+from app.render.gpu.context import is_software
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
+from app.render.gpu.series_buffer import SeriesBuffer
 from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
 from engine.streaming import MOST_ROWS, Series
 

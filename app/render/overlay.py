@@ -6,7 +6,7 @@ from typing import Final
 import moderngl
 import numpy as np
 
-from app.render.gpu import Programs, ShaderFiles, set_uniforms
+from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
 from app.render.scene import Disc, Line
 from app.render.view import View
 from engine.arrays import Singles

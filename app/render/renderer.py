@@ -8,7 +8,9 @@ import moderngl
 
 from app.document import BlendMode, CompositeGroup
 from app.render.colormap import heat_colormap
-from app.render.gpu import PosedMesh, Programs, RenderTarget, ShaderFiles
+from app.render.gpu.mesh import PosedMesh
+from app.render.gpu.programs import Programs, ShaderFiles
+from app.render.gpu.target import RenderTarget
 from app.render.overlay import Overlay
 from app.render.scene import Backdrop, Colour, Heat, Painted, Scene, Wireframe
 from app.render.view import View

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from app.document import CompositeGroup
-from app.render.gpu import PosedMesh
+from app.render.gpu.mesh import PosedMesh
 from engine.arrays import Complexes
 
 Colour = tuple[float, float, float, float]

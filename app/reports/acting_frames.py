@@ -4,7 +4,7 @@ import numpy as np
 
 from app.document import Clip, Track, segment_layout, track_cycle
 from engine.arrays import Floats, Indices
-from engine.geometry.kinematics import FADE_FRAMES, frames_to_settle
+from engine.geometry.kinematics.springs import FADE_FRAMES, frames_to_settle
 
 
 def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:

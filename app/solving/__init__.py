@@ -11,12 +11,16 @@ from app.solving.drag_solver import (
     fit_shown_pose as fit_shown_pose,
 )
 from app.solving.flipping import flip_poses as flip_poses, flip_targets as flip_targets
-from app.solving.motion_preset import (
+from app.solving.motion_preset.joints_file import (
     JointsFile as JointsFile,
-    MotionRequest as MotionRequest,
-    MotionSolve as MotionSolve,
-    find_facing as find_facing,
     load_joints as load_joints,
+)
+from app.solving.motion_preset.motion_request import (
+    MotionRequest as MotionRequest,
+    find_facing as find_facing,
+)
+from app.solving.motion_preset.motion_solve import (
+    MotionSolve as MotionSolve,
     start_motion_solve as start_motion_solve,
     step_motion_solve as step_motion_solve,
 )
@@ -26,5 +30,5 @@ from app.solving.pose_transfer import (
 )
 from app.solving.replace_picture import start_picture_replacement as start_picture_replacement
 from app.solving.resolve_keys import KeyResolver as KeyResolver, step_resolver as step_resolver
-from app.solving.script import load_pose_script as load_pose_script
+from app.solving.script.pose_script import load_pose_script as load_pose_script
 from app.solving.script_solver import pose_document as pose_document

@@ -21,7 +21,8 @@ from app.document import (
 )
 from app.errors import LissomError, join_names
 from app.motion import ParentTransforms, anchor_or_default, reparent_in_place
-from app.solving.script import LayerScript, PoseScript, ScriptAttachment
+from app.solving.script.layers import ScriptAttachment
+from app.solving.script.pose_script import LayerScript, PoseScript
 
 
 def find_layer(document: Document, name: str) -> Layer:

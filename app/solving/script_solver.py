@@ -24,7 +24,7 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.solving.drag_solver import DragSolver, Rig
-from app.solving.script import LayerScript, PoseKey, PoseScript
+from app.solving.script.pose_script import LayerScript, PoseKey, PoseScript
 from app.solving.script_scene import (
     find_layer,
     warn_invisible_layers,

@@ -27,29 +27,31 @@ from app.storage.autosave import (
     remove_report as remove_report,
     write_report as write_report,
 )
-from app.storage.files import (
-    IS_FILE as IS_FILE,
-    IS_FOLDER as IS_FOLDER,
+from app.storage.files.arrays import (
     NO_ARRAYS as NO_ARRAYS,
-    NO_FOLDER as NO_FOLDER,
-    NOT_FINITE as NOT_FINITE,
-    SAME_FILE as SAME_FILE,
-    Cancellation as Cancellation,
-    FileLock as FileLock,
-    FileLockedError as FileLockedError,
+    read_arrays as read_arrays,
+    write_arrays as write_arrays,
+)
+from app.storage.files.atomic import (
     atomic_file as atomic_file,
     atomic_files as atomic_files,
-    check_writable as check_writable,
-    lock as lock,
-    make_folder as make_folder,
-    read_arrays as read_arrays,
-    read_file as read_file,
     remove_abandoned_files as remove_abandoned_files,
-    strict_json as strict_json,
     temporary_picture as temporary_picture,
-    write_arrays as write_arrays,
     write_atomically as write_atomically,
 )
+from app.storage.files.cancellation import Cancellation as Cancellation
+from app.storage.files.file_lock import FileLock as FileLock, FileLockedError as FileLockedError
+from app.storage.files.locks import lock as lock
+from app.storage.files.outputs import (
+    IS_FILE as IS_FILE,
+    IS_FOLDER as IS_FOLDER,
+    NO_FOLDER as NO_FOLDER,
+    SAME_FILE as SAME_FILE,
+    check_writable as check_writable,
+    make_folder as make_folder,
+)
+from app.storage.files.reading import read_file as read_file
+from app.storage.files.strict_json import NOT_FINITE as NOT_FINITE, strict_json as strict_json
 from app.storage.json_values import (
     JsonObject as JsonObject,
     as_flag as as_flag,
@@ -80,18 +82,24 @@ from app.storage.opening import (
     cut_picture as cut_picture,
     open_picture as open_picture,
 )
-from app.storage.pictures import (
+from app.storage.pictures.layered import (
     ImportedLayer as ImportedLayer,
     LayeredPicture as LayeredPicture,
+)
+from app.storage.pictures.mmap_pixels import (
+    move_to_disk as move_to_disk,
+    release_pages as release_pages,
+)
+from app.storage.pictures.parallel import (
+    require_memory as require_memory,
+    run_parallel as run_parallel,
+)
+from app.storage.pictures.picture import (
     Picture as Picture,
     decode_mask as decode_mask,
     decode_picture as decode_picture,
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
-    move_to_disk as move_to_disk,
-    release_pages as release_pages,
-    require_memory as require_memory,
-    run_parallel as run_parallel,
 )
 from app.storage.preferences import (
     CHECKER as CHECKER,

@@ -16,7 +16,9 @@ from typing import NamedTuple
 
 from app.document import Document
 from app.errors import LissomError, display_name
-from app.storage.files import is_locked, lock, read_file, write_atomically
+from app.storage.files.atomic import write_atomically
+from app.storage.files.locks import is_locked, lock
+from app.storage.files.reading import read_file
 from app.storage.preferences import make_settings_folder
 from app.storage.project_file import load_member, load_project, save_project
 

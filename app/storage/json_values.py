@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import Any, TypeVar
 
 from app.errors import LissomError, display_name
-from app.storage.files import read_file
+from app.storage.files.reading import read_file
 
 Parsed = TypeVar("Parsed")
 

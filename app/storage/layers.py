@@ -20,19 +20,13 @@ from app.document import (
     new_layer,
 )
 from app.errors import LissomError, NoticeCollector, display_name
-from app.storage.files import read_file
+from app.storage.files.reading import read_file
 from app.storage.opening import OpenedScene, build_scene, cut_picture
-from app.storage.pictures import (
-    ImportedLayer,
-    LayeredPicture,
-    Picture,
-    UniqueNames,
-    decode_pictures,
-    encode_png,
-    read_openraster,
-    read_photoshop,
-    run_parallel,
-)
+from app.storage.pictures.layered import ImportedLayer, LayeredPicture, UniqueNames, encode_png
+from app.storage.pictures.openraster import read_openraster
+from app.storage.pictures.parallel import run_parallel
+from app.storage.pictures.photoshop import read_photoshop
+from app.storage.pictures.picture import Picture, decode_pictures
 from engine.arrays import Bytes, readonly
 from engine.domain import CutOut, build_domain, rectangle_domain
 from engine.errors import EngineError

@@ -8,8 +8,8 @@ from typing import NamedTuple, Self
 
 from app.document import Document, Meshing, PictureFile, new_layer
 from app.errors import display_name
-from app.storage.files import read_file
-from app.storage.pictures import Picture, decode_picture
+from app.storage.files.reading import read_file
+from app.storage.pictures.picture import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
 from engine.domain import CutOut, HoleMap, Mask, build_domain, find_holes, subject_mask, texture
 from engine.errors import EngineError

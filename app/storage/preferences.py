@@ -12,7 +12,8 @@ from typing import Any, Literal
 from app.document import LINEAR, Easing
 from app.errors import LissomError
 from app.export_formats import expand_colour
-from app.storage.files import read_file, write_atomically
+from app.storage.files.atomic import write_atomically
+from app.storage.files.reading import read_file
 
 ThemeName = Literal["dark", "light"]
 SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0

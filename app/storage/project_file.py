@@ -22,25 +22,12 @@ from weakref import WeakSet
 
 from app.document import Document, Layer
 from app.errors import EXPECTED_ERRORS, LissomError, shortened
-from app.storage.files import (
-    DAMAGED_ZIP,
-    open_file,
-    open_zip,
-    sync_folder,
-    tail_digest,
-    write_atomically,
-)
+from app.storage.files.atomic import sync_folder, write_atomically
+from app.storage.files.reading import DAMAGED_ZIP, open_file, open_zip, tail_digest
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, check_repeated_fields
-from app.storage.project import (
-    MEBIBYTE,
-    NO_PROJECT,
-    SCHEMA,
-    Archive,
-    layer_members,
-    read_document,
-    write_archive,
-    write_document,
-)
+from app.storage.project.archive import MEBIBYTE, NO_PROJECT, Archive, write_archive
+from app.storage.project.document_json import SCHEMA, read_document, write_document
+from app.storage.project.members import layer_members
 
 LARGEST_JSON = 32 * MEBIBYTE
 # In project.json. A thousand keys of a hundred handles have this many.

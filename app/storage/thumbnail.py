@@ -8,8 +8,9 @@ import numpy as np
 from PIL import Image, ImageSequence
 
 from app.errors import LissomError
-from app.storage.files import open_file
-from app.storage.pictures import DECODER_ERRORS, FORMATS, apply_orientation, release_pages
+from app.storage.files.reading import open_file
+from app.storage.pictures.mmap_pixels import release_pages
+from app.storage.pictures.picture import DECODER_ERRORS, FORMATS, apply_orientation
 from app.storage.project_file import load_thumbnail
 from engine.arrays import Bytes, readonly
 

@@ -7,7 +7,7 @@ from typing import Literal
 from imgui_bundle import hello_imgui, imgui
 
 from app.editor import Action, Project, Session
-from app.ui.style import Look
+from app.ui.style.theme import Look
 
 
 @dataclass(frozen=True, slots=True, eq=False)

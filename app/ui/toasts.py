@@ -3,8 +3,9 @@
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
-from app.editor.actions import dismiss_toast
-from app.ui.style import TOAST, Look, colour_u32, small_text
+from app.editor.actions.viewing import dismiss_toast
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import TOAST, small_text
 
 SECONDS = {"info": 5.0, "good": 8.0, "error": 15.0}
 FADE = 0.25  # seconds

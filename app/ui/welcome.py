@@ -16,19 +16,9 @@ from app.editor import Action, Session, do
 from app.editor.actions import files, tutorials
 from app.errors import display_name
 from app.render import Thumbnail
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import (
-    LARGE,
-    SMALL,
-    TITLE,
-    Look,
-    bold_text,
-    colour_u32,
-    main_button,
-    push_text_size,
-    show_picture,
-    text_button,
-)
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.theme import LARGE, SMALL, TITLE, Look, colour_u32
+from app.ui.style.widgets import bold_text, main_button, push_text_size, show_picture, text_button
 
 CARD, TALL, GAP, ROW = 11.5, 11.2, 1.0, 2.5  # em
 FIRST, FOOT = 6.4, 3.5  # em: height of the first card, and of the text on the other cards

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from scipy.spatial import cKDTree
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, as_points, freeze
-from engine.domain.meshing import Mesh, sides_of
+from engine.domain.meshing.mesh import Mesh, sides_of
 from engine.errors import EngineError
 from engine.geometry import as_xy
 from engine.paths import MESH_POINTS, SpanningTree, breadth_first_parents, depth_first_numbering

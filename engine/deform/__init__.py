@@ -12,14 +12,15 @@ from engine.deform.handles import (
     HandleTargets as HandleTargets,
     require_held as require_held,
 )
-from engine.deform.interior_point import ActiveBound as ActiveBound, StartingPoint as StartingPoint
-from engine.deform.model import (
-    Objective as Objective,
-    limits_inside as limits_inside,
+from engine.deform.interior_point.optimality import ActiveBound as ActiveBound
+from engine.deform.interior_point.search import StartingPoint as StartingPoint
+from engine.deform.model.hessian import projected_hessian as projected_hessian
+from engine.deform.model.inner_limits import limits_inside as limits_inside
+from engine.deform.model.newton import (
     line_search as line_search,
     newton_direction as newton_direction,
-    projected_hessian as projected_hessian,
 )
+from engine.deform.model.objective import Objective as Objective
 from engine.deform.pulls import (
     MAX_PULL_FORCE as MAX_PULL_FORCE,
     BoundedPull as BoundedPull,

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats, Indices, readonly
-from engine.deform.model import (
+from engine.deform.model.barrier import interpolate_duals
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.newton import (
     Direction,
-    Evaluation,
-    Objective,
     Preconditioner,
-    interpolate_duals,
     line_search,
     preconditioned_direction,
 )
+from engine.deform.model.objective import Objective
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds, certify_segments
 
 # No point of the shape moves farther (of L) in one step: removed handles make no jump.

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 from engine.deform.handles import Handles, HandleTargets
-from engine.deform.model import Evaluation, Objective
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.objective import Objective
 from engine.deform.state import State
 from engine.maps import Boundary, HarmonicMap, LocalBounds
 

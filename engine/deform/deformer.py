@@ -12,7 +12,7 @@ import numpy as np
 from engine.arrays import Complexes, as_count, require_kind
 from engine.deform.constrained_shape import ConstrainedShape
 from engine.deform.handles import TARGET_COUNT, HandleTargets
-from engine.deform.interior_point import StartingPoint
+from engine.deform.interior_point.search import StartingPoint
 from engine.deform.minimisation import advance_searches, begin_searches
 from engine.deform.state import State, Status
 from engine.deform.tracking import take_drag_step

@@ -15,16 +15,12 @@ import numpy as np
 
 from engine.deform.constrained_shape import ConstrainedShape
 from engine.deform.handles import HandleTargets
-from engine.deform.interior_point import (
-    MOST_STEPS,
-    WORTH_A_JUMP,
-    Search,
-    StartingPoint,
-    advance_search,
-    begin_search,
-    exceed_first_level,
-)
-from engine.deform.model import MARGIN, BarrierBounds, Evaluation, Objective
+from engine.deform.interior_point.continuation import advance_search, begin_search
+from engine.deform.interior_point.homotopy import exceed_first_level
+from engine.deform.interior_point.search import MOST_STEPS, WORTH_A_JUMP, Search, StartingPoint
+from engine.deform.model.barrier import MARGIN, BarrierBounds
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.objective import Objective
 from engine.deform.state import State, Statistics, Status
 from engine.deform.trust_region import (
     LEAST_RESTING,

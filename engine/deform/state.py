@@ -5,8 +5,10 @@ from enum import Enum
 
 from engine.arrays import Floats
 from engine.deform.handles import Handles, HandleTargets
-from engine.deform.interior_point import ActiveBound, Search, StartingPoint
-from engine.deform.model import Evaluation, Preconditioner
+from engine.deform.interior_point.optimality import ActiveBound
+from engine.deform.interior_point.search import Search, StartingPoint
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.newton import Preconditioner
 from engine.deform.trust_region import BarrierSchedule
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds
 

@@ -17,7 +17,9 @@ from engine.arrays import Floats
 from engine.deform.certified_step import CertifiedStep, add_samples, take_certified_step
 from engine.deform.constrained_shape import ConstrainedShape
 from engine.deform.handles import HandleTargets
-from engine.deform.model import Barrier, Evaluation, Objective
+from engine.deform.model.barrier import Barrier
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.objective import Objective
 from engine.deform.state import State, Statistics, Status
 from engine.deform.trust_region import (
     BarrierSchedule,

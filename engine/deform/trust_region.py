@@ -11,7 +11,8 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats
 from engine.deform.handles import Handles, HandleTargets
-from engine.deform.model import MARGIN, BarrierBounds, Evaluation
+from engine.deform.model.barrier import MARGIN, BarrierBounds
+from engine.deform.model.evaluation import Evaluation
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds, segment_enclosures
 
 # Trust region: a handle is pulled towards a point at most this far (of L) ahead of it, and turned

@@ -6,12 +6,10 @@ suggested handles, and suggested joints of a body.
 Imports: `engine.geometry`.
 """
 
-from engine.domain.anatomy import (
-    SuggestedHandle as SuggestedHandle,
-    guess_kind as guess_kind,
-    suggest_handles as suggest_handles,
-    suggest_joints as suggest_joints,
-)
+from engine.domain.anatomy.handle_places import suggest_handles as suggest_handles
+from engine.domain.anatomy.joints import suggest_joints as suggest_joints
+from engine.domain.anatomy.kind_guess import guess_kind as guess_kind
+from engine.domain.anatomy.names import SuggestedHandle as SuggestedHandle
 from engine.domain.build import (
     MOST_TRIANGLES as MOST_TRIANGLES,
     MeshedDomain as MeshedDomain,
@@ -23,20 +21,16 @@ from engine.domain.build import (
     texture_coordinates as texture_coordinates,
 )
 from engine.domain.closed_cuts import ClosedCuts as ClosedCuts, find_closed_cuts as find_closed_cuts
-from engine.domain.outline import (
-    CUT_WIDTH as CUT_WIDTH,
-    HoleMap as HoleMap,
-    find_holes as find_holes,
-)
-from engine.domain.picture import (
+from engine.domain.outline.cuts import CUT_WIDTH as CUT_WIDTH
+from engine.domain.outline.holes import HoleMap as HoleMap, find_holes as find_holes
+from engine.domain.picture.cut_out import (
     MOST_STROKE_POINTS as MOST_STROKE_POINTS,
     CutLine as CutLine,
     CutOut as CutOut,
     Mask as Mask,
     Stroke as Stroke,
-    Subject as Subject,
-    subject_mask as subject_mask,
 )
+from engine.domain.picture.mask import Subject as Subject, subject_mask as subject_mask
 from engine.domain.validity import (
     MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
     require_domain as require_domain,

@@ -8,9 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Bytes, Complexes, Floats, as_count, as_number, as_points, as_tuple
-from engine.domain.meshing import Mesh, order_branches_on_top, triangulate
-from engine.domain.outline import MARGINS, Detail, enclose_subject, make_hole, offset_cage
-from engine.domain.picture import CutOut, Subject, matte_picture, subject_mask
+from engine.domain.meshing.draw_order import order_branches_on_top
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
+from engine.domain.outline.cage import offset_cage
+from engine.domain.outline.enclosure import MARGINS, Detail, enclose_subject
+from engine.domain.outline.holes import make_hole
+from engine.domain.picture.cut_out import CutOut
+from engine.domain.picture.mask import Subject, subject_mask
+from engine.domain.picture.matte import matte_picture
 from engine.errors import EngineError
 from engine.geometry import (
     Domain,

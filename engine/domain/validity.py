@@ -4,8 +4,8 @@ import numpy as np
 
 from engine.arrays import Complexes, Integers
 from engine.domain.build import MOST_TRIANGLES, MeshedDomain
-from engine.domain.meshing import sides_of
-from engine.domain.outline import LARGEST_OUTLINE
+from engine.domain.meshing.mesh import sides_of
+from engine.domain.outline.enclosure import LARGEST_OUTLINE
 from engine.errors import EngineError
 from engine.geometry import (
     ON_OUTLINE,

@@ -6,20 +6,20 @@ proof that the in-betweens keep their bounds.
 Imports: `engine.paths`, `engine.dirichlet`, `engine.maps`.
 """
 
-from engine.interpolation.added.pins import (
+from engine.interpolation.added.pins.evaluated import SpanBasis as SpanBasis
+from engine.interpolation.added.pins.pinning import (
     CorrectionBase as CorrectionBase,
     CorrectionSeries as CorrectionSeries,
-    SegmentPins as SegmentPins,
-    SpanBasis as SpanBasis,
 )
-from engine.interpolation.blends import BLENDS as BLENDS
+from engine.interpolation.added.pins.targets import SegmentPins as SegmentPins
+from engine.interpolation.blends.table import BLENDS as BLENDS
 from engine.interpolation.inbetweens import Frame as Frame, Inbetweens as Inbetweens
-from engine.interpolation.keyframe_blend import (
-    KeyframeBlend as KeyframeBlend,
+from engine.interpolation.keyframe_blend.derivatives import KeyframeBlend as KeyframeBlend
+from engine.interpolation.keyframe_blend.keyframe_samples import (
     KeyframeSamples as KeyframeSamples,
-    KeyframeSegment as KeyframeSegment,
     sample_keyframes as sample_keyframes,
 )
+from engine.interpolation.keyframe_blend.segment import KeyframeSegment as KeyframeSegment
 from engine.interpolation.one_segment import (
     evaluate_base as evaluate_base,
     frame_at as frame_at,
@@ -34,24 +34,26 @@ from engine.interpolation.preparation import (
     require_keyframes as require_keyframes,
     segment_at as segment_at,
 )
-from engine.interpolation.proof import (
+from engine.interpolation.proof.bisection import Proof as Proof, prove as prove
+from engine.interpolation.proof.frame_correction import (
     FrameCorrection as FrameCorrection,
-    Proof as Proof,
     correct_frame as correct_frame,
-    prove as prove,
 )
 from engine.interpolation.sampled_domain import (
     SampledDomain as SampledDomain,
     sample_domain as sample_domain,
 )
-from engine.interpolation.scaling import (
-    KeyframeExtremes as KeyframeExtremes,
-    PointSamples as PointSamples,
-    SmoothedRho as SmoothedRho,
+from engine.interpolation.scaling.exact_rho import (
     blend_in_outline_bounds as blend_in_outline_bounds,
 )
-from engine.interpolation.series import chebyshev as chebyshev, finish as finish
-from engine.interpolation.time_weights import (
+from engine.interpolation.scaling.pointwise import (
+    KeyframeExtremes as KeyframeExtremes,
+    PointSamples as PointSamples,
+)
+from engine.interpolation.scaling.smoothed_rho import SmoothedRho as SmoothedRho
+from engine.interpolation.series import chebyshev as chebyshev
+from engine.interpolation.series.chebyshev import finish as finish
+from engine.interpolation.time_weights.weights import (
     EndCondition as EndCondition,
     InteriorKnot as InteriorKnot,
     Tangent as Tangent,

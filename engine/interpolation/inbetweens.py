@@ -7,13 +7,14 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, nbytes_of
-from engine.interpolation.added import Closing
-from engine.interpolation.added.pins import CorrectionSeries, EvaluatedCorrection, Mixing, SpanBasis
-from engine.interpolation.blends import Blend
-from engine.interpolation.keyframe_blend import Derivatives, KeyframeBlend, weighted_sum
+from engine.interpolation.added.closing import Closing
+from engine.interpolation.added.pins.evaluated import EvaluatedCorrection, Mixing, SpanBasis
+from engine.interpolation.added.pins.pinning import CorrectionSeries
+from engine.interpolation.blends.blend import Blend
+from engine.interpolation.keyframe_blend.derivatives import Derivatives, KeyframeBlend, weighted_sum
 from engine.interpolation.sampled_domain import SampledDomain
-from engine.interpolation.scaling import SmoothedRho
-from engine.interpolation.series import Residual
+from engine.interpolation.scaling.smoothed_rho import SmoothedRho
+from engine.interpolation.series.residual import Residual
 from engine.maps import Boundary, Bounds, distortion
 
 
@@ -55,7 +56,7 @@ class PointValues(NamedTuple):
     """An in-between at the value points (v,), or at times (t,) there, (t, v).
 
     `fz` and `g` are f_z and conj(f_z̄). `k` is K, which multiplies the q of a further correction
-    (`engine.deform.correction.BaseFrame`).
+    (`engine.deform.correction.frame.BaseFrame`).
     """
 
     fz: Complexes

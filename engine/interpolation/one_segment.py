@@ -5,19 +5,21 @@ from functools import partial
 import numpy as np
 
 from engine.arrays import Complexes
-from engine.deform.correction import BaseFrame, PointCorrector
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame
 from engine.errors import EngineError
-from engine.interpolation.added.pins import (
+from engine.interpolation.added.pins.pinning import (
     CorrectionBase,
     CorrectionSeries,
-    SegmentPins,
     fit_pin_corrections,
 )
-from engine.interpolation.blends import BLENDS, Blend
+from engine.interpolation.added.pins.targets import SegmentPins
+from engine.interpolation.blends.blend import Blend
+from engine.interpolation.blends.table import BLENDS
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.keyframe_blend import KeyframeSegment
+from engine.interpolation.keyframe_blend.segment import KeyframeSegment
 from engine.interpolation.sampled_domain import SampledDomain
-from engine.interpolation.scaling import SmoothedRho
+from engine.interpolation.scaling.smoothed_rho import SmoothedRho
 from engine.maps import Bounds
 from engine.variant import Variant
 

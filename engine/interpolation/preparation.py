@@ -9,17 +9,14 @@ import numpy.typing as npt
 from engine.arrays import as_number, as_tuple, nbytes_of, require_kind
 from engine.dirichlet import Extension, HilbertTransform
 from engine.errors import EngineError
-from engine.interpolation.blends import BLENDS
+from engine.interpolation.blends.table import BLENDS
 from engine.interpolation.inbetweens import Frame, Inbetweens
-from engine.interpolation.keyframe_blend import (
-    KeyframeBlend,
-    KeyframeSamples,
-    KeyframeSegment,
-    sample_keyframes,
-)
+from engine.interpolation.keyframe_blend.derivatives import KeyframeBlend
+from engine.interpolation.keyframe_blend.keyframe_samples import KeyframeSamples, sample_keyframes
+from engine.interpolation.keyframe_blend.segment import KeyframeSegment
 from engine.interpolation.one_segment import prepare_inbetweens
 from engine.interpolation.sampled_domain import SampledDomain, sample_domain
-from engine.interpolation.time_weights import InteriorKnot, Tangent, TimeWeights
+from engine.interpolation.time_weights.weights import InteriorKnot, Tangent, TimeWeights
 from engine.maps import Boundary, Bounds, HarmonicMap
 from engine.paths import root_sheets
 from engine.variant import Variant

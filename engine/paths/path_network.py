@@ -14,7 +14,7 @@ from scipy import ndimage
 from scipy.sparse import csr_array
 
 from engine.arrays import Booleans, Complexes, Indices, Integers, ragged_indices
-from engine.domain.meshing import Mesh, sides_of
+from engine.domain.meshing.mesh import Mesh, sides_of
 from engine.errors import EngineError
 from engine.geometry import (
     ON_OUTLINE,

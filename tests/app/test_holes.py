@@ -18,7 +18,7 @@ from app.reports import certify_clip
 from app.solving.drag_solver import fit_map
 from app.storage import load_project, save_project
 from engine.domain import CutOut, MeshedDomain, build_domain, require_domain
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from app.storage import decode_picture, sample_images
 from engine.domain import build_domain
-from engine.domain.meshing import triangulate
-from engine.domain.outline import enclose_subject
-from engine.domain.picture import matte_picture, subject_mask
+from engine.domain.meshing.triangulation import triangulate
+from engine.domain.outline.enclosure import enclose_subject
+from engine.domain.picture.mask import subject_mask
+from engine.domain.picture.matte import matte_picture
 from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
 from tests.bench.memory import most_held
 from tests.bench.table import Row, Table, measure

@@ -30,7 +30,8 @@ from app.export.writers.png import encode_png
 from app.export_formats import EXPORT_FORMATS
 from app.motion import Animation, bounding_box
 from app.render import Renderer
-from app.render.gpu import RenderTarget, create_context
+from app.render.gpu.context import create_context
+from app.render.gpu.target import RenderTarget
 from app.storage import decode_picture, load_project, sample_images, save_project
 from engine.arrays import Complexes
 from engine.domain import build_domain

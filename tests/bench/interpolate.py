@@ -11,7 +11,8 @@ from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import CutOut, MeshedDomain, build_domain
-from engine.domain.meshing import Mesh, triangulate
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
 from engine.interpolation import (
     Inbetweens,
     KeyframeBlend,

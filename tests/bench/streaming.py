@@ -10,19 +10,16 @@ import numpy as np
 from app.document import Document, Layer, Meshing, Pose, Variant
 from app.motion import PoseSampler
 from app.render import Renderer, Scene, fit_view
-from app.render.gpu import (
-    GpuMesh,
-    GpuPicture,
-    PosedMesh,
-    PositionBuffer,
-    RenderTarget,
-    SeriesBuffer,
-    create_context,
-)
+from app.render.gpu.context import create_context
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer
+from app.render.gpu.picture import GpuPicture
+from app.render.gpu.series_buffer import SeriesBuffer
+from app.render.gpu.target import RenderTarget
 from app.solving import load_pose_script, pose_document
 from app.storage import open_picture, sample_images
 from engine.arrays import Singles
-from engine.domain.meshing import Mesh, triangulate
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
 from engine.interpolation import Inbetweens
 from engine.maps import distortion
 from engine.streaming import Distortions, Positions, Series, build_series, finish

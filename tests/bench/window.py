@@ -15,7 +15,7 @@ from app.document import Meshing, Target, Variant, clip_of
 from app.editor import LayerRuntime, Project
 from app.editor.actions import files, playback
 from app.storage import decode_picture, load_project, sample_images
-from app.ui.window import limit_arenas
+from app.ui.window.memory import limit_arenas
 from app.ui.window.window import SIZE
 from engine.domain import mesh_inside
 from tests.bench.stage import crowded, idle, start

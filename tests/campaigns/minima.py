@@ -14,8 +14,9 @@ from PIL import Image, ImageDraw
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes
 from engine.deform import Deformer, Handles, Objective, Status
-from engine.deform.interior_point import StartingPoint, advance_search, begin_search
-from engine.deform.model import MARGIN
+from engine.deform.interior_point.continuation import advance_search, begin_search
+from engine.deform.interior_point.search import StartingPoint
+from engine.deform.model.barrier import MARGIN
 from engine.deform.trust_region import align_rigidly
 from engine.domain import build_domain
 from engine.geometry import contains

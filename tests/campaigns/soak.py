@@ -20,10 +20,13 @@ from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, FrameRange, Meshing
-from app.editor.actions import editing, exporting, playback, posing, saving, viewing
-from app.editor.layering import attach_layer, set_active_layer
+from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.parenting import attach_layer
 from app.export_formats import EXPORT_FORMATS, MeshOptions
-from app.render.gpu import finish_drawing
+from app.render.gpu.context import finish_drawing
 from app.storage.assets import sample_images
 from app.ui.window.memory import REST, limit_arenas
 
@@ -120,7 +123,7 @@ def make_scene(window: Harness, folder: Path) -> Path:
     for layer, places in ((body, (50 + 20j, 50 + 95j)), (arm, (70 + 67j, 140 + 67j))):
         window.act(set_active_layer, layer)
         for place in places:
-            window.act(posing.add_handle, place)
+            window.act(add_handle, place)
             window.settle()
     attach_layer(window.session, arm, body)
     window.settle()
@@ -129,7 +132,7 @@ def make_scene(window: Harness, folder: Path) -> Path:
         window.settle()
         handle = project.layer.handles[-1]
         target = Target(position=handle.position + 20j * (frame / 12 - 1.5))
-        posing.set_targets(window.session, {handle.id: target})
+        set_targets(window.session, {handle.id: target})
         window.settle()
     saving.write_project(window.session, folder / "scene.lissom", None)
     window.settle()
@@ -184,9 +187,9 @@ def drag(window: Harness, rng: np.random.Generator) -> None:
     way = complex(*(8 * rng.normal(size=2)))
     for step in range(round(DRAG * RATE)):
         place = handle.position + way * np.sin(step / 9)
-        posing.drag_handles(session, {handle.id: Target(position=place)}, gesture=gesture)
+        drag_handles(session, {handle.id: Target(position=place)}, gesture=gesture)
         window.frames()
-    posing.release_drag(session)
+    release_drag(session)
     window.settle()
 
 

@@ -9,14 +9,20 @@ from shapes import regular_polygon
 from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles
 from engine.dirichlet import HilbertTransform
 from engine.domain import CutOut, build_domain, find_holes, mesh_inside, rectangle_domain
-from engine.domain.material import brush_weights, copy_nearest_stiffness, limb_weights
-from engine.domain.meshing import triangulate
-from engine.domain.outline import enclose_subject
+from engine.domain.material.brush import brush_weights
+from engine.domain.material.limb import limb_weights
+from engine.domain.material.transfer import copy_nearest_stiffness
+from engine.domain.meshing.triangulation import triangulate
+from engine.domain.outline.enclosure import enclose_subject
 from engine.errors import EngineError
 from engine.geometry import Domain, constrained_delaunay, fit_rigid
-from engine.geometry.kinematics import fit_keys, simulate_spring
-from engine.geometry.kinematics.recordings import MOST_FRAMES
-from engine.geometry.motions import MOTIONS, Body, Parameters, find_kind, guess_facing
+from engine.geometry.kinematics.recordings import MOST_FRAMES, fit_keys
+from engine.geometry.kinematics.springs import simulate_spring
+from engine.geometry.motions.body import Body
+from engine.geometry.motions.facing import guess_facing
+from engine.geometry.motions.kinds import find_kind
+from engine.geometry.motions.library.table import MOTIONS
+from engine.geometry.motions.motion import Parameters
 from engine.interpolation import InteriorKnot, TimeWeights, prepare, sample_domain, sample_keyframes
 from engine.maps import Boundary, Bounds, HarmonicMap, derivatives_of
 from engine.streaming import build_morph_targets

@@ -9,16 +9,10 @@ from imgui_bundle import imgui
 from PIL import Image, ImageDraw
 
 from app.document.settings import Meshing
-from app.editor.actions import (
-    cut_out_editing,
-    editing,
-    keys,
-    playback,
-    posing,
-    stiffness_editing,
-    tracks,
-    viewing,
-)
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.timing import keys, tracks
 from app.storage import sample_images
 from tests.manual.film import Film
 from tests.manual.stage import (
@@ -161,7 +155,7 @@ def _record(window: Film, path: Path) -> None:
 def _ears(window: Film, path: Path) -> None:
     """An ear that follows the head."""
     project = open_sample(window, "giraffe", frame=0)
-    window.act(posing.add_handle, EAR)
+    window.act(add_handle, EAR)
     window.settle()
     ear = project.layer.handles[-1]
     window.act(editing.edit_layer, editing.handle_commands.rename_handle, ear.id, "ear")

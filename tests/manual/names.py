@@ -14,7 +14,6 @@ from app.cli.main import COMMANDS, build_parser
 from app.document import BLENDS, LIMIT_PRESETS, PRESETS, SPRING_PRESETS, WEIGHT_PRESETS
 from app.editor.actions import files
 from app.export_formats import EXPORT_FORMATS
-from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.keys import (
     ALT,
     CTRL,
@@ -26,6 +25,7 @@ from app.ui.shortcuts.keys import (
 )
 from app.ui.shortcuts.manual import PAGES
 from app.ui.shortcuts.pointer_help import POINTER_HELP
+from app.ui.shortcuts.table import BINDINGS, MENUS
 
 ROOT = Path(__file__).parents[2]
 ASKED = ROOT / "app" / "ui"  # where what is read on the screen is written

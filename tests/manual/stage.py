@@ -10,8 +10,8 @@ from app.document import Target
 from app.editor.actions import (
     editing,
     playback,
-    posing,
 )
+from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.project import Project
 from app.editor.timeline_view import TimeRangeView
 from tests.manual.film import Film
@@ -90,7 +90,7 @@ def open_calm_dragon(window: Film) -> Project:
     window.act(playback.seek, 36)
     window.settle()
     snout = Target(position=110 + 520j)
-    window.act(posing.set_targets, {handle_named(project, "snout"): snout})
+    window.act(set_targets, {handle_named(project, "snout"): snout})
     window.settle()
     window.act(playback.seek, 0)
     window.act(editing.select_keys, frozenset())

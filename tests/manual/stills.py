@@ -7,16 +7,13 @@ from pathlib import Path
 from harness import Robot
 
 from app.document import Target
-from app.editor import layering
-from app.editor.actions import (
-    cycles,
-    editing,
-    keys,
-    playback,
-    posing,
-    preset_setup,
-    viewing,
-)
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.timing import cycles, keys
+from app.editor.layering.layer_channels import key_camera
+from app.editor.layering.layer_selection import set_active_layer, toggle_tree_row
 from app.editor.poses import copying, library, pasting
 from app.storage import sample_images
 from tests.manual.film import Film
@@ -56,7 +53,7 @@ def _overview(window: Film, path: Path) -> None:
     project = open_sample(window, "dragon", frame=36)
     wishes = {"snout": 90 + 740j, "brow": 270 + 810j}
     window.act(
-        posing.set_targets,
+        set_targets,
         {handle_named(project, name): Target(position=at) for name, at in wishes.items()},
     )
     window.settle()
@@ -104,7 +101,7 @@ def _walk(window: Film, path: Path) -> None:
             handle_named(project, name): Target(position=rests[name] + ways[number])
             for name, ways in WALK.items()
         }
-        window.act(posing.set_targets, wishes)
+        window.act(set_targets, wishes)
         window.settle()
     window.act(playback.seek, 0)
     window.act(copying.copy_pose_or_keys)
@@ -193,7 +190,7 @@ def _layers(window: Film, path: Path) -> None:
     """A child of many layers; the arm hangs on the body."""
     project = open_sample(window, "friend", frame=14)
     arm = next(layer.id for layer in project.document.layers if layer.name == "right arm")
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
     window.act(editing.select_handles, frozenset({handle_named(project, "hand")}))
     window.resize(LAYERED)
     window.show_tab("Layers")
@@ -208,12 +205,12 @@ def _mouths(window: Film, path: Path) -> None:
     window.resize(LAYERED)
     window.show_tab("Layers")
     window.act(
-        layering.toggle_tree_row,
+        toggle_tree_row,
         next(row.toggle for row in project.tree if row.switch_group is not None),
     )
     head = next(layer.id for layer in project.document.layers if layer.name == "head")
     heighten_timeline(window, CHOICE)
-    window.act(layering.set_active_layer, head)
+    window.act(set_active_layer, head)
     _still(window, path)
     heighten_timeline(window, -CHOICE)
 
@@ -223,12 +220,12 @@ def _camera(window: Film, path: Path) -> None:
     open_sample(window, "friend", frame=0)
     window.show_tab("Layers")
     window.act(viewing.set_view, None)
-    window.act(layering.key_camera)
+    window.act(key_camera)
     window.act(playback.seek, 48)
     window.settle()
     whole = project_of(window).view(window.session.screen)
     window.act(viewing.set_view, replace(whole, centre=HEAD, scale=1.9 * whole.scale))
-    window.act(layering.key_camera)
+    window.act(key_camera)
     window.settle()
     window.act(viewing.set_view, None)
     window.act(playback.seek, 30)
@@ -262,7 +259,7 @@ def _limit(window: Film, path: Path) -> None:
     """A nose that is wanted too far away, and what is said of it."""
     project = window.open(sample_images() / "giraffe.png")
     for place in (NOSE, 390 + 540j, 590 + 460j, 352 + 65j, 485 + 80j, 580 + 65j, 265 + 80j):
-        window.act(posing.add_handle, place)
+        window.act(add_handle, place)
     nose = project.layer.handles[0].id
     window.act(editing.edit_layer, editing.handle_commands.rename_handle, nose, "nose")
     window.show_tab("Handle")

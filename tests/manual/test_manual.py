@@ -11,11 +11,11 @@ from chromium import PROGRAM, chromium
 
 from app.cli.main import main
 from app.errors import LissomError
-from app.solving.script import parse_pose_script
+from app.solving.script.pose_script import parse_pose_script
 from app.storage import manual_page
 from app.storage.project import document_json
-from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.manual import PAGES
+from app.ui.shortcuts.table import BINDINGS, MENUS
 from tests.manual import build, motion, names, window
 from tests.readme.shown import shown_now
 

@@ -7,10 +7,10 @@ from harness import Harness, Robot
 
 from app.editor import Jobs, Session
 from app.render import Renderer
-from app.render.gpu import create_context
+from app.render.gpu.context import create_context
 from app.ui.bars.icons import GROUPS
-from app.ui.shortcuts import BINDINGS, MENUS
-from app.ui.window import Window
+from app.ui.shortcuts.table import BINDINGS, MENUS
+from app.ui.window.window import Window
 
 Shown = dict[str, list[str]]
 # How the test engine finds the item of a name.

@@ -6,8 +6,9 @@ from pathlib import Path
 from harness import Harness
 
 from app.document import Target
-from app.editor import layering
-from app.editor.actions import editing, playback, posing, viewing
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.poses import library
 from app.editor.project import Project
 from app.storage import sample_images
@@ -53,7 +54,7 @@ def _posing(window: Harness) -> None:
     """A dragon that looks up, drawn by handles; where it was an in-between, there is a key now."""
     project = open_sample(window, "dragon", frame=36)
     wishes = {handle_named(project, name): Target(position=at) for name, at in LOOK_UP.items()}
-    window.act(posing.set_targets, wishes)
+    window.act(set_targets, wishes)
     window.settle()
     window.act(editing.select_handles, frozenset({handle_named(project, "snout")}))
     window.show_tab("Handle")
@@ -77,7 +78,7 @@ def _layers(window: Harness) -> None:
     """A child of many layers waves: the arms hang on the body, and mouths are seen in turns."""
     project = open_sample(window, "friend", frame=14)
     arm = next(layer.id for layer in project.document.layers if layer.name == "left arm")
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
     window.act(editing.select_handles, frozenset({handle_named(project, "hand")}))
     window.show_tab("Layers")
 

@@ -16,7 +16,7 @@ from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
 from engine.domain.build import MeshedDomain, build_domain
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 from engine.domain.picture.cut_out import CutLine, CutOut
 
 BLOB = soft_blob()  # 120 × 90 pixels, soft edges, bright colours hidden where it is transparent

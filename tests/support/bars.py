@@ -13,12 +13,14 @@ from app.document.keyframe import Target
 from app.document.layer import new_layer
 from app.document.model import Document
 from app.document.settings import FrameRange
-from app.editor.actions import playback, posing
+from app.editor.actions import playback
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
 from app.editor.project import Project
 from app.editor.work.layer_runtime import LayerRuntime
 from app.storage.assets import sample_images
 from engine.domain.build import MeshedDomain
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 
 BENT = 24  # the frame of the key in which it is bent
 LAST, HALF = 8, 4  # frames: of that key in few frames, and half way to it
@@ -37,7 +39,7 @@ def open_bar(window: Harness, *shares: float) -> Project:
     window.settle()
     width, height = project.document.canvas
     for share in shares or (0.1, 0.9):
-        posing.add_handle(window.session, complex(share * width, height / 2))
+        add_handle(window.session, complex(share * width, height / 2))
         window.frames(2)
     window.settle()
     return project
@@ -89,9 +91,7 @@ def bend_bar(
         playback.seek(window.session, BENT)
         window.settle()
         width, height = bar.layer_runtime.picture.size
-        posing.set_targets(
-            window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))}
-        )
+        set_targets(window.session, {1: Target(position=complex(0.85 * width, 0.9 * height))})
     window.settle()
     return bar
 
@@ -106,8 +106,8 @@ def drag_bar(window: Harness, bar: Project) -> complex:
     for share in (0.25, 0.5, 0.75, 1.0):
         window.frames()
         wish = {1: Target(position=place + share * WAY)}
-        posing.drag_handles(window.session, wish, gesture=gesture)
-    posing.release_drag(window.session)
+        drag_handles(window.session, wish, gesture=gesture)
+    release_drag(window.session)
     return place + WAY
 
 

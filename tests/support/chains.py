@@ -8,7 +8,7 @@ from documents import CENTRE, disc_document, inside
 
 from app.document import clip_of, layer_commands as layers
 from app.document.keyframe import Keyframe
-from app.document.layers import Attachment
+from app.document.layers.attachments import Attachment
 from app.document.settings import FrameRange
 from app.motion import Animation, ParentTransforms
 

@@ -6,18 +6,12 @@ from scenes import drawn
 
 from app.document.commands import handle_commands
 from app.document.keyframe import Keyframe
-from app.document.layers import (
-    CameraKey,
-    DrawOrderKey,
-    OpacityKey,
-    SwitchGroup,
-    SwitchKey,
-    TransformKey,
-    VisibilityKey,
-)
+from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
+from app.document.layers.visibility import SwitchGroup, SwitchKey, VisibilityKey
 from app.document.model import Document
 from app.document.settings import FrameRange, Marker
-from app.document.timing import Cycle, Track, TrackKey
+from app.document.timing.cycles import Cycle
+from app.document.timing.tracks import Track, TrackKey
 
 KINDS = ("keys", "tracks", "switches", "cycles", "changes", "turns", "markers", "camera")
 

@@ -6,8 +6,9 @@ import numpy as np
 from interpolation_shapes import around, subdivided
 
 from engine.deform import Deformer, Handles, Objective, State
-from engine.deform.interior_point import Search, StartingPoint, advance_search, begin_search
-from engine.deform.model import MARGIN
+from engine.deform.interior_point.continuation import advance_search, begin_search
+from engine.deform.interior_point.search import Search, StartingPoint
+from engine.deform.model.barrier import MARGIN
 from engine.geometry import Domain
 from engine.maps import Boundary, Bounds
 

@@ -11,33 +11,28 @@ from pictures import blank_png
 from shapes import regular_polygon
 
 from app.document.commands import (
-    Command,
-    filming_commands,
     handle_commands,
     key_commands,
-    layer_commands,
     pose_commands,
     scene_commands,
     shape_commands,
     stiffness_commands,
-    switch_group_commands,
     track_commands,
 )
+from app.document.commands.command import Command
+from app.document.commands.layers import filming_commands, layer_commands, switch_group_commands
 from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, TangentMode, Target
 from app.document.layer import PictureFile, new_layer
-from app.document.layers import (
-    Attachment,
-    CameraKey,
-    DrawOrderKey,
-    Group,
-    OpacityKey,
-    TransformKey,
-    VisibilityKey,
-)
+from app.document.layers.attachments import Attachment
+from app.document.layers.groups import Group
+from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
+from app.document.layers.visibility import VisibilityKey
 from app.document.model import Document
-from app.document.rig import Bone
+from app.document.rig.stiffness import Bone
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
-from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, Track, TrackKey
+from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.timing.springs import Spring
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import ImportLog
 from app.export_formats import EXPORT_FORMATS, MeshOptions, SpriteSheetOptions
 from engine.domain.build import MeshedDomain

@@ -25,7 +25,7 @@ from app.motion import CorrectedFrames
 from app.render.gpu.context import create_context
 from app.render.renderer import Renderer
 from app.storage.preferences import Preferences
-from app.ui.style import FONT_SIZE
+from app.ui.style.theme import FONT_SIZE
 from app.ui.viewport.interaction.gizmos import RADIUS
 from app.ui.viewport.screen import GRIP
 from app.ui.window.window import Window

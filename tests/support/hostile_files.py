@@ -24,10 +24,12 @@ from psd_tools import PSDImage
 
 from app.cli.main import main
 from app.errors import EXPECTED_ERRORS
-from app.solving.script import load_pose_script
+from app.solving.script.pose_script import load_pose_script
 from app.storage.autosave import Autosave, SourceInfo, load_recoverable_file, read_source_info
-from app.storage.files import read_file
-from app.storage.pictures import decode_mask, decode_picture, read_openraster, read_photoshop
+from app.storage.files.reading import read_file
+from app.storage.pictures.openraster import read_openraster
+from app.storage.pictures.photoshop import read_photoshop
+from app.storage.pictures.picture import decode_mask, decode_picture
 from app.storage.preferences import (
     Preferences,
     load_preferences,

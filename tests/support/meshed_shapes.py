@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 from interpolation_shapes import bar, bent
 
-from engine.domain.meshing import Mesh, triangulate
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.meshing.triangulation import triangulate
 from engine.maps import HarmonicMap
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.render.gpu import Context, finish_drawing
+from app.render.gpu.context import Context, finish_drawing
 from app.ui.window.window import SIZE, Window
 from tests.support.draw_lists import DrawLists
 

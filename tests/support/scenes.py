@@ -9,31 +9,34 @@ from documents import random_spring, random_track
 from shapes import regular_polygon
 
 from app.document.commands import (
-    Command,
     cycle_commands,
-    filming_commands,
-    group_commands,
     handle_commands,
-    layer_commands,
     scene_commands,
     shape_commands,
     stiffness_commands,
-    switch_group_commands,
     track_commands,
+)
+from app.document.commands.command import Command
+from app.document.commands.layers import (
+    filming_commands,
+    group_commands,
+    layer_commands,
+    switch_group_commands,
 )
 from app.document.keyframe import Keyframe, LibraryPose, Pose, TangentMode, Target
 from app.document.layer import Layer
-from app.document.layers import Attachment, CameraKey, DrawOrderKey
+from app.document.layers.attachments import Attachment
+from app.document.layers.layer_keys import CameraKey, DrawOrderKey
 from app.document.model import Document
-from app.document.rig import AppliedMotion
+from app.document.rig.applied_motion import AppliedMotion
 from app.document.settings import VARIANTS, FrameRange
-from app.document.timing import PRESETS
+from app.document.timing.easing import PRESETS
 from app.editor import Session
 from app.editor.project import Project
 from app.editor.timeline_view import TrackRow, frames_in
 from app.errors import LissomError
 from app.storage.layers import make_still_layer
-from engine.geometry.motions import Parameters
+from engine.geometry.motions.motion import Parameters
 from engine.maps.certificate import Certificate
 
 LAST = 40  # frame

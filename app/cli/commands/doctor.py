@@ -11,21 +11,12 @@ from app.cli.console import print_line
 from app.errors import LIBRARIES, Extra, LissomError, install_hint
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer, Scene, canvas_view
-from app.render.gpu import (
-    AUTOMATIC,
-    Backend,
-    GlError,
-    GpuMesh,
-    GpuPicture,
-    PosedMesh,
-    PositionBuffer,
-    RenderTarget,
-    create_context,
-    probe_backend,
-    to_float32_points,
-)
+from app.render.gpu.context import AUTOMATIC, Backend, GlError, create_context, probe_backend
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
+from app.render.gpu.picture import GpuPicture
+from app.render.gpu.target import RenderTarget
 from app.reports import describe_machine, library_version
-from app.ui.dialogs import find_system_dialogs
+from app.ui.dialogs.native_dialog import find_system_dialogs
 
 USES: Final[dict[Extra, str]] = {
     "video": ", ".join(name for name, each in EXPORT_FORMATS.items() if each.extra == "video"),

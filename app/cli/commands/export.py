@@ -32,7 +32,7 @@ from app.export import (
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT, FormatSettings, format_by_suffix
 from app.motion import Animation, hung_animations
-from app.render.gpu import create_context
+from app.render.gpu.context import create_context
 from app.storage import cut_picture, decode_picture, load_project
 from engine.arrays import Bytes
 

@@ -26,7 +26,10 @@ from app.storage import (
     save_project,
 )
 from engine.domain import guess_kind, suggest_joints
-from engine.geometry.motions import MOTIONS, Motion, Parameters, find_kind, find_motion
+from engine.geometry.motions.catalogue import find_motion
+from engine.geometry.motions.kinds import find_kind
+from engine.geometry.motions.library.table import MOTIONS
+from engine.geometry.motions.motion import Motion, Parameters
 
 WHOLE = "anything"  # motions of the whole drawing suit any kind
 NO_JOINTS = JointsFile(kind=None, joints={})

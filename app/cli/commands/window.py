@@ -21,7 +21,7 @@ from app.editor import Jobs, Session, error_reports
 from app.editor.actions import files, saving
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
-from app.render.gpu import window_context
+from app.render.gpu.context import window_context
 from app.storage import (
     load_preferences,
     make_settings_folder,
@@ -29,8 +29,9 @@ from app.storage import (
     save_preferences,
     settings_folder,
 )
-from app.ui.dialogs import find_system_dialogs
-from app.ui.window import Window, has_display, limit_arenas
+from app.ui.dialogs.native_dialog import find_system_dialogs
+from app.ui.window.memory import limit_arenas
+from app.ui.window.window import Window, has_display
 
 EXIT_FAILED = 1
 DISPLAY_GONE = "the display is gone"

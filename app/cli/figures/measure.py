@@ -10,7 +10,7 @@ from app.cli.figures.methods import ComparedMethod, Inbetween
 from app.cli.figures.shapes import ShapePair
 from app.reports import divide_by_keys, worst_points
 from engine.arrays import Complexes, Floats
-from engine.domain.meshing import Mesh
+from engine.domain.meshing.mesh import Mesh
 from engine.maps import distortion
 
 TIMES = 41  # of the curves

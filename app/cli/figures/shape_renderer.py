@@ -7,7 +7,10 @@ from typing import Self
 from app.cli.figures.shapes import Shape
 from app.motion import BoundingBox, VertexArray, bounding_box
 from app.render import DrawnMesh, Renderer, Scene, fit_view
-from app.render.gpu import GpuMesh, GpuPicture, RenderTarget, create_context
+from app.render.gpu.context import create_context
+from app.render.gpu.mesh import GpuMesh
+from app.render.gpu.picture import GpuPicture
+from app.render.gpu.target import RenderTarget
 from engine.arrays import Bytes, Complexes
 
 FINER = 2  # samples of a pixel each way

@@ -8,17 +8,14 @@ from app.document.commands.command import command, layer_command
 from app.document.commands.retime import Keys, nearest_frame, sorted_by_frame
 from app.document.keyframe import Keyframe
 from app.document.layer import Layer
-from app.document.layers import OpacityKey, TransformKey, repeated_joints
+from app.document.layers.attachments import repeated_joints
+from app.document.layers.layer_keys import OpacityKey, TransformKey
 from app.document.model import Document
-from app.document.queries import (
-    DEFAULT_DRAW_ORDER,
-    have_same_map,
-    repeated,
-    repeating_cycle,
-    switch_cycle,
-    with_repeats,
-)
-from app.document.timing import Cycle, Track, TrackKey
+from app.document.queries.layers.layer_state import DEFAULT_DRAW_ORDER, repeating_cycle
+from app.document.queries.layers.visibility import repeated, switch_cycle, with_repeats
+from app.document.queries.pose_tangents import have_same_map
+from app.document.timing.cycles import Cycle
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 
 # Pixels and radians. A track with smaller values at its ends does not move the handle there.

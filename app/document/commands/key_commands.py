@@ -10,10 +10,13 @@ from app.document.commands.command import layer_command
 from app.document.commands.retime import TimeScale
 from app.document.keyframe import Keyframe, Pose
 from app.document.layer import Layer
-from app.document.layers import DrawOrderKey, VisibilityKey
-from app.document.queries import digest_keys, is_motion_unedited
-from app.document.rig import AppliedMotion
-from app.document.timing import LINEAR, Cycle, Easing, TangentMode
+from app.document.layers.layer_keys import DrawOrderKey
+from app.document.layers.visibility import VisibilityKey
+from app.document.queries.applied_motion import digest_keys, is_motion_unedited
+from app.document.rig.applied_motion import AppliedMotion
+from app.document.timing.cycles import Cycle
+from app.document.timing.easing import LINEAR, Easing
+from app.document.timing.tangent_mode import TangentMode
 from app.errors import LissomError
 
 Held = TypeVar("Held", VisibilityKey, DrawOrderKey)

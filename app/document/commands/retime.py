@@ -12,8 +12,10 @@ from typing import Protocol, TypeVar
 
 from app.document.keyframe import Keyframe
 from app.document.layer import NO_KEY
-from app.document.layers import CameraKey, OpacityKey, TransformKey
-from app.document.timing import HOLD, LINEAR, Easing, TangentMode, TrackKey
+from app.document.layers.layer_keys import CameraKey, OpacityKey, TransformKey
+from app.document.timing.easing import HOLD, LINEAR, Easing
+from app.document.timing.tangent_mode import TangentMode
+from app.document.timing.tracks import TrackKey
 from app.errors import LissomError
 
 Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, TransformKey, OpacityKey)

@@ -10,7 +10,8 @@ from app.document.commands.key_commands import with_scaled_time
 from app.document.commands.retime import TimeScale
 from app.document.layer import Layer
 from app.document.model import Document
-from app.document.rig import AppliedMotion, SidePairs
+from app.document.rig.applied_motion import AppliedMotion
+from app.document.rig.mirror_names import SidePairs
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from app.document.commands.command import layer_command
 from app.document.keyframe import Pose
 from app.document.layer import Layer
-from app.document.rig import transfer_painted_stiffness
+from app.document.rig.stiffness import transfer_painted_stiffness
 from app.document.settings import Meshing
 from engine.domain import CutLine, CutOut, MeshedDomain, Stroke
 from engine.maps import Bounds

@@ -8,19 +8,17 @@ import numpy as np
 from app.document.checks import require
 from app.document.commands.command import layer_command
 from app.document.layer import Layer
-from app.document.queries import bone_region, brushed_stiffness
-from app.document.rig import (
+from app.document.queries.boundary_stiffness import bone_region, brushed_stiffness
+from app.document.rig.mirror_names import PAIRS, SidePairs, mirrored_handles_by_name
+from app.document.rig.stiffness import (
     DEFAULT_BONE_STIFFNESS,
-    PAIRS,
     Bone,
-    SidePairs,
     default_as_none,
-    mirrored_handles_by_name,
     require_stiffness_amount,
 )
 from app.errors import LissomError
 from engine.arrays import Floats
-from engine.domain.material import copy_nearest_stiffness
+from engine.domain.material.transfer import copy_nearest_stiffness
 from engine.errors import EngineError
 
 

@@ -15,8 +15,11 @@ from app.document.commands.track_handles import (
     track_without_handles,
 )
 from app.document.layer import Layer
-from app.document.rig import PAIRS, SidePairs
-from app.document.timing import LINEAR, Easing, Spring, TangentMode, Track, TrackKey
+from app.document.rig.mirror_names import PAIRS, SidePairs
+from app.document.timing.easing import LINEAR, Easing
+from app.document.timing.springs import Spring
+from app.document.timing.tangent_mode import TangentMode
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 
 

@@ -16,7 +16,7 @@ from app.document.checks import (
     require_id,
     require_point,
 )
-from app.document.timing import Cycle, count_changes_within
+from app.document.timing.cycles import Cycle, count_changes_within
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

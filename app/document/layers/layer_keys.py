@@ -7,7 +7,9 @@ from math import tau
 from typing import Final
 
 from app.document.checks import require, require_frame, require_point
-from app.document.timing import MAX_TRACK_ROTATION, BaseKey, TangentMode
+from app.document.timing.base_key import BaseKey
+from app.document.timing.tangent_mode import TangentMode
+from app.document.timing.tracks import MAX_TRACK_ROTATION
 from app.errors import LissomError
 
 MAX_ZOOM: Final = 1000.0  # largest zoom; its inverse is the smallest

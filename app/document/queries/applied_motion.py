@@ -5,7 +5,7 @@ import hashlib
 from app.document.keyframe import Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
-from app.document.rig import AppliedMotion
+from app.document.rig.applied_motion import AppliedMotion
 
 
 def digest_keys(layer: Layer, first: int, last: int) -> str:

@@ -11,7 +11,7 @@ from app.document.queries.key_segments import clip_segments
 from app.document.queries.memo import memoized_on
 from app.document.queries.pose_tangents import adjacent_segments, pose_segments
 from app.document.settings import FrameRange
-from app.document.timing import HOLD
+from app.document.timing.easing import HOLD
 from engine.arrays import Booleans, Floats, freeze
 from engine.variant import Baseline
 

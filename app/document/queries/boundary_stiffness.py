@@ -8,9 +8,10 @@ import numpy as np
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.memo import memoized_on
-from app.document.rig import Bone, combined_stiffness, default_as_none
+from app.document.rig.stiffness import Bone, combined_stiffness, default_as_none
 from engine.arrays import Complexes, Floats, as_points
-from engine.domain.material import brush_weights, limb_weights
+from engine.domain.material.brush import brush_weights
+from engine.domain.material.limb import limb_weights
 from engine.errors import EngineError
 from engine.maps import Boundary, stiffness_along_loops
 

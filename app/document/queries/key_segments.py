@@ -13,7 +13,7 @@ from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
-from app.document.timing import Cycle
+from app.document.timing.cycles import Cycle
 
 
 class Segment(NamedTuple):

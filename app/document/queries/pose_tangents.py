@@ -13,7 +13,7 @@ from app.document.queries.key_segments import ResolvedCycle, Segment, clip_segme
 from app.document.queries.memo import memoized_on
 from app.document.queries.tangents import KeyTangent, TangentSegment, stop_factor, tangents_at
 from app.document.settings import FrameRange
-from app.document.timing import TangentMode
+from app.document.timing.tangent_mode import TangentMode
 from engine.interpolation import InteriorKnot, support_of
 from engine.variant import Baseline
 

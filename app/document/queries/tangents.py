@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
-from app.document.timing import HOLD, Easing, TangentMode
+from app.document.timing.easing import HOLD, Easing
+from app.document.timing.tangent_mode import TangentMode
 from engine.interpolation import InteriorKnot
 
 # Tangent of a segment at a key: the knot of a smooth key, or the share of a straight blend's speed,

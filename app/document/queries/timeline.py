@@ -10,7 +10,7 @@ from app.document.layer import Layer
 from app.document.model import Document
 from app.document.queries.clips import Clip, clip_of
 from app.document.queries.key_segments import clip_segments, segment_at_frame
-from app.document.queries.layers import camera_at, opacity_at, transform_at
+from app.document.queries.layers.layer_state import camera_at, opacity_at, transform_at
 from app.document.queries.pose_tangents import pose_segments
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange, require_fps

@@ -16,9 +16,12 @@ from app.document.queries.tangents import (
     sample_segment,
     segment_slopes,
 )
-from app.document.timing import LINEAR, Cycle, Spring, Track, TrackKey
+from app.document.timing.cycles import Cycle
+from app.document.timing.easing import LINEAR
+from app.document.timing.springs import Spring
+from app.document.timing.tracks import Track, TrackKey
 from engine.domain import MeshedDomain
-from engine.domain.meshing import find_distances
+from engine.domain.meshing.depth import find_distances
 
 # Keys closer than this count as equal: pixels, and radians.
 SAME_PLACE, SAME_TURN = 0.01, 1e-4

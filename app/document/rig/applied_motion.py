@@ -7,7 +7,9 @@ from types import MappingProxyType
 from typing import Self
 
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
-from engine.geometry.motions import Parameters, find_kind, find_motion
+from engine.geometry.motions.catalogue import find_motion
+from engine.geometry.motions.kinds import find_kind
+from engine.geometry.motions.motion import Parameters
 
 MAX_REPEATS = 1000
 
@@ -16,11 +18,11 @@ MAX_REPEATS = 1000
 class AppliedMotion:
     """An applied motion preset, with all that is needed to apply it again with other parameters.
 
-    The keys alone define how the layer moves. `app.document.queries.is_motion_unedited` tests
-    whether the keys are still as the preset made them.
+    The keys alone define how the layer moves. `is_motion_unedited` tests whether the keys are
+    still as the preset made them.
     """
 
-    motion: str  # name of an entry of `engine.geometry.motions.MOTIONS`
+    motion: str  # name of an entry of `engine.geometry.motions.library.MOTIONS`
     kind: str  # name of one of its `KINDS`
     joints: Mapping[str, int]  # joint name to handle id
     facing: int  # 1 if the drawing looks to the right, -1 to the left

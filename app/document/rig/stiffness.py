@@ -8,7 +8,7 @@ import numpy as np
 from app.document.checks import NOTHING, Unknown, require
 from engine.arrays import Floats, freeze
 from engine.domain import MeshedDomain
-from engine.domain.material import copy_nearest_stiffness
+from engine.domain.material.transfer import copy_nearest_stiffness
 from engine.maps import SOFTEST, STIFFEST
 
 DEFAULT_BONE_STIFFNESS = 10.0  # default of a bone

@@ -20,12 +20,15 @@ from app.document import (
     track_commands,
 )
 from app.editor import pending_changes
-from app.editor.actions import playback, posing
+from app.editor.actions import playback
+from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement
+from app.editor.actions.posing.pose_commit import commit_targets
+from app.editor.actions.posing.pose_drag import cancel_drag, revert_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeyRow, KeysByRow, TrackRow, frames_in, layer_of
-from app.editor.work import LayerRuntime
+from app.editor.work.layer_runtime import LayerRuntime
 from app.storage import decode_picture
 
 Arguments = ParamSpec("Arguments")
@@ -109,9 +112,9 @@ def undo(session: Session, project: Project) -> None:
     # Steps that came after the targets were set are undone before them.
     unseen = [pull for pull in project.pulls if pull.kept is None and pull.position >= position]
     # A released drag must be redoable: it becomes a step before that step is undone.
-    unseen = [pull for pull in unseen if not posing.commit_targets(session, project, pull)]
+    unseen = [pull for pull in unseen if not commit_targets(session, project, pull)]
     for pull in unseen or [pull for pull in project.pulls if pull.is_held]:
-        posing.cancel_drag(session, project, pull)
+        cancel_drag(session, project, pull)
     if unseen:
         # No pose of these drags is visible yet; only other edits of their gestures are.
         for pull in unseen:
@@ -127,7 +130,7 @@ def undo(session: Session, project: Project) -> None:
 @with_project
 def revert_gesture(session: Session, project: Project, gesture: object) -> None:
     """Undo all edits of a gesture."""
-    posing.revert_drag(session, gesture)
+    revert_drag(session, gesture)
     project.history.revert(gesture)
     _forget_what_is_gone(project)
 
@@ -270,7 +273,7 @@ def delete_selection(session: Session, project: Project) -> None:
     elif session.is_timeline_focused and project.selected_track is not None:
         edit_layer(session, track_commands.remove_tracks, (project.selected_track,))
     elif project.selected_handles:
-        posing.remove_handles(session, project.selected_handles)
+        remove_handles(session, project.selected_handles)
 
 
 def _delete_keys(session: Session, project: Project) -> None:

@@ -10,12 +10,14 @@ from pathlib import Path
 from app.document import Clip, ExportSettings, FrameRange, clip_of, scene_commands
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, posing
+from app.editor.actions import editing
+from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.dialogs import FileDialog, Question
 from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
-from app.editor.work import Afterwards, JobKind
+from app.editor.work.jobs import JobKind
+from app.editor.work.promise import Afterwards
 from app.errors import LissomError, display_name
 from app.export import (
     FRAMES,
@@ -206,7 +208,7 @@ def _prepare(
     if format_.is_still and unkeyed is not None and unkeyed.layer == project.active:
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
-            document = posing.key_pose_command(session, project, unkeyed)(document)
+            document = key_pose_command(session, project, unkeyed)(document)
     pictures = {layer: puppet.cut.value.texture for layer, puppet in project.layer_runtimes.items()}
     samplers = {
         layer: (puppet.fine or puppet.store).sampler or puppet.store.sampler

@@ -16,7 +16,8 @@ from app.editor.dialogs import Question, RecoverableFile, RecoveryDialog
 from app.editor.error_reports import as_sentence, run_job
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind, LayerRuntime
+from app.editor.work.jobs import JobKind
+from app.editor.work.layer_runtime import LayerRuntime
 from app.errors import ImportLog, display_name
 from app.storage import (
     FileLock,

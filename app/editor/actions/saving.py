@@ -6,7 +6,10 @@ from pathlib import Path
 from app.document import Document
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import exporting, posing
+from app.editor.actions import exporting
+from app.editor.actions.posing.inserting import insert_key_at
+from app.editor.actions.posing.pose_commit import key_pose_command
+from app.editor.actions.posing.pose_lifecycle import commit_all_poses
 from app.editor.dialogs import FileDialog, Question
 from app.editor.error_reports import (
     clear_reported_failure,
@@ -16,7 +19,8 @@ from app.editor.error_reports import (
 )
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Job, JobKind, Promise
+from app.editor.work.jobs import Job, JobKind
+from app.editor.work.promise import Promise
 from app.errors import display_name
 from app.reports import draw_curves, write_curves
 from app.storage import (
@@ -263,7 +267,7 @@ def key_and_save(session: Session, project: Project, then: Action) -> None:
     """Key the unkeyed pose, and save the project."""
     unkeyed = project.history.preview_pose
     if unkeyed is not None:
-        posing.insert_key_at(session, unkeyed.layer, unkeyed.frame)
+        insert_key_at(session, unkeyed.layer, unkeyed.frame)
     save_then(session, then)
 
 
@@ -356,7 +360,7 @@ def autosave_now(session: Session, project: Project) -> None:
     LissomError
         If the autosave cannot be written.
     """
-    posing.commit_all_poses(session, project)
+    commit_all_poses(session, project)
     kept = project.document, project.history.preview_pose
     is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
     if is_kept or not has_unsaved_changes(project):
@@ -377,7 +381,7 @@ def _all_keyed(session: Session, project: Project) -> Document:
     unkeyed = project.history.preview_pose
     if unkeyed is None:
         return project.document
-    return posing.key_pose_command(session, project, unkeyed)(project.document)
+    return key_pose_command(session, project, unkeyed)(project.document)
 
 
 def _begin_autosave(session: Session, project: Project, now: float) -> None:

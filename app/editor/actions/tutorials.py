@@ -15,7 +15,7 @@ from app.editor.actions import files, saving
 from app.editor.error_reports import run_job
 from app.editor.project import Project
 from app.editor.session import Session, TutorialStage, TutorialState
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.storage import load_project, sample_images
 from engine.maps import HarmonicMap
 

@@ -5,14 +5,26 @@ from functools import partial
 from typing import TypeVar
 
 from app.document import Clip, clip_of, keyed_pose_at, segment_time_at
-from app.editor.actions import playback, posing, tracking, viewing
+from app.editor.actions import playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.actions.posing.pose_lifecycle import candidate_clips, update_pose_drags
+from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.posing.reach_limit import clamp_unreachable_targets
+from app.editor.actions.tracking.correction_jobs import (
+    correction_jobs_for_shown_frame,
+    is_track_drag_pending,
+    next_correction_jobs,
+)
+from app.editor.actions.tracking.recording import update_track_drags
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import measure_key_errors
-from app.editor.work import Derived, Job, JobKind, LayerRuntime, Pull
+from app.editor.work.derived import Derived
+from app.editor.work.jobs import Job, JobKind
+from app.editor.work.layer_runtime import LayerRuntime
+from app.editor.work.pull import Pull
 from app.motion import (
     DeformMesh,
     InbetweenCache,
@@ -56,14 +68,14 @@ Value = TypeVar("Value")
 @with_project
 def bring_poses(session: Session, project: Project) -> None:
     """Commit the poses of drags to the document."""
-    posing.clamp_unreachable_targets(session, project, resolving.relax_limits_and_solve)
-    posing.update_pose_drags(session, project)
+    clamp_unreachable_targets(session, project, resolving.relax_limits_and_solve)
+    update_pose_drags(session, project)
 
 
 @with_project
 def bring_tracks(session: Session, project: Project) -> None:
     """Commit track drags to the document."""
-    tracking.update_track_drags(session, project)
+    update_track_drags(session, project)
 
 
 @with_project
@@ -163,7 +175,7 @@ def give_up(session: Session, kind: JobKind) -> None:
 
 def _pin(session: Session, project: Project) -> None:
     """Note in all caches the present clips, and the clips that undo and redo lead to."""
-    frame, tried = playback.current_frame(session, project), posing.candidate_clips(project)
+    frame, tried = playback.current_frame(session, project), candidate_clips(project)
     for clip, puppet in _clips(project):
         layer, twin = clip.layer.id, puppet.comparison
         others = [each for each in tried if each.layer.id == layer]
@@ -186,7 +198,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if _asks_extent(session, project) and not project.is_posing:
         yield from _span(session, project)
     yield from _make_frames(session, project)
-    yield from tracking.correction_jobs_for_shown_frame(session, project)
+    yield from correction_jobs_for_shown_frame(session, project)
     if _awaits_frame(session, project):
         # On few cores other jobs would delay this frame.
         return
@@ -201,10 +213,10 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
                     room = next(_stream(session, project), None)
                 yield room or job
                 return
-    if tracking.is_track_drag_pending(session, project):
+    if is_track_drag_pending(session, project):
         return
     if _prepares_all(session, project):
-        yield from tracking.next_correction_jobs(session, project)
+        yield from next_correction_jobs(session, project)
     if project.is_posing:
         # The jobs below take longer than a pause of the drag.
         return
@@ -271,12 +283,12 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
 
     # In-betweens that are not visible during a drag are not computed for each move.
     is_seen = session.overlays.onion or project.pull is None
-    if is_seen or posing.POSING not in session.jobs.kinds:
+    if is_seen or POSING not in session.jobs.kinds:
         # Clips whose shown frame is an approximation come first.
         for clip, puppet in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
             if is_wanted(clip, puppet.store):
                 yield SKETCHING, puppet, clip
-    for clip in posing.candidate_clips(project, left=not prepares_all):
+    for clip in candidate_clips(project, left=not prepares_all):
         yield SKETCHING, project.layer_runtimes[clip.layer.id], clip
     if project.is_posing:
         return

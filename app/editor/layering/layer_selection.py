@@ -1,6 +1,6 @@
 """The active layer, the selected layers, and soloed layers."""
 
-from app.editor.actions import posing
+from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 
@@ -11,7 +11,7 @@ def set_active_layer(session: Session, project: Project, identity: int) -> None:
     project.other_selected_layers = frozenset()
     if identity == project.active:
         return
-    posing.release_drag(session)
+    release_drag(session)
     project.lingering |= {project.active}
     project.active = identity
     project.selected_handles = project.selected_frames = frozenset()

@@ -16,7 +16,7 @@ from app.editor.actions import editing, playback
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.motion import (
     ParentTransforms,
     anchor_or_default,

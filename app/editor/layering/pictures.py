@@ -16,13 +16,15 @@ from app.document import (
 )
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, files, resolving
+from app.editor.actions import editing, files
+from app.editor.actions.layer_setup import resolving
 from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind, LayerRuntime
+from app.editor.work.jobs import JobKind
+from app.editor.work.layer_runtime import LayerRuntime
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
 from app.solving import KeyResolver, start_picture_replacement
 from app.storage import (

@@ -6,11 +6,3 @@ In: a session with a project.
 Out: keys with these poses; the copied or saved poses.
 Imports: `app.editor.actions`, `app.solving`.
 """
-
-from app.editor.poses import (
-    copying as copying,
-    flipping as flipping,
-    library as library,
-    paste_destinations as paste_destinations,
-    pasting as pasting,
-)

@@ -5,12 +5,13 @@ from functools import partial
 
 from app.document import Clip, Keyframe, Layer, Pose, clip_of, keyed_pose_at, segment_time_at
 from app.editor import pending_changes
-from app.editor.actions import playback, posing
+from app.editor.actions import playback
+from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.editor.poses import pose_insertion
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, CopiedTrack, Session, with_project
 from app.editor.timeline_view import TrackRow, layer_of
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler
 from app.solving import Rig, fit_shown_pose
 
@@ -54,7 +55,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     for layer in layers:
         clip, puppet = clip_of(document, layer.id), project.layer_runtimes[layer.id]
         is_active = layer.id == project.active
-        pose = posing.pose_at_playhead(session, project) if is_active else None
+        pose = pose_at_playhead(session, project) if is_active else None
         pose = pose or keyed_pose_at(clip, segment_time_at(clip, frame))
         if pose is None:
             rig = partial(Rig.of, layer, puppet.rig)

@@ -6,12 +6,14 @@ from functools import partial
 from typing import NamedTuple
 
 from app.document import Keyframe, Layer, LibraryPose, Pose, Target, pose_commands
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import drag_handles, end_drag_at, release_drag
 from app.editor.poses import pasting, pose_insertion
 from app.editor.poses.paste_destinations import PasteDestination, find_paste_destination
 from app.editor.project import BlendPreview, Project
 from app.editor.session import CopiedKeys, Session, with_project
-from app.editor.work import DragStart, JobKind
+from app.editor.work.jobs import JobKind
+from app.editor.work.pull import DragStart
 
 KEEPING = JobKind("Keeping a pose", "The pose could not be kept", "hand")
 
@@ -129,18 +131,18 @@ def blend_library_pose(
             if identity in start.targets
         }
 
-    posing.drag_handles(session, mix, gesture=begun.gesture)
+    drag_handles(session, mix, gesture=begun.gesture)
 
 
 @with_project
 def end_pose_blend(session: Session, project: Project) -> None:
     """Keep the blended pose; with a share of 1, key the library pose exactly."""
     blend, project.blend_preview = project.blend_preview, None
-    posing.release_drag(session)
+    release_drag(session)
     if blend is not None and blend.share >= 1.0 and blend.owner == project.active:
         for pull in [pull for pull in project.pulls if blend.gesture in pull.target_changes]:
             pose = project.document.layer(pull.layer).library_pose(blend.name).pose
-            posing.end_drag_at(session, project, pull, pose)
+            end_drag_at(session, project, pull, pose)
 
 
 def _between(one: Target, other: Target, share: float) -> Target:

@@ -14,7 +14,8 @@ from app.document import (
 )
 from app.editor import pending_changes
 from app.editor.action import do
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.poses import pose_insertion
 from app.editor.poses.paste_destinations import (
     PasteDestination,
@@ -28,7 +29,7 @@ from app.editor.poses.pasting_tracks import paste_track, pasteable_tracks
 from app.editor.project import LastFlip, Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import display_frame
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose, flip_poses, flip_targets
 
 LABELS: Mapping[PasteMode, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
@@ -165,9 +166,7 @@ def paste_on_selected(session: Session, project: Project, way: PasteMode = "as i
         landing = find_active_paste_destination(session, project, way)
         if landing is not None:
             wishes = pasted_targets(project, landing, way)
-            posing.set_targets(
-                session, {i: wishes[i] for i in project.selected_handles if i in wishes}
-            )
+            set_targets(session, {i: wishes[i] for i in project.selected_handles if i in wishes})
 
 
 def pasted_targets(

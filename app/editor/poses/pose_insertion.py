@@ -5,11 +5,13 @@ from dataclasses import replace
 from functools import partial
 
 from app.document import Keyframe, Layer, Pose, key_commands, with_all_targets
-from app.editor.actions import playback, posing
+from app.editor.actions import playback
+from app.editor.actions.posing.inserting import solve_nearest_pose
+from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.timeline_view import KeyRow
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.solving import Rig
 from engine.maps import Bounds, certify
 
@@ -104,9 +106,9 @@ def request_pose_at_playhead(
     session: Session, project: Project, kind: JobKind, take: PoseHandler
 ) -> None:
     """Pass the pose at the playhead to `take`; for an in-between the worker solves for it."""
-    layer, pose = project.layer, posing.pose_at_playhead(session, project)
+    layer, pose = project.layer, pose_at_playhead(session, project)
     if pose is not None:
         take(layer, pose)
         return
     clip, frame = project.clip, playback.current_frame(session, project)
-    posing.solve_nearest_pose(session, project, clip, frame, partial(take, layer), kind=kind)
+    solve_nearest_pose(session, project, clip, frame, partial(take, layer), kind=kind)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Self
 
-from app.editor.actions import posing
+from app.editor.actions.posing.handles import set_anchor, toggle_anchor_at_handle
 from app.editor.project import Project
 from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
@@ -32,7 +32,7 @@ class AnchorTool(Tool):
             return None
         anchoring = cls(project=project)
         if spot.handle is not None:
-            posing.toggle_anchor_at_handle(session, spot.handle, gesture=anchoring)
+            toggle_anchor_at_handle(session, spot.handle, gesture=anchoring)
         else:
-            posing.set_anchor(session, spot.place, gesture=anchoring)
+            set_anchor(session, spot.place, gesture=anchoring)
         return anchoring

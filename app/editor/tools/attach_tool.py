@@ -3,8 +3,9 @@
 from dataclasses import dataclass, replace
 from typing import Self
 
-from app.editor import layering
 from app.editor.actions import playback
+from app.editor.layering.layer_list import is_layer_at, layer_at
+from app.editor.layering.parenting import attach_layer, is_same_or_descendant
 from app.editor.project import Project
 from app.editor.session import AttachOverlay, Hint, Mark, Session
 from app.editor.tools.anchor_tool import AnchorTool
@@ -50,8 +51,8 @@ class AttachTool(Tool):
         self.moved = self.moved or self.is_away(session, self.spot.place, place)
         if self.moved and project.active == self.child:
             there = to_scene(project, place)
-            self.parent = parent = layering.layer_at(project, there, besides=self.child)
-            self.is_circle = parent is not None and layering.is_same_or_descendant(
+            self.parent = parent = layer_at(project, there, besides=self.child)
+            self.is_circle = parent is not None and is_same_or_descendant(
                 project, parent, self.child
             )
 
@@ -71,10 +72,8 @@ class AttachTool(Tool):
             turns = joint is None or joint.inherits_rotation
             # If the place is on both layers, it is the joint; otherwise the anchor is.
             there = to_scene(project, place)
-            is_on_both = layering.is_layer_at(project, self.child, there)
-            layering.attach_layer(
-                session, self.child, self.parent, turns, there if is_on_both else None
-            )
+            is_on_both = is_layer_at(project, self.child, there)
+            attach_layer(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
             session.show_notice(
                 "Let the anchor go over another layer to hang it there.", topic="joint"

@@ -4,8 +4,10 @@ from dataclasses import dataclass
 from typing import Self
 
 from app.document import Layer
-from app.editor import layering
-from app.editor.actions import playback, posing, preset_setup
+from app.editor.actions import playback
+from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.actions.posing.pose_drag import move_pose, release_drag
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Hint, Session, with_project
 from app.editor.tools.pose_tool import PoseTool
@@ -39,11 +41,11 @@ class MoveTool(PoseTool):
 
     def _pull(self, session: Session) -> None:
         if self.moved and self.is_free:
-            posing.move_pose(session, self.offset, gesture=self)
+            move_pose(session, self.offset, gesture=self)
 
     def cancel(self, session: Session) -> None:
         """Undo the move, and make the earlier layer active."""
-        layering.set_active_layer(session, self.last)
+        set_active_layer(session, self.last)
         PoseTool.cancel(self, session)
 
     @property
@@ -74,8 +76,8 @@ def return_to_posing(session: Session, project: Project) -> None:
 def nudge_layer(session: Session, project: Project, step: complex) -> None:
     """Move the active layer's topmost parent by `step` in pixels; its descendants follow."""
     if _set_root_parent_active(session, project, None):
-        posing.move_pose(session, step)
-        posing.release_drag(session)
+        move_pose(session, step)
+        release_drag(session)
 
 
 def _is_beside(spot: PointerHit) -> bool:
@@ -97,5 +99,5 @@ def _set_root_parent_active(session: Session, project: Project, layer: int | Non
             f"{carrier.name} is {what}: it stays where it is, with all that hangs on it."
         )
         return False
-    layering.set_active_layer(session, carrier.id)
+    set_active_layer(session, carrier.id)
     return True

@@ -8,12 +8,26 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.document import Target
-from app.editor.actions import editing, playback, posing, tracking
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag, release_drag_forced
+from app.editor.actions.tracking.recording import (
+    discard_recording,
+    drag_recorded_handle,
+    start_recording,
+    stop_recording,
+)
+from app.editor.actions.tracking.track_dragging import (
+    cancel_track_drag,
+    drag_track_handle,
+    draggable_track,
+)
+from app.editor.actions.tracking.track_space import track_target
 from app.editor.project import Project
 from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, to_scene
-from app.editor.work import DragStart
+from app.editor.work.pull import DragStart
 from engine.deform import BoundedPull
 
 
@@ -42,7 +56,7 @@ class PoseTool(Tool):
                 return (Hint("click", "to select; it is locked"),)
             if session.records:
                 return (Hint("drag", "to record how it moves"),)
-            on_track = tracking.draggable_track(project, spot.handle) is not None
+            on_track = draggable_track(project, spot.handle) is not None
             return (Hint("drag", "to key it alone" if on_track else "to pose"),)
         if spot.track_key is not None:
             return (Hint("drag", f"to move the key at frame {spot.track_key}"),)
@@ -64,7 +78,7 @@ class PoseTool(Tool):
         if not spot.on_shape or not session.overlays.handles or session.records:
             return None
         pulling = cls(project=project, start=spot.place)
-        posing.add_handle(session, spot.place, gesture=pulling)
+        add_handle(session, spot.place, gesture=pulling)
         pulling.handles = project.selected_handles
         return pulling
 
@@ -81,7 +95,7 @@ class PoseTool(Tool):
     def _take_to_track(self, session: Session, pressed: int) -> None:
         """Drag on the handle's track if its row is selected or the drag is recorded."""
         project, shown = self.project, self.project.layer_runtime.shown
-        track = tracking.draggable_track(project, pressed)
+        track = draggable_track(project, pressed)
         if session.records:
             track = project.layer.track_of(pressed)
         elif track is None:
@@ -98,12 +112,12 @@ class PoseTool(Tool):
             self.start, self.origin = (
                 to_scene(project, each) for each in (self.start, self.origin)
             )
-            tracking.start_recording(session, self.tracked, self.origin, gesture=self)
+            start_recording(session, self.tracked, self.origin, gesture=self)
 
     def _take_key(self, session: Session, handle: int, frame: int) -> None:
         """Grab the track key shown at a frame; the playhead goes there."""
         project, track = self.project, self.project.layer.track_of(handle)
-        place = None if track is None else tracking.track_target(project, track, frame)
+        place = None if track is None else track_target(project, track, frame)
         if track is not None and place is not None:
             self.tracked, self.origin = track.handles[0], place
             self.stood = playback.current_frame(session, project)
@@ -134,9 +148,9 @@ class PoseTool(Tool):
         if self.tracked is not None:
             place = self.origin + self.offset
             if self.records:
-                tracking.drag_recorded_handle(session, place)
+                drag_recorded_handle(session, place)
             elif self.moved:
-                tracking.drag_track_handle(session, self.tracked, place, gesture=self)
+                drag_track_handle(session, self.tracked, place, gesture=self)
             return
         pulled = self.handles & {handle.id for handle in self.project.layer.handles}
         if not (self.moved and pulled):
@@ -149,7 +163,7 @@ class PoseTool(Tool):
             known = pulled & targets.keys()
             return {i: replace(targets[i], position=places[i] + way) for i in known}
 
-        posing.drag_handles(session, as_far, gesture=self, hand=BoundedPull(pulled))
+        drag_handles(session, as_far, gesture=self, hand=BoundedPull(pulled))
 
     def end(self, session: Session, _: complex) -> None:
         """Release the handles; forced targets stay beyond the handles' reach.
@@ -157,21 +171,21 @@ class PoseTool(Tool):
         A click selects only the handle under it, or its group.
         """
         if self.records:
-            tracking.stop_recording(session, has_moved=self.moved)
+            stop_recording(session, has_moved=self.moved)
         elif self.tracked is not None:
             pass
         elif session.is_forcing_targets:
-            posing.release_drag_forced(session)
+            release_drag_forced(session)
         else:
-            posing.release_drag(session)
+            release_drag(session)
         if not self.moved and self.taken is not None:
             editing.select_handles(session, self.project.layer.grouped_handles(self.taken))
 
     def cancel(self, session: Session) -> None:
         """Undo the drag; the playhead goes back to its earlier frame."""
         if self.records:
-            tracking.discard_recording(session)
-        tracking.cancel_track_drag(self.project, self)
+            discard_recording(session)
+        cancel_track_drag(self.project, self)
         if self.stood is not None:
             playback.seek(session, self.stood)
         super(PoseTool, self).cancel(session)

@@ -10,12 +10,20 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from app.document import Target
-from app.editor.actions import editing, playback, posing, tracking
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import remove_handles
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag
+from app.editor.actions.tracking.track_dragging import (
+    cancel_track_drag,
+    draggable_track,
+    rotate_track_handle,
+)
+from app.editor.actions.tracking.track_space import track_target_angle
 from app.editor.project import Project
 from app.editor.session import Hint, Mark, NumericEntryOverlay, RotationOverlay, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
-from app.editor.work import DragStart
+from app.editor.work.pull import DragStart
 
 STEP = math.radians(15.0)  # step of a rotation that snaps
 LEAST_ARM = 12.0  # screen pixels around a handle; a press within has no direction
@@ -39,7 +47,7 @@ class RotateTool(Tool):
     def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.on_ring:
             (handle,) = project.selected_handles
-            is_alone = tracking.draggable_track(project, handle) is not None
+            is_alone = draggable_track(project, handle) is not None
             what = "to key its turn alone" if is_alone else "to turn the shape around the handle"
             return (Hint("drag", what),)
         if spot.handle is None or project.layer.is_locked(spot.handle):
@@ -60,9 +68,9 @@ class RotateTool(Tool):
         if handle is None or handle not in identities or project.layer.is_locked(handle):
             return None
         index = identities.index(handle)
-        on_track = tracking.draggable_track(project, handle) is not None
+        on_track = draggable_track(project, handle) is not None
         frame = playback.current_frame(session, project)
-        wished = tracking.track_target_angle(project, handle, frame) if on_track else None
+        wished = track_target_angle(project, handle, frame) if on_track else None
         turning = cls(
             project=project,
             handle=handle,
@@ -105,7 +113,7 @@ class RotateTool(Tool):
         if handle not in {each.id for each in self.project.layer.handles}:
             return
         if self.on_track:
-            tracking.rotate_track_handle(session, handle, self.turn + swept, gesture=self)
+            rotate_track_handle(session, handle, self.turn + swept, gesture=self)
             return
 
         def turned(start: DragStart, targets: Mapping[int, Target]) -> Mapping[int, Target]:
@@ -114,17 +122,17 @@ class RotateTool(Tool):
             place, turn = start.places[handle], start.angles[handle] + swept
             return {handle: Target(position=place, rotation=turn)}
 
-        posing.drag_handles(session, turned, gesture=self)
+        drag_handles(session, turned, gesture=self)
 
     def end(self, session: Session, _: complex) -> None:
         """End the rotation; delete the handle after a mere click."""
         if self.deletes and not self.moved:
-            posing.remove_handles(session, frozenset({self.handle}))
+            remove_handles(session, frozenset({self.handle}))
         elif not self.on_track:
-            posing.release_drag(session)
+            release_drag(session)
 
     def cancel(self, session: Session) -> None:
-        tracking.cancel_track_drag(self.project, self)
+        cancel_track_drag(self.project, self)
         super(RotateTool, self).cancel(session)
 
     @property

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Self
 
-from app.editor import layering
 from app.editor.actions import editing
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import BoxOverlay, Hint, Mark, Session
 from app.editor.tools.tool import PointerHit, Tool
@@ -87,12 +87,12 @@ class PickLayerTool(Tool):
         if layer is None:
             return None
         choosing = cls(project=project, last=project.active)
-        layering.set_active_layer(session, layer)
+        set_active_layer(session, layer)
         return choosing
 
     def cancel(self, session: Session) -> None:
         """Make the earlier layer active again."""
-        layering.set_active_layer(session, self.last)
+        set_active_layer(session, self.last)
 
 
 def _pressed_other_layer(project: Project, spot: PointerHit) -> int | None:

@@ -5,14 +5,9 @@ from typing import Final
 from app.editor.session import Session
 from app.editor.tools.anchor_tool import AnchorTool
 from app.editor.tools.attach_tool import AttachTool
-from app.editor.tools.edit_tools import (
-    BoneTool,
-    CutBrushTool,
-    CutClickTool,
-    JointTool,
-    KnifeTool,
-    StiffnessBrushTool,
-)
+from app.editor.tools.edit_tools.cut_out_tools import CutBrushTool, CutClickTool, KnifeTool
+from app.editor.tools.edit_tools.joint_tools import JointTool
+from app.editor.tools.edit_tools.stiffness_tools import BoneTool, StiffnessBrushTool
 from app.editor.tools.mirror_axis_tool import MirrorAxisTool
 from app.editor.tools.move_tool import MoveTool
 from app.editor.tools.pose_tool import PoseTool

@@ -17,7 +17,7 @@ from app.errors import LissomError
 from app.motion.corrected_frames import CorrectedFrames
 from app.motion.extents.long_extent import farthest_reach
 from app.motion.inbetween_cache import InbetweenCache
-from app.motion.parenting import ParentTransforms
+from app.motion.parenting.parent_transforms import ParentTransforms
 from engine.arrays import Complexes, Floats
 
 

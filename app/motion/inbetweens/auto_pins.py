@@ -15,7 +15,7 @@ from app.document import (
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
 from app.motion.inbetweens.segment_keys import segment_key
 from engine.arrays import Complexes, Floats
-from engine.deform.correction import PointCorrector
+from engine.deform.correction.corrector import PointCorrector
 from engine.geometry import diameter
 from engine.interpolation import (
     CorrectionSeries,

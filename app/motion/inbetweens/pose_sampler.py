@@ -13,7 +13,7 @@ from app.motion.inbetweens.content_cache import ContentCache, digest
 from app.motion.inbetweens.secondary_correction import SecondaryCorrection
 from app.motion.inbetweens.segment_keys import SegmentKey
 from engine.arrays import Complexes, freeze, nbytes_of
-from engine.deform.correction import PointCorrector, build_corrector
+from engine.deform.correction.corrector import PointCorrector, build_corrector
 from engine.dirichlet import Extension, HilbertTransform
 from engine.domain import MeshedDomain
 from engine.interpolation import (

@@ -9,7 +9,7 @@ import numpy as np
 from app.document import Clip, Spring, segment_time_at, spring_root
 from engine.arrays import Complexes
 from engine.geometry import IDENTITY_MOTION, RigidMotion, diameter
-from engine.geometry.kinematics import (
+from engine.geometry.kinematics.springs import (
     FADE_FRAMES,
     SpringResponse,
     frames_to_settle,

@@ -6,7 +6,9 @@ from functools import partial
 import numpy as np
 
 from app.document import Attachment, Document, Layer, Pose, clip_of
-from app.motion.inbetweens import Animation, ParentMotion, PoseSampler
+from app.motion.inbetweens.animation import Animation
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.spring_offsets import ParentMotion
 from app.motion.parenting.chain import (
     PivotFrame,
     blend_transforms,
@@ -15,7 +17,7 @@ from app.motion.parenting.chain import (
     pivot_frame_at,
     require_anchor,
 )
-from app.motion.tracing import PointTrails
+from app.motion.tracing.point_trails import PointTrails
 from engine.arrays import Complexes
 from engine.geometry import RigidMotion
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.document import Clip
-from app.motion.inbetweens import ParentMotion, PoseSampler
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.spring_offsets import ParentMotion
 from app.motion.tracing.point_trails import PointTrails
 from engine.arrays import Complexes, Indices, freeze
 

@@ -5,13 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, Pose, keyed_pose_at, pose_segments, segment_time_at
-from app.motion.inbetweens import (
-    Animation,
-    ParentMotion,
-    PoseSampler,
-    needs_correction,
-    segment_key,
-)
+from app.motion.inbetweens.animation import Animation
+from app.motion.inbetweens.frame_corrector import needs_correction
+from app.motion.inbetweens.pose_sampler import PoseSampler
+from app.motion.inbetweens.segment_keys import segment_key
+from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes
 
 REMEMBERED = 4  # kept times as a multiple of the clip's frames, for undo and redo

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from app.errors import LissomError
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
-from engine.geometry.motions import find_kind
+from engine.geometry.motions.kinds import find_kind
 
 SCHEMA = 1
 LARGEST = 1024 * 1024  # bytes

@@ -26,7 +26,7 @@ from app.solving.motion_preset.motion_request import (
     with_limits,
 )
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
-from engine.geometry.motions import Body
+from engine.geometry.motions.body import Body
 
 # Largest number of steps; a pose that needs more moves slowly along a limit.
 MOST_STEPS = 150

@@ -12,7 +12,7 @@ from xml.etree import ElementTree as ET
 
 from app.document import BlendMode, Group, ancestor_paths
 from app.errors import LissomError, NoticeCollector, shortened
-from app.storage.files import DAMAGED_ZIP, open_zip
+from app.storage.files.reading import DAMAGED_ZIP, open_zip
 from app.storage.pictures.layered import (
     EMPTY,
     GroupPaths,

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import LissomError
-from app.storage.files import MOST_UNPACKED
+from app.storage.files.reading import MOST_UNPACKED
 from engine.arrays import Bytes, Complexes, Floats, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"

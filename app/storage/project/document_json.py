@@ -66,11 +66,11 @@ from app.storage.json_values import (
     record,
     verbatim,
 )
-from app.storage.pictures import require_memory
+from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
 from engine.domain import CutLine, CutOut, Domain, Stroke
-from engine.geometry.motions import Parameters
+from engine.geometry.motions.motion import Parameters
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 3

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from app.document import Layer, PictureFile
 from app.errors import LissomError
-from app.storage.pictures import stored_size
+from app.storage.pictures.picture import stored_size
 from app.storage.project.archive import Archive, array_member
 from engine.arrays import Complexes, Floats, as_points
 from engine.domain import (
@@ -29,8 +29,8 @@ from engine.domain import (
     MeshedDomain,
     require_domain,
 )
-from engine.domain.meshing import Mesh
-from engine.domain.outline import LARGEST_OUTLINE
+from engine.domain.meshing.mesh import Mesh
+from engine.domain.outline.enclosure import LARGEST_OUTLINE
 from engine.geometry import Hole
 from engine.maps import HarmonicMap
 

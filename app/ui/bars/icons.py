@@ -3,8 +3,8 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Project, Session
-from app.ui.shortcuts import draw_action_button
-from app.ui.style import Look
+from app.ui.shortcuts.widgets import draw_action_button
+from app.ui.style.theme import Look
 
 # Names in the table of actions. A gap separates two groups.
 GROUPS = (

@@ -6,13 +6,16 @@ from imgui_bundle import imgui
 
 from app.document import PRESETS
 from app.editor import Action, Session, do
-from app.editor.actions import files, keys, viewing
+from app.editor.actions import files, viewing
+from app.editor.actions.timing import keys
 from app.errors import display_name
 from app.storage import CHECKER
 from app.ui.bars.methods import draw_method_menu
 from app.ui.panel import Panel, is_in_front
-from app.ui.shortcuts import MENUS, draw_action_item
-from app.ui.style import Look, colour_field, draw_tooltip
+from app.ui.shortcuts.table import MENUS
+from app.ui.shortcuts.widgets import draw_action_item
+from app.ui.style.theme import Look
+from app.ui.style.widgets import colour_field, draw_tooltip
 
 PATH_REACHES = {0: "All that play", 6: "6 around the playhead", 12: "12", 24: "24", 48: "48"}
 BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}

@@ -4,9 +4,10 @@ from imgui_bundle import imgui
 
 from app.document import shape_commands
 from app.editor import Action, Project, do
-from app.editor.actions import editing, keys
+from app.editor.actions import editing
+from app.editor.actions.timing import keys
 from app.ui.methods import VARIANTS
-from app.ui.style import draw_tooltip
+from app.ui.style.widgets import draw_tooltip
 
 
 def draw_method_menu(project: Project) -> list[Action]:

@@ -7,9 +7,11 @@ from imgui_bundle import ImColor, ImVec2, imgui, imspinner
 
 from app.document import DistortionRange, measure_target_errors, misses_target, relax_limits
 from app.editor import Action, JobKind, Project, Session, do, pending_changes
-from app.editor.actions import exporting, resolving, upkeep
+from app.editor.actions import exporting, upkeep
+from app.editor.actions.layer_setup import resolving
 from app.errors import display_name
-from app.ui.style import Look, draw_tooltip, shorten_text
+from app.ui.style.theme import Look
+from app.ui.style.widgets import draw_tooltip, shorten_text
 
 LEAST_ROOM = 6.0  # em: hints are omitted if less width is left
 SLOW = 0.3  # seconds after which a job is reported; reports of shorter jobs would flicker

@@ -17,14 +17,21 @@ from app.editor import (
     do,
     error_reports,
 )
-from app.editor.actions import answer_dialog, browse_files, close_dialog, use_own_file_browser
+from app.editor.actions.viewing import (
+    answer_dialog,
+    browse_files,
+    close_dialog,
+    use_own_file_browser,
+)
 from app.errors import display_name
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.problem import draw_problem_dialog
 from app.ui.dialogs.recovery import draw_recovery_dialog
-from app.ui.shortcuts import MENUS, POINTER_HELP
-from app.ui.style import Look, heading, main_button
+from app.ui.shortcuts.pointer_help import POINTER_HELP
+from app.ui.shortcuts.table import MENUS
+from app.ui.style.theme import Look
+from app.ui.style.widgets import heading, main_button
 
 HEADING = 2  # rows of a group's heading
 GOING_ON = (

@@ -8,7 +8,7 @@ from typing import Any
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, FileDialog, Session, do
-from app.editor.actions import browse_files, choose_file, close_dialog
+from app.editor.actions.viewing import browse_files, choose_file, close_dialog
 from app.errors import display_name
 from app.render import Thumbnail
 from app.storage import home_folder
@@ -18,10 +18,9 @@ from app.ui.dialogs.browser_shortcuts import (
     list_standard_shortcuts,
 )
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
-from app.ui.shortcuts import ALT, format_chord
-from app.ui.style import (
-    Look,
-    colour_u32,
+from app.ui.shortcuts.keys import ALT, format_chord
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import (
     draw_tooltip,
     icon_button,
     main_button,

@@ -3,8 +3,9 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, ProblemReport, do, error_reports
-from app.editor.actions import close_dialog
-from app.ui.style import Look, main_button
+from app.editor.actions.viewing import close_dialog
+from app.ui.style.theme import Look
+from app.ui.style.widgets import main_button
 
 WIDTH, HEIGHT, MARGIN = 46.0, 22.0, 6.0  # em: size of the text, margin of the window
 

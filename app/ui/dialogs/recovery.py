@@ -3,10 +3,12 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, RecoverableFile, RecoveryDialog, do, error_reports
-from app.editor.actions import answer_dialog, close_dialog, files
+from app.editor.actions import files
+from app.editor.actions.viewing import answer_dialog, close_dialog
 from app.errors import display_name
 from app.ui.dialogs.folder_listing import Entry
-from app.ui.style import Look, draw_tooltip, main_button, shorten_text
+from app.ui.style.theme import Look
+from app.ui.style.widgets import draw_tooltip, main_button, shorten_text
 
 WIDEST = 14.0  # em, of a name
 WIDTH, SUMMARY_AT, BUTTONS_AT = 36.0, 14.5, 27.5  # em

@@ -4,13 +4,3 @@ In: a session.
 Out: actions.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
 """
-
-from app.ui.panels import (
-    deform as deform,
-    distortion as distortion,
-    export as export,
-    handle as handle,
-    layers as layers,
-    motion_preset as motion_preset,
-    poses as poses,
-)

@@ -13,21 +13,18 @@ from app.document import (
     segment_time_at,
 )
 from app.editor import Action, Project, Session, do
-from app.editor.actions import playback, resolving
-from app.ui.style import (
-    FIELD,
+from app.editor.actions import playback
+from app.editor.actions.layer_setup import resolving
+from app.ui.style.sliders import FIELD, Scale, number_field, slider_track
+from app.ui.style.theme import SMALL, Look
+from app.ui.style.widgets import (
     FILL,
-    SMALL,
-    Look,
-    Scale,
     align_right,
     draw_tooltip,
     heading,
-    number_field,
     option_buttons,
     progress_bar,
     push_text_size,
-    slider_track,
     small_text,
     text_button,
 )

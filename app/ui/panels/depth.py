@@ -5,7 +5,9 @@ from imgui_bundle import imgui
 from app.document import DEFAULT_DEPTH_EXTENT, Handle, Keyframe, Layer, layer_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
-from app.ui.style import Look, Scale, draw_tooltip, heading, label, slider, small_text
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import draw_tooltip, heading, label, small_text
 from engine.geometry import diameter
 
 DEPTHS = Scale(left=-1.0, right=1.0)

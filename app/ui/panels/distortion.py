@@ -13,21 +13,19 @@ from app.motion import DisplayedFrame
 from app.render import heat_colormap
 from app.reports import TIMES, Curves, split_at_keys
 from app.ui.methods import METHODS
-from app.ui.style import (
-    SMALL,
-    Look,
-    colour_u32,
+from app.ui.style.theme import SMALL, Look, colour_u32, with_alpha
+from app.ui.style.widgets import (
     draw_tooltip,
     heading,
     option_buttons,
     small_text,
     split_line,
     text_button,
-    with_alpha,
 )
-from app.ui.viewport import heat_limits, measure_distortion
+from app.ui.viewport.canvas import heat_limits
+from app.ui.viewport.gpu_resources import measure_distortion
 from engine.arrays import Floats
-from engine.domain.meshing import Mesh
+from engine.domain.meshing.mesh import Mesh
 from engine.maps import Bounds
 
 HEAT_MAPS = (("none", "Off"), ("k", "Shear"), ("sigma_a", "Stretch"), ("sigma_b", "Squeeze"))

@@ -14,13 +14,11 @@ from app.motion import BoundingBox, bounding_box, extent_key
 from app.render import View
 from app.ui.panels.format_options import draw_format_options
 from app.ui.panels.sizes import LARGEST, draw_size_fields
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import (
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.theme import SMALL, Look, colour_u32, rgb
+from app.ui.style.widgets import (
     FILL,
-    SMALL,
-    Look,
     colour_field,
-    colour_u32,
     draw_tooltip,
     heading,
     icon_button,
@@ -29,7 +27,6 @@ from app.ui.style import (
     option_buttons,
     progress_bar,
     push_text_size,
-    rgb,
     small_text,
     split_line,
     text_button,

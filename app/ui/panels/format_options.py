@@ -6,7 +6,8 @@ from typing import Any, TypeVar
 from imgui_bundle import imgui
 
 from app.export_formats import FormatOptions, Option
-from app.ui.style import FILL, Look, draw_tooltip, label, option_buttons
+from app.ui.style.theme import Look
+from app.ui.style.widgets import FILL, draw_tooltip, label, option_buttons
 
 T = TypeVar("T", bound=FormatOptions)
 

@@ -16,35 +16,33 @@ from app.document import (
     shape_commands,
 )
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, posing, viewing
+from app.editor.actions import editing, viewing
+from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
+from app.editor.actions.posing.pose_drag import free_rotation, set_targets
 from app.ui.panels import depth
-from app.ui.panels.handle_motion import draw_auto_pin, draw_spring, draw_track
-from app.ui.shortcuts import (
-    BINDINGS,
-    CTRL,
-    draw_action_button,
-    draw_action_text_button,
-    format_modified,
-)
-from app.ui.style import (
+from app.ui.panels.handle_motion.auto_pin import draw_auto_pin
+from app.ui.panels.handle_motion.spring import draw_spring
+from app.ui.panels.handle_motion.track import draw_track
+from app.ui.shortcuts.keys import CTRL, format_modified
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
+from app.ui.style.sliders import Scale, number_field, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     FILL,
-    Look,
-    Scale,
     align_right,
     draw_tooltip,
     heading,
     icon_button,
     label,
     main_button,
-    number_field,
     option_buttons,
     shorten_text,
-    slider,
     small_text,
     split_line,
     text_button,
 )
-from app.ui.viewport import find_auto_pinned
+from app.ui.viewport.marks import find_auto_pinned
 
 MOST_ROWS = 5.5
 WEIGHTS = Scale(left=0.01, right=100.0, logarithmic=True)
@@ -95,7 +93,7 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
         keys="Del",
         enabled=bool(project.selected_handles),
     ):
-        actions.append(do(posing.remove_handles, project.selected_handles))
+        actions.append(do(remove_handles, project.selected_handles))
     return actions
 
 
@@ -218,7 +216,7 @@ def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     hint = "Where this pose wants it, in pixels from the upper left corner"
     wished = _point(look, project, "Target", target.position, hint)
     if wished is not None:
-        actions.append(do(posing.set_targets, {handle.id: replace(target, position=wished)}))
+        actions.append(do(set_targets, {handle.id: replace(target, position=wished)}))
     actions += _draw_rotation(look, project, handle, target)
     shortfall = _find_target_errors(project)
     lag = shortfall.errors.get(handle.id)
@@ -243,11 +241,11 @@ def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target)
     changed, turns = imgui.checkbox("##turns", is_turned)
     draw_tooltip("Turn the shape at this handle by an angle, or let it turn freely")
     if changed and not turns:
-        return [do(posing.free_rotation, handle.id)]
+        return [do(free_rotation, handle.id)]
     if changed and project.layer_runtime.shown is not None:
         index = [other.id for other in project.layer.handles].index(handle.id)
         now = project.layer_runtime.shown.handle_rotations[index]
-        return [do(posing.set_targets, {handle.id: replace(target, rotation=now)})]
+        return [do(set_targets, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
     if target.rotation is None:
         imgui.text_colored(look.palette.dim, "freely")
@@ -257,7 +255,7 @@ def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target)
     draw_tooltip("Counter-clockwise, in degrees; drag the ring around the handle to turn it")
     if entered is None:
         return []
-    return [do(posing.set_targets, {handle.id: replace(target, rotation=math.radians(entered))})]
+    return [do(set_targets, {handle.id: replace(target, rotation=math.radians(entered))})]
 
 
 def _point(look: Look, project: Project, text: str, place: complex, hint: str) -> complex | None:
@@ -294,7 +292,7 @@ def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
     text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
     hint, keys = "Let this point stay calm between keys", format_modified(CTRL, "click")
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
-        actions.append(do(posing.toggle_anchor_at_handle, chosen[0].id))
+        actions.append(do(toggle_anchor_at_handle, chosen[0].id))
     has_own = layer.anchor is not None
     if text_button("Automatic anchor###clear anchor", next(halves), enabled=has_own):
         actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))

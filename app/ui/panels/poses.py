@@ -9,23 +9,18 @@ from app.document import LibraryPose, Pose, format_pairs
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.editor.poses import flipping, library, pasting
-from app.ui.shortcuts import draw_action_button, draw_action_text_button
-from app.ui.style import (
+from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
+from app.ui.style.sliders import Scale, number_field, slider_track
+from app.ui.style.theme import SMALL, Look, colour_u32, pixel_density
+from app.ui.style.widgets import (
     POSE_PAYLOAD,
-    SMALL,
-    Look,
-    Scale,
     align_right,
-    colour_u32,
     draw_tooltip,
     heading,
     label,
     name_popup,
-    number_field,
-    pixel_density,
     push_text_size,
     shorten_text,
-    slider_track,
     small_text,
     split_line,
     text_button,

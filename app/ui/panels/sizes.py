@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from imgui_bundle import imgui
 
-from app.ui.style import draw_tooltip
+from app.ui.style.widgets import draw_tooltip
 
 LARGEST = 65_535
 

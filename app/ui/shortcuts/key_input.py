@@ -3,7 +3,8 @@
 from imgui_bundle import imgui
 
 from app.editor import Action, Session, do
-from app.editor.actions import playback, posing, viewing
+from app.editor.actions import playback, viewing
+from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.tools import move_tool
 from app.ui.shortcuts.keys import CTRL
 from app.ui.shortcuts.table import BINDINGS
@@ -74,7 +75,7 @@ def _close_menu() -> bool:
 def _nudges(session: Session) -> list[Action]:
     if session.project is None or not (session.moves or session.project.selected_handles):
         return []
-    nudge = move_tool.nudge_layer if session.moves else posing.nudge_handles
+    nudge = move_tool.nudge_layer if session.moves else nudge_handles
     step = 10.0 if imgui.get_io().key_shift else 1.0
     return [
         do(nudge, step * direction)

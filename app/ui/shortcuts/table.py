@@ -6,28 +6,25 @@ from typing import Any
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
-from app.editor import Project, Session, do, error_reports, layering, with_project
+from app.editor import Project, Session, do, error_reports, with_project
 from app.editor.actions import (
-    OverlayName,
-    apply_motion,
-    cut_out_editing,
-    cycles,
     editing,
     exporting,
     files,
-    joint_placement,
-    keys,
     playback,
-    posing,
-    preset_setup,
     saving,
-    stiffness_editing,
-    timeline_drag,
-    tracking,
-    tracks,
     tutorials,
     viewing,
 )
+from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
+from app.editor.actions.posing.handles import mirror_handles, suggest_handles
+from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.actions.posing.pose_drag import pin_selected_handles
+from app.editor.actions.timing import cycles, keys, timeline_drag, tracks
+from app.editor.actions.tracking.recording import discard_recording, toggle_recording_armed
+from app.editor.actions.viewing import OverlayName
+from app.editor.layering.layer_channels import key_camera, toggle_camera_view
+from app.editor.layering.layer_list import ask_layer_name
 from app.editor.poses import copying, library, paste_destinations, pasting
 from app.editor.tools import move_tool
 from app.ui.panel import bring_to_front
@@ -159,7 +156,7 @@ def _brushes(session: Session, _: Project) -> bool:
 @with_project
 def _rename_layer(session: Session, project: Project) -> None:
     bring_to_front("Layers")
-    layering.ask_layer_name(session, project.active)
+    ask_layer_name(session, project.active)
 
 
 def _export(session: Session) -> None:
@@ -313,13 +310,13 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
     "Handles": {
         "suggest handles": ActionSpec(
             "Suggest handles",
-            do(posing.suggest_handles),
+            do(suggest_handles),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
             hint="Put handles on body and head and at tips and joints of limbs, each with a name",
         ),
         "pin here": ActionSpec(
             "Pin here",
-            do(posing.pin_selected_handles),
+            do(pin_selected_handles),
             "P",
             icon=icons.ICON_FA_THUMBTACK,
             hint="Let the selected handles stay where they are in this frame",
@@ -385,7 +382,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "mirror": ActionSpec(
             "Mirror",
-            do(posing.mirror_handles),
+            do(mirror_handles),
             icon=icons.ICON_FA_LEFT_RIGHT,
             hint="Add partners on the other side, named by .L and .R or left and right",
             condition=_selected,
@@ -449,7 +446,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "actual size": ActionSpec("Actual size", do(viewing.zoom_to_actual_size), "1"),
         "look through": ActionSpec(
             "Look through the camera",
-            do(layering.toggle_camera_view),
+            do(toggle_camera_view),
             hint="Show what the camera shows in each frame, until you look elsewhere",
             condition=lambda _, project: bool(project.document.camera),
             active=_looks_through,
@@ -595,7 +592,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "record": ActionSpec(
             "Record a drag",
-            do(tracking.toggle_recording_armed),
+            do(toggle_recording_armed),
             "R",
             icon=icons.ICON_FA_CIRCLE,
             hint="Record how the next handle is dragged, while the timeline plays",
@@ -603,7 +600,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             active=lambda session: session.records,
         ),
         "record nothing": ActionSpec(
-            "Give the recording up", do(tracking.discard_recording), "Escape", condition=_records
+            "Give the recording up", do(discard_recording), "Escape", condition=_records
         ),
         "preview start": ActionSpec(
             "Start preview range here", do(keys.start_preview_at_playhead), "B", has_separator=True
@@ -620,7 +617,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "key camera": ActionSpec(
             "Key the camera",
-            do(layering.key_camera),
+            do(key_camera),
             icon=icons.ICON_FA_VIDEO,
             hint="From here on frames show what the viewport shows now",
         ),

@@ -4,7 +4,8 @@ from imgui_bundle import imgui, imgui_ctx
 
 from app.editor import Action, Session
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.style import Look, draw_tooltip, icon_button, text_button
+from app.ui.style.theme import Look
+from app.ui.style.widgets import draw_tooltip, icon_button, text_button
 
 
 def draw_action_item(session: Session, name: str) -> list[Action]:

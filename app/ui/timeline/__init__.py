@@ -4,5 +4,3 @@ In: the document's keys and the playhead.
 Out: actions on keys and time.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.bars`.
 """
-
-from app.ui.timeline import timeline as timeline

@@ -5,12 +5,16 @@ from collections.abc import Callable
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Project, Session, do
-from app.editor.actions import keys, playback, tracking, viewing
+from app.editor.actions import playback, viewing
+from app.editor.actions.timing import keys
+from app.editor.actions.tracking.recording import RECORDING_SPEEDS, set_recording_speed
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
-from app.ui.bars import draw_method_menu
+from app.ui.bars.methods import draw_method_menu
 from app.ui.methods import VARIANTS
-from app.ui.shortcuts import BINDINGS, draw_action_button
-from app.ui.style import Look, colour_u32, draw_tooltip, icon_button
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.widgets import draw_action_button
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import draw_tooltip, icon_button
 from app.ui.timeline.layout import format_seconds
 from app.ui.timeline.menus import draw_time_menu
 
@@ -67,8 +71,8 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
     imgui.set_next_item_width(4.6 * look.em)
     if imgui.begin_combo("##recording", f"{session.recording_speed:.0%}"):
         actions += [
-            do(tracking.set_recording_speed, speed)
-            for speed in tracking.RECORDING_SPEEDS
+            do(set_recording_speed, speed)
+            for speed in RECORDING_SPEEDS
             if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
         ]
         imgui.end_combo()

@@ -5,7 +5,8 @@ from imgui_bundle import ImVec2, imgui
 from app.document import LAST_FRAME
 from app.editor import Action, do
 from app.editor.poses import library
-from app.ui.style import POSE_PAYLOAD, colour_u32
+from app.ui.style.theme import colour_u32
+from app.ui.style.widgets import POSE_PAYLOAD
 from app.ui.timeline.layout import TimelineLayout, draw_time_tag
 
 

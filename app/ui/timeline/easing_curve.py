@@ -4,12 +4,10 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import MAX_REVOLUTIONS, PRESETS, Easing, Keyframe
 from app.editor import Action, KeysByRow, Project, do
-from app.editor.actions import keys
-from app.ui.style import (
-    SMALL,
-    Look,
+from app.editor.actions.timing import keys
+from app.ui.style.theme import SMALL, Look, colour_u32
+from app.ui.style.widgets import (
     bold_text,
-    colour_u32,
     draw_tooltip,
     is_hovered_or_held,
     label,

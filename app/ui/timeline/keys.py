@@ -14,11 +14,13 @@ from app.editor import (
     TrackRow,
     do,
     layer_of,
-    layering,
 )
-from app.editor.actions import editing, keys, timeline_drag, tracks
-from app.ui.shortcuts import CTRL, format_modified
-from app.ui.style import begin_tooltip, colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
+from app.editor.actions import editing
+from app.editor.actions.timing import keys, timeline_drag, tracks
+from app.editor.layering.layer_selection import set_active_layer
+from app.ui.shortcuts.keys import CTRL, format_modified
+from app.ui.style.theme import colour_u32
+from app.ui.style.widgets import begin_tooltip, draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import (
     ROUNDING,
     LayerRow,
@@ -78,7 +80,7 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
 def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
     """Activate the row's layer, and select the row and the given keys."""
     return [
-        do(layering.set_active_layer, layer_of(row)),
+        do(set_active_layer, layer_of(row)),
         do(tracks.select_track, row.handle if isinstance(row, TrackRow) else None),
         do(editing.select_keys_in_rows, chosen_of),
     ]

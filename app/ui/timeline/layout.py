@@ -10,7 +10,8 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import LAST_FRAME, Layer, Track, TreeRow, memoized_on
 from app.editor import KeyRow, Project, Session, TimeRangeView, display_frame, row_of
-from app.ui.style import Look, draw_tag, tag_size
+from app.ui.style.drawing import draw_tag, tag_size
+from app.ui.style.theme import Look
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the tracks
 MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the marker band, with names or without

@@ -4,10 +4,13 @@ from imgui_bundle import imgui
 
 from app.document import PRESETS, Keyframe, TangentMode, TrackKey, track_commands
 from app.editor import Action, KeyRow, Project, Session, TrackRow, display_frame, do, frames_in
-from app.editor.actions import cycles, editing, keys, playback, tracks
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import cycles, keys, tracks
 from app.editor.poses import copying
-from app.ui.shortcuts import BINDINGS, draw_action_item
-from app.ui.style import Look, draw_tooltip, shorten_text
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.shortcuts.widgets import draw_action_item
+from app.ui.style.theme import Look
+from app.ui.style.widgets import draw_tooltip, shorten_text
 from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.layout import TimelineLayout
 

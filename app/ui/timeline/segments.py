@@ -22,11 +22,10 @@ from app.document import (
     pose_segments,
 )
 from app.editor import Action, CycleDrag, do
-from app.editor.actions import timeline_drag, tracks
-from app.ui.style import (
-    SMALL,
+from app.editor.actions.timing import timeline_drag, tracks
+from app.ui.style.theme import SMALL, colour_u32
+from app.ui.style.widgets import (
     begin_tooltip,
-    colour_u32,
     draw_tooltip,
     is_hovered_or_held,
     is_pressed,

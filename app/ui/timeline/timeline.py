@@ -16,25 +16,22 @@ from app.editor import (
     TurnDrag,
     display_frame,
     do,
-    layering,
 )
-from app.editor.actions import editing, playback, timeline_drag
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import timeline_drag
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.tools import tool_pointer
-from app.ui.shortcuts import CTRL, format_modified
-from app.ui.style import Look
+from app.ui.shortcuts.keys import CTRL, format_modified
+from app.ui.style.theme import Look
 from app.ui.timeline.bar import draw_transport_bar
 from app.ui.timeline.dropping import accept_dropped_pose
 from app.ui.timeline.keys import draw_key_box, draw_keys, draw_track_background
 from app.ui.timeline.layout import THIN, TimelineLayout, TrackLane, format_seconds, was_dragged
-from app.ui.timeline.rows import draw_layer_rows
-from app.ui.timeline.ruler import (
-    draw_camera_row,
-    draw_markers,
-    draw_overview,
-    draw_playhead,
-    draw_range_edges,
-    draw_ruler,
-)
+from app.ui.timeline.rows.layers import draw_layer_rows
+from app.ui.timeline.ruler.camera import draw_camera_row
+from app.ui.timeline.ruler.edges import draw_range_edges
+from app.ui.timeline.ruler.markers import draw_markers
+from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
 from app.ui.timeline.segments import draw_cycle_bars, draw_pose_segments
 from app.ui.timeline.tracks import draw_track_keys
 
@@ -136,7 +133,7 @@ def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
         case MarkerDrag(marker=frame) | CameraDrag(key=frame) | TurnDrag(turn=frame):
             return [do(playback.scrub, frame)]
         case SwitchDrag(layer=layer, switch=frame):
-            return [do(layering.set_active_layer, layer), do(playback.scrub, frame)]
+            return [do(set_active_layer, layer), do(playback.scrub, frame)]
         case _:
             return []
 

@@ -7,13 +7,12 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
-from app.editor.actions import editing, timeline_drag
-from app.ui.shortcuts import CTRL, format_modified
-from app.ui.style import (
-    CHOSEN,
-    SMALL,
+from app.editor.actions import editing
+from app.editor.actions.timing import timeline_drag
+from app.ui.shortcuts.keys import CTRL, format_modified
+from app.ui.style.theme import CHOSEN, SMALL, colour_u32
+from app.ui.style.widgets import (
     begin_tooltip,
-    colour_u32,
     draw_tooltip,
     is_hovered_or_held,
     push_text_size,

@@ -10,7 +10,7 @@ from app.document import camera_at
 from app.editor import Project
 from app.render import Backdrop
 from app.storage import CHECKER
-from app.ui.style import PALETTES, Look, Palette, colour_u32, rgb
+from app.ui.style.theme import PALETTES, Look, Palette, colour_u32, rgb
 from app.ui.viewport.marks import to_rgba
 from app.ui.viewport.screen import ScreenMapping
 from engine.arrays import Bytes, Floats

@@ -18,8 +18,9 @@ from app.document import (
 from app.editor import HeatMap, LayerRuntime, Project, Session
 from app.motion import DeformMesh, DisplayedFrame
 from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
-from app.render.gpu import PosedMesh, RenderTarget
-from app.ui.style import PALETTES
+from app.render.gpu.mesh import PosedMesh
+from app.render.gpu.target import RenderTarget
+from app.ui.style.theme import PALETTES
 from app.ui.viewport.backdrop import make_backdrop
 from app.ui.viewport.cutout_overlay import mark_holes
 from app.ui.viewport.gpu_resources import GpuResources

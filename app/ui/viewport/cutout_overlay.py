@@ -10,11 +10,13 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.editor import Project, Session
-from app.editor.actions import cut_out_editing, stiffness_editing
+from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
 from app.render import Disc, Renderer
-from app.render.gpu import GpuMesh, GpuPicture, PosedMesh, PositionBuffer, to_float32_points
+from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
+from app.render.gpu.picture import GpuPicture
 from app.storage import CutOutResult
-from app.ui.style import Look, Palette, colour_u32, outline_strokes
+from app.ui.style.drawing import outline_strokes
+from app.ui.style.theme import Look, Palette, colour_u32
 from app.ui.viewport.marks import to_rgba
 from engine.arrays import Bytes, Complexes, Integers
 

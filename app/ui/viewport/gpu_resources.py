@@ -8,7 +8,8 @@ from app.document import Layer, have_same_stiffness
 from app.editor import HeatMap, Project
 from app.motion import DeformMesh, DisplayedFrame, Vertices
 from app.render import DrawnMesh, Renderer, shader_is_faster
-from app.render.gpu import GpuMesh, GpuPicture, PosedMesh
+from app.render.gpu.mesh import GpuMesh, PosedMesh
+from app.render.gpu.picture import GpuPicture
 from app.storage import Picture, release_pages
 from app.ui.viewport.backdrop import measure_brightness
 from app.ui.viewport.cutout_overlay import CutView

@@ -9,7 +9,7 @@ from app.document import Clip, Track, misses_target, pinned_handles, segment_tim
 from app.editor import Project, Session
 from app.motion import BoundingBox, DeformMesh, DisplayedFrame, MeshPoints, MotionPaths
 from app.render import Colour, Disc, HandleMark, Line, mark_anchor, mark_handles
-from app.ui.style import Palette, interface_scale, pixel_density
+from app.ui.style.theme import Palette, interface_scale, pixel_density
 from app.ui.viewport.paths import mark_path
 from engine.arrays import Booleans, Complexes
 from engine.domain import MeshedDomain

@@ -4,7 +4,7 @@ import numpy as np
 
 from app.document import Track
 from app.editor import Project, display_frame
-from app.editor.actions import tracking
+from app.editor.actions.tracking.track_space import track_target
 from app.render import Colour, Disc, Line
 from engine.arrays import Complexes
 
@@ -67,7 +67,7 @@ def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int
         return []
     if not track.is_scene_space and project.placed_at(project.active, frames) is None:
         return []
-    wished = [tracking.track_target(project, track, frame) for frame in frames]
+    wished = [track_target(project, track, frame) for frame in frames]
     # A scene-space track is independent of its layer's placement.
     placements = project.placements(frames, shown.placement)
     return [

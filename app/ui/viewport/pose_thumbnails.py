@@ -6,8 +6,8 @@ from app.document import Pose
 from app.editor import Project, Session
 from app.motion import DeformMesh, VertexArray, bounding_box
 from app.render import Backdrop, DrawnMesh, Renderer, Scene, fit_view
-from app.render.gpu import RenderTarget
-from app.ui.style import PALETTES
+from app.render.gpu.target import RenderTarget
+from app.ui.style.theme import PALETTES
 from app.ui.viewport.marks import to_rgba
 
 MARGIN = 0.06  # share of the side, left free around the shape

@@ -3,10 +3,11 @@
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import Project, Session, layering
-from app.editor.tools import PointerHit
+from app.editor import Project, Session
+from app.editor.layering.layer_list import layer_at
+from app.editor.tools.tool import PointerHit
 from app.motion import DisplayedFrame
-from app.ui.style import Look, pixel_density
+from app.ui.style.theme import Look, pixel_density
 from app.ui.viewport.marks import find_anchor, transform_loops
 from engine.arrays import Complexes
 from engine.geometry import contains
@@ -85,7 +86,7 @@ class ScreenMapping:
         if len(self.project.document.layers) == 1:
             return None
         below = self.project.active if through else None
-        return layering.layer_at(self.project, self._in_scene, below=below)
+        return layer_at(self.project, self._in_scene, below=below)
 
     def _is_anchor(self, handle: int | None, place: complex, reach: float) -> bool:
         """Return whether the pointer is on the anchor. A single layer has no anchor to drag."""

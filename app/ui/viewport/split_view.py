@@ -8,15 +8,9 @@ from app.document import Baseline, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.ui.methods import METHODS
-from app.ui.style import (
-    Look,
-    colour_u32,
-    draw_centred_text,
-    draw_knob,
-    draw_tooltip,
-    is_hovered_or_held,
-    outline_strokes,
-)
+from app.ui.style.drawing import draw_centred_text, draw_knob, outline_strokes
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import draw_tooltip, is_hovered_or_held
 
 GRIP, LINE = 0.55, 0.12  # em: half the width of the divider's hit area, and half the line's width
 KNOB = 0.85  # em: radius of the visible grip

@@ -7,9 +7,10 @@ from imgui_bundle import ImVec2, ImVec4, imgui
 from scipy.spatial import cKDTree
 
 from app.document import Layer, stiff_outline
-from app.editor.actions import stiffness_editing
+from app.editor.actions.layer_setup import stiffness_editing
 from app.motion import DeformMesh
-from app.ui.style import Look, colour_u32, outline_strokes
+from app.ui.style.drawing import outline_strokes
+from app.ui.style.theme import Look, colour_u32
 from app.ui.viewport.screen import ScreenMapping
 from engine.arrays import Floats
 

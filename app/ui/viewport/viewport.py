@@ -7,29 +7,30 @@ import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
 from app.document import WEIGHT_PRESETS, Handle, handle_commands
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import editing, posing, viewing
-from app.editor.tools import PointerHit, tool_pointer
+from app.editor import Action, Project, Session, do
+from app.editor.actions import editing, viewing
+from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
+from app.editor.actions.posing.pose_drag import free_rotation
+from app.editor.layering.layer_selection import reset_tree_rows
+from app.editor.tools import tool_pointer
+from app.editor.tools.tool import PointerHit
 from app.ui.panel import is_in_front
-from app.ui.shortcuts import ALT, CTRL, draw_action_item, format_modified
-from app.ui.style import Look, is_hovered_or_held, is_pressed, pixel_density
+from app.ui.shortcuts.keys import ALT, CTRL, format_modified
+from app.ui.shortcuts.widgets import draw_action_item
+from app.ui.style.theme import Look, pixel_density
+from app.ui.style.widgets import is_hovered_or_held, is_pressed
 from app.ui.viewport.backdrop import draw_camera_frame
 from app.ui.viewport.cutout_overlay import draw_brush_ring
-from app.ui.viewport.interaction import (
+from app.ui.viewport.interaction.drag import draw_cuts, draw_pending_strokes, follow_pointer
+from app.ui.viewport.interaction.gizmos import (
     add_mirror_axis_gizmo,
-    add_track_key_gizmos,
-    draw_badges,
-    draw_cuts,
-    draw_joints,
     draw_mirror_axis,
-    draw_mode_badge,
-    draw_pending_strokes,
-    draw_recording_bar,
     draw_rotation_gizmo,
-    find_hint,
     find_rotation_gizmo,
-    follow_pointer,
 )
+from app.ui.viewport.interaction.hints import draw_badges, draw_mode_badge, find_hint
+from app.ui.viewport.interaction.joints import draw_joints
+from app.ui.viewport.interaction.recording import add_track_key_gizmos, draw_recording_bar
 from app.ui.viewport.marks import find_off_target
 from app.ui.viewport.screen import GRIP, ScreenMapping
 from app.ui.viewport.split_view import (
@@ -139,7 +140,7 @@ def _update_hint(
     session: Session, screen: ScreenMapping, spot: PointerHit, *, is_over: bool
 ) -> list[Action]:
     """Set the hint for the place under the pointer. No row of layers is under it."""
-    actions = [do(layering.reset_tree_rows)] if is_over and screen.project.lingering else []
+    actions = [do(reset_tree_rows)] if is_over and screen.project.lingering else []
     hint = find_hint(session, screen, spot) if is_over else ""
     return actions if hint == session.hint else [*actions, do(tool_pointer.show_hint, hint)]
 
@@ -239,17 +240,17 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
     if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, "click")):
-        actions.append(do(posing.remove_handles, chosen))
+        actions.append(do(remove_handles, chosen))
     actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
     actions += draw_action_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
     label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
     if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, "click")):
-        actions.append(do(posing.toggle_anchor_at_handle, identity))
+        actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
     if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
-        actions.append(do(posing.free_rotation, identity))
+        actions.append(do(free_rotation, identity))
     imgui.end_popup()
     return actions
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.ui.panel import Panel, is_in_front
-from app.ui.style import FONT_SIZE
+from app.ui.style.theme import FONT_SIZE
 
 SIDE, BOTTOM = 30.2, 12.2  # em: initial size of the tabs at the side, and of the timeline
 BARS = (2.7, 4.4)  # em: width and height of the bars around the docks

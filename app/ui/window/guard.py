@@ -7,7 +7,8 @@ from typing import Literal
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx, implot
 
 from app.editor import Action, Session, do, error_reports
-from app.ui.style import Look, draw_tooltip, small_text
+from app.ui.style.theme import Look
+from app.ui.style.widgets import draw_tooltip, small_text
 
 OWN_CLIPS = 2  # clip rectangles that belong to a window itself
 PAUSE = 1.0  # seconds before a failed step is tried again

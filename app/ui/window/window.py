@@ -15,21 +15,27 @@ from imgui_bundle import (  # before glfw: it brings the library itself
 )
 from PIL import Image
 
+from app.editor.layering.pictures import drop_files
+from app.ui.panels.layers.tab import draw_layers_panel
+from app.ui.panels.motion_preset.tab import draw_motion_panel
+
 import glfw  # isort: skip
 
 from app.document import Pose
-from app.editor import Action, FileDialog, Project, Session, do, error_reports, layering
+from app.editor import Action, FileDialog, Project, Session, do, error_reports
 from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
-from app.render.gpu import describe_graphics, is_software
+from app.render.gpu.context import describe_graphics, is_software
 from app.storage import app_icon, sample_images
 from app.ui.panel import Panel
-from app.ui.panels import deform, distortion, export, handle, layers, motion_preset, poses
+from app.ui.panels import deform, distortion, export, handle, poses
 from app.ui.panels.layer_setup import cut_out, domain, material
-from app.ui.style import Look
+from app.ui.style.theme import Look
 from app.ui.timeline import timeline
-from app.ui.viewport import Canvas, SplitTextures, viewport
+from app.ui.viewport import viewport
+from app.ui.viewport.canvas import Canvas
+from app.ui.viewport.split_view import SplitTextures
 from app.ui.window.drag_and_drop import accept_files
 from app.ui.window.exporter import Exporter
 from app.ui.window.guard import FrameStep
@@ -225,7 +231,7 @@ class Window:
         )
 
     def _panels(self) -> list[Panel]:
-        draw_layers = partial(layers.draw_layers_panel, pictures=self._layer_picture)
+        draw_layers = partial(draw_layers_panel, pictures=self._layer_picture)
         draw_poses = partial(poses.draw_poses_panel, pictures=self._pose_picture)
         return [
             Panel(
@@ -239,7 +245,7 @@ class Window:
             Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
             Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
             Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
-            Panel("Motion", icons.ICON_FA_PERSON_WALKING, motion_preset.draw_motion_panel),
+            Panel("Motion", icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
             Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
             Panel("Material", icons.ICON_FA_CUBE, material.draw_material_panel),
             Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
@@ -282,7 +288,7 @@ class Window:
 
     def take_dropped(self, paths: list[Path]) -> None:
         """Open the dropped files, or add them to the open project."""
-        self.queue_action(do(layering.drop_files, paths))
+        self.queue_action(do(drop_files, paths))
 
     def _rename(self) -> None:
         title = window_title(self.session)

@@ -16,29 +16,24 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import (
-    close_dialog,
-    dismiss_toast,
-    editing,
-    exporting,
-    playback,
-    saving,
-    timeline_drag,
-    tutorials,
-    upkeep,
-    viewing,
-)
+from app.editor.actions import editing, exporting, playback, saving, tutorials, upkeep, viewing
+from app.editor.actions.timing import timeline_drag
+from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
-from app.ui import bars, toasts, welcome
-from app.ui.dialogs import Dialogs
+from app.ui import toasts, welcome
+from app.ui.bars.icons import draw_icon_bar
+from app.ui.bars.menus import draw_main_menu
+from app.ui.bars.status import draw_status_bar
+from app.ui.dialogs.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
-from app.ui.shortcuts import MENUS, collect_key_actions
-from app.ui.style import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
+from app.ui.shortcuts.key_input import collect_key_actions
+from app.ui.shortcuts.table import MENUS
+from app.ui.style.theme import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
 from app.ui.window.docking import Docking
 from app.ui.window.guard import FrameStep, WindowPart, allow_recovery
-from app.ui.window.tutorial import Callout
+from app.ui.window.tutorial.card import Callout
 
 # A saved layout with another number is ignored, because its panels have other names.
 LAYOUT = 1
@@ -100,13 +95,13 @@ class WindowFrame:
         )
         bars_around = (
             WindowPart("The menu bar", self._draw_menus, place="bar"),
-            WindowPart("The status bar", bars.draw_status_bar, place="bar"),
-            WindowPart("The icon bar", _with_project(bars.draw_icon_bar), place="bar"),
+            WindowPart("The status bar", draw_status_bar, place="bar"),
+            WindowPart("The icon bar", _with_project(draw_icon_bar), place="bar"),
         )
         menus = [
             WindowPart(
                 f"The menu {title}",
-                partial(bars.draw_main_menu, title=title, panels=panels),
+                partial(draw_main_menu, title=title, panels=panels),
                 place="menu",
             )
             for title in MENUS

@@ -31,7 +31,10 @@ from engine.deform.interior_point.second_order_correction import (
     find_corrected_step,
     radial_changes,
 )
-from engine.deform.model import SHORTEST, Barrier, BarrierBounds, Evaluation, Objective
+from engine.deform.model.barrier import Barrier, BarrierBounds
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.newton import SHORTEST
+from engine.deform.model.objective import Objective
 from engine.maps import (
     Certificate,
     Enclosures,

@@ -9,7 +9,7 @@ from math import exp, inf, tanh
 
 import numpy as np
 
-from engine.deform.model import BarrierBounds
+from engine.deform.model.barrier import BarrierBounds
 
 # Width of the first level; each next level is this many times as wide.
 FIRST_LEVEL_WIDTH = 0.35

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.model import Barrier, BarrierBounds
+from engine.deform.model.barrier import Barrier, BarrierBounds
 from engine.maps import Boundary
 
 # A bound is active under two conditions. Moving it all the way to the identity, or at least by a

@@ -12,7 +12,8 @@ import numpy as np
 
 from engine.arrays import Floats, Indices
 from engine.deform.interior_point.search import Search
-from engine.deform.model import MARGIN, BarrierBounds, Evaluation, interpolate_duals
+from engine.deform.model.barrier import MARGIN, BarrierBounds, interpolate_duals
+from engine.deform.model.evaluation import Evaluation
 from engine.maps import Enclosures
 
 # The barrier bound of a sample beyond the inner bounds lies this part of the remaining way farther

@@ -10,7 +10,7 @@ from engine.arrays import Floats
 from engine.deform.handles import Handles, HandleTargets
 from engine.deform.interior_point.homotopy import are_same_bounds, homotopy_level
 from engine.deform.interior_point.optimality import Optimality
-from engine.deform.model import BarrierBounds
+from engine.deform.model.barrier import BarrierBounds
 from engine.maps import Boundary, Certificate, HarmonicMap, LocalBounds
 
 # Optimality measure of a minimum. At the least weight the complementarity is 3e-7. Measured: with

@@ -17,17 +17,11 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Booleans, Floats
-from engine.deform.model import (
-    SHORTEST,
-    SUFFICIENT,
-    Barrier,
-    Direction,
-    Evaluation,
-    Model,
-    Objective,
-    newton_models,
-    stiffening_hessian,
-)
+from engine.deform.model.barrier import Barrier
+from engine.deform.model.evaluation import Evaluation
+from engine.deform.model.hessian import stiffening_hessian
+from engine.deform.model.newton import SHORTEST, SUFFICIENT, Direction, Model, newton_models
+from engine.deform.model.objective import Objective
 
 # A step leaves at least this part of each slack. Bounds with less than twice that are restored, in
 # at most so many corrections; each correction must halve the missing slack.

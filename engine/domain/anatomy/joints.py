@@ -9,7 +9,7 @@ from engine.domain.anatomy.anatomy import bend_share, joint_share, neck_along
 from engine.domain.anatomy.body_plan import BodyPlan, PlannedLeg
 from engine.domain.anatomy.chain import suggest_chain_joints
 from engine.geometry import contains
-from engine.geometry.motions import BodyKind
+from engine.geometry.motions.kinds import BodyKind
 
 CROWN = 0.65  # radii above the middle of a head, off the face
 # A head without a neck is the first node whose disc comes this near to the top, in heights.

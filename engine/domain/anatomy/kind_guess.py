@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from engine.arrays import Complexes
 from engine.domain.anatomy.body_plan import FOOT, SYMMETRIC, TOES, BodyPlan
 from engine.domain.anatomy.chain import is_chain
-from engine.geometry.motions import BodyKind, find_kind
+from engine.geometry.motions.kinds import BodyKind, find_kind
 
 MOST_LEGS, MOST_LIMBS = 4, 9
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
-from engine.domain.meshing import sides_of
+from engine.domain.meshing.mesh import sides_of
 from engine.geometry import (
     Pieces,
     bisect_segments,

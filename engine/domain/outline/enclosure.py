@@ -12,7 +12,9 @@ from engine.domain.outline.cuts import cut_region
 from engine.domain.outline.fitting import Candidates, fit_polygon
 from engine.domain.outline.holes import SMALLEST_HOLE, find_visible_holes, make_hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.picture import HOLES, Holes, WholePiece, join_parts, working_grid
+from engine.domain.picture.cut_out import HOLES, Holes
+from engine.domain.picture.grid import working_grid
+from engine.domain.picture.parts import WholePiece, join_parts
 from engine.errors import EngineError
 from engine.geometry import Hole, require_holes
 

@@ -1,7 +1,7 @@
 """Motions by their names."""
 
 from engine.errors import EngineError
-from engine.geometry.motions.library import MOTIONS
+from engine.geometry.motions.library.table import MOTIONS
 from engine.geometry.motions.motion import Motion
 
 

@@ -4,9 +4,3 @@ In: in-betweens, and their periods or target errors.
 Out: functions times series in time; corrections for pinned handles are in the room `pins`.
 Imports: `engine.deform.correction`, `engine.interpolation.series`, `engine.maps`, `engine.paths`.
 """
-
-from engine.interpolation.added.closing import (
-    Closing as Closing,
-    HoleCloser as HoleCloser,
-    Moduli as Moduli,
-)

@@ -31,19 +31,14 @@ import numpy.typing as npt
 import scipy.linalg
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.deform.correction import (
-    BaseFrame,
-    CorrectedFrame,
-    LimitBarrier,
-    PointCorrector,
-    PointPaths,
-    PointSolution,
-    PointTargets,
-    Variables,
-    extremes,
-    solve_correction,
-)
-from engine.interpolation.series import HoleConstants, PiecewiseSeries, Residual, separate_variables
+from engine.deform.correction.barrier import LimitBarrier, extremes
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame, CorrectedFrame
+from engine.deform.correction.paths import PointPaths
+from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
+from engine.deform.correction.variables import Variables
+from engine.interpolation.series.chebyshev import PiecewiseSeries, separate_variables
+from engine.interpolation.series.residual import HoleConstants, Residual
 from engine.maps import Boundary
 from engine.paths import Loops
 

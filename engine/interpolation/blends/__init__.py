@@ -6,6 +6,3 @@ Imports: `engine.dirichlet`, `engine.interpolation.keyframe_blend`,
 `engine.interpolation.enclosures`, `engine.interpolation.scaling`,
 `engine.interpolation.time_weights`, `engine.interpolation.added`.
 """
-
-from engine.interpolation.blends.blend import Blend as Blend
-from engine.interpolation.blends.table import BLENDS as BLENDS

@@ -8,29 +8,19 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.added import Closing, Moduli
-from engine.interpolation.enclosures import (
-    BernsteinPatch,
-    BlendChanges,
-    BoundaryBezier,
-    EndpointValues,
-)
-from engine.interpolation.keyframe_blend import (
-    BoundaryResidual,
-    Derivatives,
-    KeyframeBlend,
-    KeyframeSegment,
-)
+from engine.interpolation.added.closing import Closing, Moduli
+from engine.interpolation.enclosures.cells import BernsteinPatch, BlendChanges
+from engine.interpolation.enclosures.pieces import BoundaryBezier, EndpointValues
+from engine.interpolation.keyframe_blend.derivatives import Derivatives, KeyframeBlend
+from engine.interpolation.keyframe_blend.segment import BoundaryResidual, KeyframeSegment
 from engine.interpolation.sampled_domain import SampledDomain
-from engine.interpolation.series import HoleConstants, Residual
-from engine.interpolation.time_weights import (
-    InteriorKnot,
-    Tangent,
-    TimeWeights,
+from engine.interpolation.series.residual import HoleConstants, Residual
+from engine.interpolation.time_weights.tangents import (
     are_same_maps,
     derivatives_along,
     shorten_tangent,
 )
+from engine.interpolation.time_weights.weights import InteriorKnot, Tangent, TimeWeights
 from engine.maps import Boundary, Bounds, Enclosures, HarmonicMap
 
 PairCurves = tuple[BoundaryBezier[Any], BoundaryBezier[Any]]
@@ -40,8 +30,8 @@ PairCurves = tuple[BoundaryBezier[Any], BoundaryBezier[Any]]
 class Blend(ABC):
     """Derivatives of an in-between as a function of the keyframes and the time.
 
-    A variant is a subclass, and a row of `engine.interpolation.blends.BLENDS`. `bounds` apply to
-    in-betweens through keyframes, as far as the variant can keep them.
+    A variant is a subclass, and a row of the table `BLENDS`. `bounds` apply to in-betweens through
+    keyframes, as far as the variant can keep them.
     """
 
     # The quantity that the correction around holes keeps: 1 for ν, −1 for η; 0 without correction.

@@ -7,18 +7,15 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.interpolation.added import Closing
+from engine.interpolation.added.closing import Closing
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosures import (
-    BernsteinPatch,
-    BlendChanges,
-    EndpointValues,
-    enclose_exponential,
-)
-from engine.interpolation.keyframe_blend import Derivatives, KeyframeSegment, weighted_sum
+from engine.interpolation.enclosures.cells import BernsteinPatch, BlendChanges, enclose_exponential
+from engine.interpolation.enclosures.pieces import EndpointValues
+from engine.interpolation.keyframe_blend.derivatives import Derivatives, weighted_sum
+from engine.interpolation.keyframe_blend.segment import KeyframeSegment
 from engine.interpolation.sampled_domain import SampledDomain
-from engine.interpolation.scaling import ExactRho
-from engine.interpolation.series import combine_arrays
+from engine.interpolation.scaling.exact_rho import ExactRho
+from engine.interpolation.series.residual import combine_arrays
 from engine.maps import Enclosures
 
 

@@ -7,14 +7,11 @@ import numpy as np
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.blends.blend import Blend, PairCurves
-from engine.interpolation.enclosures import (
-    BernsteinPatch,
-    BlendChanges,
-    EndpointValues,
-    enclose_linear,
-)
-from engine.interpolation.keyframe_blend import Derivatives, KeyframeSegment, weighted_sum
-from engine.interpolation.series import combine_arrays
+from engine.interpolation.enclosures.cells import BernsteinPatch, BlendChanges, enclose_linear
+from engine.interpolation.enclosures.pieces import EndpointValues
+from engine.interpolation.keyframe_blend.derivatives import Derivatives, weighted_sum
+from engine.interpolation.keyframe_blend.segment import KeyframeSegment
+from engine.interpolation.series.residual import combine_arrays
 from engine.maps import Enclosures
 
 

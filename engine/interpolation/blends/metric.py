@@ -18,10 +18,11 @@ from typing import Any, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.deform.correction import frame_limits, log_distortions
+from engine.deform.correction.barrier import log_distortions
+from engine.deform.correction.limits import frame_limits
 from engine.dirichlet import Extension, Refinement
 from engine.errors import EngineError
-from engine.interpolation.added import Moduli
+from engine.interpolation.added.closing import Moduli
 from engine.interpolation.blends.blend import PairCurves
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.outline import (
@@ -29,21 +30,18 @@ from engine.interpolation.blends.outline import (
     control_curves,
     trace_time_weights,
 )
-from engine.interpolation.enclosures import (
+from engine.interpolation.enclosures.cells import (
     BernsteinPatch,
     BlendChanges,
-    EndpointValues,
     enclose_changed_metric,
     enclose_metric,
 )
-from engine.interpolation.keyframe_blend import BoundaryResidual, KeyframeSegment
-from engine.interpolation.series import HoleConstants, Residual, constant_one, separate_variables
-from engine.interpolation.time_weights import (
-    InteriorKnot,
-    Tangent,
-    TimeWeights,
-    shorten_metric_tangent,
-)
+from engine.interpolation.enclosures.pieces import EndpointValues
+from engine.interpolation.keyframe_blend.segment import BoundaryResidual, KeyframeSegment
+from engine.interpolation.series.chebyshev import constant_one, separate_variables
+from engine.interpolation.series.residual import HoleConstants, Residual
+from engine.interpolation.time_weights.tangents import shorten_metric_tangent
+from engine.interpolation.time_weights.weights import InteriorKnot, Tangent, TimeWeights
 from engine.maps import Boundary, Bounds, Enclosures, derivatives_of
 
 TOLERANCE = 1e-9  # of the series' last terms, in ln |f_z|

@@ -6,15 +6,15 @@ from typing import Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats
-from engine.interpolation.enclosures import BoundaryBezier, project_on_mean
-from engine.interpolation.time_weights import (
-    Tangent,
-    TimeWeights,
+from engine.interpolation.enclosures.cells import project_on_mean
+from engine.interpolation.enclosures.pieces import BoundaryBezier
+from engine.interpolation.time_weights.tangents import (
     ValueRange,
     allowed_velocities,
     clamp_smoothly,
     limit_velocity,
 )
+from engine.interpolation.time_weights.weights import Tangent, TimeWeights
 from engine.maps import Bounds
 
 

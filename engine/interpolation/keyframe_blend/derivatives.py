@@ -9,8 +9,8 @@ import numpy as np
 from engine.arrays import Complexes, Floats, Indices, Integers
 from engine.errors import EngineError
 from engine.interpolation.keyframe_blend.keyframe_samples import KeyframeSamples
-from engine.interpolation.series import Residual, combine_arrays
-from engine.interpolation.time_weights import TimeWeights
+from engine.interpolation.series.residual import Residual, combine_arrays
+from engine.interpolation.time_weights.weights import TimeWeights
 
 KEYFRAMES_OF_SEGMENT = (
     "An interval of this course has {wanted} keyframes, not {count} with {sheets} sheets."

@@ -6,7 +6,7 @@ from engine.arrays import nbytes_of
 from engine.dirichlet import Densities, Extension
 from engine.interpolation.keyframe_blend.derivatives import KeyframeBlend
 from engine.interpolation.sampled_domain import SampledDomain
-from engine.interpolation.series import PiecewiseSeries
+from engine.interpolation.series.chebyshev import PiecewiseSeries
 from engine.maps import Bounds
 
 

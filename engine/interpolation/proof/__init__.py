@@ -5,9 +5,3 @@ Out: enclosures of k, σ_a and σ_b, of a whole segment or one frame, and the ti
 enclosures are not tight.
 Imports: `engine.maps`, `engine.interpolation.enclosures`, `engine.interpolation.inbetweens`.
 """
-
-from engine.interpolation.proof.bisection import Proof as Proof, prove as prove
-from engine.interpolation.proof.frame_correction import (
-    FrameCorrection as FrameCorrection,
-    correct_frame as correct_frame,
-)

@@ -15,7 +15,7 @@ from math import inf
 import numpy as np
 
 from engine.arrays import Booleans, Floats, require_kind
-from engine.interpolation.enclosures import Subdivision
+from engine.interpolation.enclosures.pieces import Subdivision
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.corrected_cells import CorrectedCellEnclosures
 from engine.interpolation.proof.enclosing_cells import CellEnclosures, Cells

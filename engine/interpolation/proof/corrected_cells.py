@@ -3,14 +3,9 @@
 import numpy as np
 
 from engine.arrays import Complexes, Floats, ratio
-from engine.interpolation.enclosures import (
-    BernsteinPatch,
-    BilinearPatch,
-    BoundaryBezier,
-    Subdivision,
-    log_modulus_of_metric,
-    project_on_mean,
-)
+from engine.interpolation.enclosures.cells import BernsteinPatch, project_on_mean
+from engine.interpolation.enclosures.pieces import BoundaryBezier, Subdivision
+from engine.interpolation.enclosures.sheets import BilinearPatch, log_modulus_of_metric
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.correction import CorrectionEnclosure
 from engine.interpolation.proof.enclosing_cells import (

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from engine.arrays import Complexes, Floats, Indices
-from engine.interpolation.added import Closing
-from engine.interpolation.enclosures import BernsteinPatch, Subdivision, append_alternately
-from engine.interpolation.series import HoleConstants, PiecewiseSeries
+from engine.interpolation.added.closing import Closing
+from engine.interpolation.enclosures.cells import BernsteinPatch
+from engine.interpolation.enclosures.pieces import Subdivision, append_alternately
+from engine.interpolation.series.chebyshev import PiecewiseSeries
+from engine.interpolation.series.residual import HoleConstants
 from engine.maps import Boundary
 
 LEFT_OUT = 1e-9  # bound of rounding and of the terms omitted from the series of h

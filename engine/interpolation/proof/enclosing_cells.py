@@ -5,13 +5,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine.arrays import Booleans, Floats, Indices
-from engine.interpolation.enclosures import (
-    BernsteinPatch,
-    BilinearPatch,
-    BlendChanges,
-    BoundaryBezier,
-    Subdivision,
-)
+from engine.interpolation.enclosures.cells import BernsteinPatch, BlendChanges
+from engine.interpolation.enclosures.pieces import BoundaryBezier, Subdivision
+from engine.interpolation.enclosures.sheets import BilinearPatch
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.correction import closing_on
 from engine.maps import Enclosures

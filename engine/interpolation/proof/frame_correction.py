@@ -5,19 +5,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Floats
-from engine.deform.correction import (
+from engine.deform.correction.barrier import extremes
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.limits import (
     BEYOND,
     INSIDE,
-    PointCorrector,
-    PointSolution,
-    PointTargets,
-    extremes,
     frame_limits,
     log_limits,
     shorten_solution,
     solve_within,
 )
-from engine.interpolation.added.pins import CorrectionBase, CorrectionSeries
+from engine.deform.correction.solver import PointSolution, PointTargets
+from engine.interpolation.added.pins.pinning import CorrectionBase, CorrectionSeries
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds

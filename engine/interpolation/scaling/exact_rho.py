@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.geometry import diameter, sample_graded
-from engine.interpolation.added import Closing
+from engine.interpolation.added.closing import Closing
 from engine.interpolation.scaling.outline_curves import (
     PARTS,
     ROUNDS,
@@ -17,8 +17,8 @@ from engine.interpolation.scaling.outline_curves import (
     places_around,
 )
 from engine.interpolation.scaling.pointwise import CEILING, TOO_HIGH, KeyframeExtremes, PointSamples
-from engine.interpolation.series import PiecewiseSeries
-from engine.interpolation.time_weights import TimeWeights
+from engine.interpolation.series.chebyshev import PiecewiseSeries
+from engine.interpolation.time_weights.weights import TimeWeights
 from engine.maps import Bounds, HarmonicMap
 
 # Length of the segments between samples of the outline, relative to the distance to the nearest
@@ -42,7 +42,7 @@ class ExactRho:
     """The largest ρ at each time: the minimum of the pointwise ratios over the outline.
 
     This minimum has a kink in time wherever another point or another bound becomes the lowest.
-    In-betweens therefore use `engine.interpolation.scaling.SmoothedRho`.
+    In-betweens therefore use `engine.interpolation.scaling.smoothed_rho.SmoothedRho`.
 
     Departs from the paper: next to a keyframe a point's own bounds leave no room where f_z̄ nearly
     vanishes. ρ would fall within a moment, and the shape would jump. Beside each key (`BESIDE_KEY`)

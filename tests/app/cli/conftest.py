@@ -6,7 +6,7 @@ import moderngl
 import pytest
 
 from app.cli.commands import export
-from app.render.gpu import create_context
+from app.render.gpu.context import create_context
 
 
 @pytest.fixture(scope="module")

@@ -18,8 +18,8 @@ from app.editor.actions import saving
 from app.editor.work.jobs import Job
 from app.storage import SourceInfo
 from app.storage.assets import sample_images
-from engine.domain.outline import Detail
-from engine.domain.picture import CutOut, Holes
+from engine.domain.outline.enclosure import Detail
+from engine.domain.picture.cut_out import CutOut, Holes
 
 SAMPLE = sample_images() / "giraffe.lissom"
 

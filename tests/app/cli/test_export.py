@@ -18,7 +18,7 @@ from app.cli.options import NAMED_LIKE_FOLDER
 from app.document.settings import ExportSettings, FrameRange
 from app.export_formats import EXPORT_FORMATS
 from app.storage import NO_FOLDER
-from app.storage.project import NO_PROJECT
+from app.storage.project.archive import NO_PROJECT
 from app.storage.project_file import save_project
 from engine.arrays import Bytes
 

@@ -22,8 +22,10 @@ from app.document import keyframe
 from app.errors import LissomError
 from app.reports import Verdict
 from app.storage import Preferences, load_project, save_preferences, save_project
-from app.storage.pictures import decode_pictures, parallel, read_openraster
+from app.storage.pictures import parallel
+from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.parallel import MEMORY_OF_PICTURES
+from app.storage.pictures.picture import decode_pictures
 from engine.deform import MOST_HANDLES
 
 MEGABYTE = 1_000_000

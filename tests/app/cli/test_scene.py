@@ -16,8 +16,8 @@ from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
 from app.motion import ParentTransforms
 from app.solving import pose_document
-from app.solving.script import parse_pose_script
 from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
+from app.solving.script.pose_script import parse_pose_script
 from app.storage import open_layered
 from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_TRUE_OR_FALSE
 from app.storage.project_file import load_project, save_project

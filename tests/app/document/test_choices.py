@@ -7,18 +7,21 @@ import pytest
 from documents import disc_document, disc_domain, random_command
 from messages import says
 
-from app.document.commands import (
-    cycle_commands,
+from app.document.commands import cycle_commands, scene_commands
+from app.document.commands.layers import (
     group_commands as groups,
     layer_commands,
-    scene_commands,
     switch_group_commands as choices,
 )
-from app.document.layers import SwitchGroup, SwitchKey, VisibilityKey
+from app.document.layers.visibility import SwitchGroup, SwitchKey, VisibilityKey
 from app.document.model import NO_LAYER
-from app.document.queries import is_visible, subgroups_with_layers, suggest_switch_groups
+from app.document.queries.layers.switch_suggestions import (
+    subgroups_with_layers,
+    suggest_switch_groups,
+)
+from app.document.queries.layers.visibility import is_visible
 from app.document.settings import FrameRange
-from app.document.timing import Cycle
+from app.document.timing.cycles import Cycle
 from app.errors import LissomError
 
 FRAMES = range(49)

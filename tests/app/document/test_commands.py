@@ -29,7 +29,7 @@ from app.document.keyframe import MAX_REVOLUTIONS, Handle, Keyframe, Target
 from app.document.layer import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
-from app.document.timing import HOLD, LINEAR, PRESETS
+from app.document.timing.easing import HOLD, LINEAR, PRESETS
 from app.errors import LissomError
 from engine.arrays import NOT_FINITE
 from engine.errors import EngineError

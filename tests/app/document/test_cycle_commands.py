@@ -9,26 +9,22 @@ from key_rows import row
 from messages import says
 from numpy.testing import assert_allclose
 
-from app.document.commands import (
-    cycle_commands,
-    filming_commands,
-    key_commands,
-    layer_commands,
-    scene_commands,
-    track_commands,
-)
+from app.document.commands import cycle_commands, key_commands, scene_commands, track_commands
 from app.document.commands.cycle_commands import TWO_POSES_SHOWN
+from app.document.commands.layers import filming_commands, layer_commands
 from app.document.keyframe import Handle, Target
-from app.document.layers import DrawOrderKey, VisibilityKey
+from app.document.layers.layer_keys import DrawOrderKey
+from app.document.layers.visibility import VisibilityKey
 from app.document.queries.clips import clip_of
 from app.document.queries.layers.depth import depth_points_at
 from app.document.queries.layers.layer_state import draw_order_key_at
 from app.document.queries.layers.visibility import is_visible
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange
-from app.document.timing import Cycle, Track, TrackKey
+from app.document.timing.cycles import Cycle
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
-from app.motion.inbetweens import Animation
+from app.motion.inbetweens.animation import Animation
 
 
 def with_keys(*frames, last=100, **changes):

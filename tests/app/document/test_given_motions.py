@@ -7,11 +7,11 @@ from documents import altered, disc_document
 
 from app.document.commands import key_commands, scene_commands
 from app.document.keyframe import Keyframe
-from app.document.queries import digest_keys, is_motion_unedited
-from app.document.rig import AppliedMotion
+from app.document.queries.applied_motion import digest_keys, is_motion_unedited
+from app.document.rig.applied_motion import AppliedMotion
 from app.document.settings import FrameRange
-from app.document.timing import Cycle
-from engine.geometry.motions import Parameters
+from app.document.timing.cycles import Cycle
+from engine.geometry.motions.motion import Parameters
 
 POSE = disc_document().layers[0].keys[0].pose
 BREATHE = AppliedMotion(

@@ -4,7 +4,7 @@ import pytest
 from documents import disc_document
 
 from app.document import group_commands as groups, layer_commands as layers
-from app.document.layers import Group
+from app.document.layers.groups import Group
 from app.document.queries.layers.compositing import CompositeGroup, composite_layers
 from app.document.queries.layers.visibility import is_visible
 from app.errors import LissomError

@@ -6,14 +6,14 @@ from documents import CENTRE, differences, disc_document, full_document, random_
 from hypothesis import given, settings, strategies as st
 
 from app.document.commands import (
-    Command,
     handle_commands,
     key_commands,
-    layer_commands,
     pose_commands,
     scene_commands,
     shape_commands,
 )
+from app.document.commands.command import Command
+from app.document.commands.layers import layer_commands
 from app.document.history import History, PreviewPose, _bytes_only_in
 from app.errors import LissomError
 from app.storage.layers import make_still_layer

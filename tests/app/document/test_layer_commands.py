@@ -12,7 +12,8 @@ from app.document import (
     scene_commands as scenes,
 )
 from app.document.commands.layers.layer_commands import LAST_LAYER
-from app.document.layers import Attachment, VisibilityKey
+from app.document.layers.attachments import Attachment
+from app.document.layers.visibility import VisibilityKey
 from app.document.model import NO_LAYER, PARENT_CIRCLE
 from app.document.queries.clips import clip_of
 from app.document.queries.layers.depth import depth_points_at

@@ -10,19 +10,12 @@ from app.document.commands import handle_commands
 from app.document.commands.retime import KEYS_MEET
 from app.document.commands.scene_commands import scale_time
 from app.document.keyframe import Keyframe
-from app.document.layers import (
-    Attachment,
-    CameraKey,
-    DrawOrderKey,
-    OpacityKey,
-    SwitchGroup,
-    SwitchKey,
-    TransformKey,
-    VisibilityKey,
-)
+from app.document.layers.attachments import Attachment
+from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
+from app.document.layers.visibility import SwitchGroup, SwitchKey, VisibilityKey
 from app.document.queries.timeline import changed_ranges
 from app.document.settings import FrameRange, Marker
-from app.document.timing import Track, TrackKey
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 
 ALONE = handle_commands.add_handle(0, 100 + 100j)(disc_document())

@@ -23,7 +23,10 @@ from app.document.keyframe import Keyframe
 from app.document.layer import NO_HANDLE, NO_KEY
 from app.document.queries.timeline import changed_ranges, export_frame_range
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, LINEAR, PRESETS, Easing, Spring, TangentMode, Track, TrackKey
+from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.timing.springs import Spring
+from app.document.timing.tangent_mode import TangentMode
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 
 NAMES = {"arm.L": -40 + 10j, "arm.R": 35 + 12j, "tail": 5 - 50j}

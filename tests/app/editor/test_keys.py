@@ -10,13 +10,13 @@ from messages import says
 from sessions import session_of
 
 from app.document import LAST_FRAME, Spring, Track, TrackKey, handle_commands, track_commands
-from app.document.commands import layer_commands
+from app.document.commands.layers import layer_commands
 from app.editor.actions import editing
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import keys
 from app.editor.actions.timing.keys import NO_LAST_FRAME
 from app.editor.timeline_view import TrackRow, measure_key_errors
-from app.editor.work import Derived
+from app.editor.work.derived import Derived
 from app.errors import LissomError
 
 

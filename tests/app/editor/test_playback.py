@@ -7,7 +7,8 @@ from documents import altered, disc_document
 from sessions import session_of
 
 from app.document import FrameRange
-from app.editor.actions import playback, tracking
+from app.editor.actions import playback
+from app.editor.actions.tracking.correction_jobs import is_track_drag_pending
 
 
 @pytest.fixture
@@ -30,8 +31,8 @@ def test_playhead_goes_to_both_ends_of_what_plays(session):
 def test_hand_on_a_track_comes_first_only_while_it_drags(session, monkeypatch):
     project = session.project
     monkeypatch.setattr(type(project), "selected_track", 0)
-    assert not tracking.is_track_drag_pending(session, project)
+    assert not is_track_drag_pending(session, project)
     session.active_tool = object()
-    assert tracking.is_track_drag_pending(session, project)
+    assert is_track_drag_pending(session, project)
     monkeypatch.setattr(type(project), "selected_track", None)
-    assert not tracking.is_track_drag_pending(session, project)
+    assert not is_track_drag_pending(session, project)

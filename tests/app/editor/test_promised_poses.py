@@ -9,10 +9,15 @@ from unrest import is_shown, unrest
 
 from app.document import cycle_commands, scene_commands
 from app.document.keyframe import Target
-from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_commit import NO_POSE
+from app.editor.actions.posing.pose_drag import drag_handles, free_rotation, set_targets
+from app.editor.actions.posing.pose_lifecycle import candidate_clips
 from app.editor.actions.upkeep import maintain
+from app.editor.layering.layer_list import duplicate_layer
+from app.editor.layering.parenting import delete_layers
 
 ROUNDS = 50  # of work until all is at rest, at most
 
@@ -30,7 +35,7 @@ def test_refused_pose_is_told_once_and_hides_nothing(session):
     playback.scrub(session, last + 5)
     handle = project.layer.handles[0]
     with session.jobs.held():
-        posing.set_targets(session, {handle.id: Target(position=handle.position + 9)})
+        set_targets(session, {handle.id: Target(position=handle.position + 9)})
         maintain(session)
         project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
     settle(session)
@@ -46,7 +51,7 @@ def begun_pull(session):
     project = session.project
     playback.scrub(session, project.layer.keys[-1].frame)
     handle = project.layer.handles[0]
-    posing.set_targets(session, {handle.id: Target(position=handle.position + 9)})
+    set_targets(session, {handle.id: Target(position=handle.position + 9)})
     maintain(session)
     (pull,) = project.pulls
     while pull.kept is None or pull.kept is pull.before:
@@ -77,12 +82,12 @@ def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
     project, original = session.project, session.project.active
     pull = begun_pull(session)
     with session.jobs.held():
-        layering.duplicate_layer(session, original)
-        layering.delete_layers(session, original)
+        duplicate_layer(session, original)
+        delete_layers(session, original)
         assert not pull.is_in(project.history)
         assert any(pose.phi is pull.kept.phi for pose in project.layer.poses)
         playback.scrub(session, 5)
-        posing.insert_key(session)
+        insert_key(session)
         maintain(session)
     for _ in range(ROUNDS):
         assert session.jobs.wait_until_idle()
@@ -97,12 +102,12 @@ def test_clip_of_a_tried_pose_is_made_once_for_a_document(session):
     pull = begun_pull(session)
     with session.jobs.held():
         pull.tried = pull.ready
-        (clip,) = posing.candidate_clips(session.project)
-        assert posing.candidate_clips(session.project) == [clip]
-        assert posing.candidate_clips(session.project)[0] is clip
+        (clip,) = candidate_clips(session.project)
+        assert candidate_clips(session.project) == [clip]
+        assert candidate_clips(session.project)[0] is clip
         assert any(key.pose.phi is pull.tried.phi for key in clip.keys)
         pull.tried = pull.newest
-        assert posing.candidate_clips(session.project)[0] is not clip
+        assert candidate_clips(session.project)[0] is not clip
 
 
 def test_turn_of_a_handle_that_came_later_is_left_out(session):
@@ -111,8 +116,8 @@ def test_turn_of_a_handle_that_came_later_is_left_out(session):
     with session.jobs.held():
         handle = project.layer.handles[0]
         wishes = {handle.id: Target(position=handle.position + 9)}
-        posing.drag_handles(session, wishes, gesture="drag")
-        posing.add_handle(session, complex(project.layer.domain.mesh.vertices[0]))
-        posing.free_rotation(session, project.layer.handles[-1].id)
+        drag_handles(session, wishes, gesture="drag")
+        add_handle(session, complex(project.layer.domain.mesh.vertices[0]))
+        free_rotation(session, project.layer.handles[-1].id)
     settle(session)
     assert not [toast.text for toast in session.toasts]

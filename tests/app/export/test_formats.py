@@ -16,9 +16,10 @@ from PIL import Image, ImageSequence
 
 from app.errors import LissomError
 from app.export.run import MOST_QUEUED, export_frames
-from app.export.writers import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS, png, table
+from app.export.writers import png, table
 from app.export.writers.png import PngSequence
 from app.export.writers.spritesheet import SpritesheetWriter, sheet_grid
+from app.export.writers.table import DATA_WRITERS, FILE_WRITERS, FOLDER_WRITERS, SHAPE_WRITERS
 from app.export_formats import EXPORT_FORMATS, FormatSettings, MeshOptions, SpriteSheetOptions
 from app.render.view import canvas_view
 from engine.arrays import Bytes

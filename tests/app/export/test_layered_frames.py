@@ -11,7 +11,7 @@ from PIL import Image
 from app.document import ExportSettings, Meshing, clip_of
 from app.export import CachedVertices, ExportRequest, FrameRenderer, plan_export
 from app.motion import Animation
-from app.render.gpu import create_context
+from app.render.gpu.context import create_context
 from app.storage import cut_picture, flatten_layers, open_layered
 
 SIZE = (160, 120)

@@ -14,7 +14,7 @@ from PIL import Image
 from app.document import Document, ExportSettings, FrameRange, Group, VisibilityKey, clip_of
 from app.export import CachedVertices, ExportRequest, FrameRenderer, MeshExport, plan_export
 from app.motion import Animation
-from app.render.gpu import create_context
+from app.render.gpu.context import create_context
 from app.storage import decode_picture
 from engine.arrays import Bytes
 

@@ -11,7 +11,7 @@ from app.export.frame_renderer import FrameRenderer
 from app.export.frame_vertices import CachedVertices
 from app.export.plan import ExportRequest, plan_export
 from app.motion.extents.extent import bounding_box
-from app.motion.inbetweens import Animation
+from app.motion.inbetweens.animation import Animation
 from app.storage import Cancellation
 
 

@@ -9,9 +9,11 @@ from documents import altered
 from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
-from app.document.commands import cycle_commands, filming_commands, key_commands
+from app.document.commands import cycle_commands, key_commands
+from app.document.commands.layers import filming_commands
 from app.document.keyframe import Handle, TangentMode, Target
-from app.document.layers import DrawOrderKey, OpacityKey, TransformKey, VisibilityKey
+from app.document.layers.layer_keys import DrawOrderKey, OpacityKey, TransformKey
+from app.document.layers.visibility import VisibilityKey
 from app.document.queries.clips import clip_of
 from app.document.queries.key_segments import segment_keys
 from app.document.queries.layers.depth import depth_points_at
@@ -19,9 +21,10 @@ from app.document.queries.layers.layer_state import layers_in_draw_order, opacit
 from app.document.queries.layers.visibility import is_visible
 from app.document.queries.timeline import export_frame_range, segment_time_at
 from app.document.settings import FrameRange
-from app.document.timing import Cycle, Track, TrackKey
+from app.document.timing.cycles import Cycle
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
-from app.motion.inbetweens import Animation
+from app.motion.inbetweens.animation import Animation
 from engine.variant import Variant
 
 

@@ -20,7 +20,7 @@ from app.document import (
     scene_commands,
 )
 from app.document.keyframe import Handle, Target
-from app.document.layers import Attachment
+from app.document.layers.attachments import Attachment
 from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
 from app.motion import Animation, ParentTransforms, hung_animations, reparent_in_place

@@ -15,7 +15,8 @@ from app.document.history import History
 from app.document.keyframe import TangentMode
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
-from app.editor.actions import editing, keys, viewing
+from app.editor.actions import editing, viewing
+from app.editor.actions.timing import keys
 from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs

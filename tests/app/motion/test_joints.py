@@ -19,7 +19,7 @@ from app.motion import (
 )
 from app.motion.parenting.parent_transforms import BATCH
 from app.storage import load_project, save_project
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import IDENTITY_MOTION
 from engine.maps import distortion
 

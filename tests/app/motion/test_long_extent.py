@@ -15,7 +15,7 @@ from app.document import (
     Target,
     TransformKey,
 )
-from app.document.timing import Cycle
+from app.document.timing.cycles import Cycle
 from app.motion.extents import long_extent
 from app.motion.extents.long_extent import MOST_MEASURED, farthest_reach
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from app.document import Attachment, TransformKey, clip_of, layer_commands as layers, transform_at
 from app.motion import Animation, ParentTransforms, hung_animations
-from app.motion.parenting import find_parent_motion
+from app.motion.parenting.parent_transforms import find_parent_motion
 
 MOVES = (
     TransformKey(frame=0),

@@ -7,7 +7,8 @@ from dataclasses import replace
 from documents import disc_document
 
 from app.document import clip_of
-from app.document.commands import handle_commands, layer_commands
+from app.document.commands import handle_commands
+from app.document.commands.layers import layer_commands
 from app.motion import TriangleOrder
 
 COUNT = 20  # layers, each with its mesh

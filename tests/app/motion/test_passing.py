@@ -10,9 +10,10 @@ from numpy.testing import assert_allclose
 from app.document.commands import key_commands
 from app.document.keyframe import TangentMode
 from app.document.queries.clips import clip_of
-from app.document.timing import LINEAR, PRESETS, Easing
+from app.document.timing.easing import LINEAR, PRESETS, Easing
 from app.errors import LissomError, listen_to_progress
-from app.motion.inbetweens import Animation, PoseSampler
+from app.motion.inbetweens.animation import Animation
+from app.motion.inbetweens.pose_sampler import PoseSampler
 from engine.maps import Bounds
 
 

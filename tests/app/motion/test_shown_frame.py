@@ -6,10 +6,11 @@ from documents import CENTRE, disc_document
 from shapes import regular_polygon
 
 from app.document import clip_of
-from app.document.commands import handle_commands, key_commands, layer_commands
+from app.document.commands import handle_commands, key_commands
+from app.document.commands.layers import layer_commands
 from app.motion import DeformMesh, InbetweenCache, show
 from engine.domain import MeshedDomain
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 
 
 def test_the_nearer_key_stands_in_until_the_in_between_is_prepared():

@@ -39,12 +39,12 @@ from app.motion import (
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
-from app.motion.inbetweens import PoseSampler
+from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.spring_offsets import MAX_SPRING_OFFSET, PIECE, SpringOffsets
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
 from engine.geometry import IDENTITY_MOTION, diameter
-from engine.geometry.kinematics import simulate_spring, turn_arm
+from engine.geometry.kinematics.springs import simulate_spring, turn_arm
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and

@@ -10,7 +10,8 @@ from drawings import NEEDS_OSMESA
 from PIL import Image, ImageDraw
 
 from app.document import clip_of
-from app.document.commands import handle_commands, layer_commands
+from app.document.commands import handle_commands
+from app.document.commands.layers import layer_commands
 from app.document.keyframe import Keyframe
 from app.document.model import Document
 from app.motion import DeformMesh, TriangleOrder

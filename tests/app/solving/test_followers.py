@@ -10,12 +10,13 @@ from numpy.testing import assert_allclose
 from sessions import session_of, settle
 
 from app.document import Attachment, FrameRange, Spring, Target, Track, TrackKey
-from app.document.commands import handle_commands, layer_commands, track_commands
-from app.editor.actions import posing
+from app.document.commands import handle_commands, track_commands
+from app.document.commands.layers import layer_commands
+from app.editor.actions.posing.pose_drag import drag_handles, nudge_handles, release_drag
 from app.solving import flip_poses, pose_document
 from app.solving.drag_solver import DragSolver, Rig
 from app.solving.resolve_keys import KeyResolver, step_resolver
-from app.solving.script import parse_pose_script
+from app.solving.script.pose_script import parse_pose_script
 from engine.deform import BoundedPull
 from engine.maps import Bounds
 
@@ -180,8 +181,8 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     def drag(identity, way):
         place = complex(project.layer_runtime.shown.handle_positions[identity])
         hand = BoundedPull(frozenset({identity}))
-        posing.drag_handles(session, {identity: Target(position=place + way)}, hand=hand)
-        posing.release_drag(session)
+        drag_handles(session, {identity: Target(position=place + way)}, hand=hand)
+        release_drag(session)
         settle(session)
         return places(project.layer, project.layer.keys[0].pose)
 
@@ -190,8 +191,8 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     pose = project.layer.keys[0].pose
     assert_allclose(pose.targets[MIDDLE].position, carried[MIDDLE], rtol=0, atol=1e-9)
     # At once once more, before the first drag has come to rest.
-    posing.drag_handles(session, {END: Target(position=210 + 80j)})
-    posing.release_drag(session)
+    drag_handles(session, {END: Target(position=210 + 80j)})
+    release_drag(session)
     assert project.pulls
     again = drag(END, 8j)
     assert abs(again[MIDDLE] - carried[MIDDLE]) > 1
@@ -199,7 +200,7 @@ def test_springs_are_carried_by_drags_and_pose_when_dragged(bar, tmp_path):
     assert abs(bent[MIDDLE] - again[MIDDLE] - 8j) < 2
     # So do the arrow keys.
     project.selected_handles = frozenset({MIDDLE})
-    posing.nudge_handles(session, 5j)
+    nudge_handles(session, 5j)
     settle(session)
     nudged = places(project.layer, project.layer.keys[0].pose)
     assert abs(nudged[MIDDLE] - bent[MIDDLE] - 5j) < 2

@@ -15,7 +15,7 @@ from app.motion import trace_paths
 from app.solving import MotionRequest, start_motion_solve, step_motion_solve
 from app.storage import load_project, open_picture, save_project
 from engine.errors import EngineError
-from engine.geometry.motions import Parameters
+from engine.geometry.motions.motion import Parameters
 
 CHAIN = MotionRequest(motion="wag", kind="chain", joints=JOINTS["chain"])
 FEW = Meshing(triangles=1000, detail="coarse")

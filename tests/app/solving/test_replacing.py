@@ -11,13 +11,15 @@ from app.document import handle_commands, key_commands
 from app.document.keyframe import Target
 from app.document.model import Document
 from app.document.settings import Meshing
-from app.document.timing import Spring, Track, TrackKey
+from app.document.timing.springs import Spring
+from app.document.timing.tracks import Track, TrackKey
 from app.solving.drag_solver import DragSolver, Rig
 from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import step_resolver
 from app.storage.assets import sample_images
 from app.storage.layers import make_posable_layer, make_still_picture
-from app.storage.pictures import ImportedLayer, decode_picture
+from app.storage.pictures.layered import ImportedLayer
+from app.storage.pictures.picture import decode_picture
 from app.storage.project_file import load_project
 
 MESHING = Meshing(triangles=1_000, detail="coarse")

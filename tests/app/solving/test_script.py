@@ -7,13 +7,22 @@ import pytest
 from animations import bar_document, bar_picture, still_document
 from messages import says
 
-from app.document.timing import HOLD, LINEAR, PRESETS, Cycle, Spring, TangentMode, Track, TrackKey
+from app.document.timing.cycles import Cycle
+from app.document.timing.easing import HOLD, LINEAR, PRESETS
+from app.document.timing.springs import Spring
+from app.document.timing.tangent_mode import TangentMode
+from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 from app.solving import pose_document
-from app.solving.script import ScriptAttachment, ScriptHandle, load_pose_script, parse_pose_script
 from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
-from app.solving.script.layers import NO_KEYS, ZOOM_NOT_POSITIVE
-from app.solving.script.pose_script import NO_VARIANT, WRONG_SCHEMA
+from app.solving.script.layers import NO_KEYS, ZOOM_NOT_POSITIVE, ScriptAttachment
+from app.solving.script.pose_script import (
+    NO_VARIANT,
+    WRONG_SCHEMA,
+    ScriptHandle,
+    load_pose_script,
+    parse_pose_script,
+)
 from app.solving.script.tracks import HANDLE_OR_HANDLES, NEEDLESS_VELOCITY, NO_BASIS, NO_PRESET
 from app.storage.json_values import (
     LACKS_FIELD,

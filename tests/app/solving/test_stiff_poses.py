@@ -21,7 +21,7 @@ from app.solving import pose_document
 from app.solving.drag_solver import DragSolver, Rig
 from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import KeyResolver, step_resolver
-from app.solving.script import parse_pose_script
+from app.solving.script.pose_script import parse_pose_script
 from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT
 from engine.deform import BoundedPull
 from engine.domain import CutLine, CutOut

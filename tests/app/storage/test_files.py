@@ -18,22 +18,17 @@ from numpy.testing import assert_array_equal
 
 from app.errors import CANCELLED, LissomError
 from app.storage import NO_ARRAYS, NO_FOLDER
-from app.storage.files import (
-    Cancellation,
-    FileLock,
-    FileLockedError,
+from app.storage.files.arrays import read_arrays, write_arrays
+from app.storage.files.atomic import (
     atomic_file,
-    lock,
-    read_arrays,
-    read_file,
     remove_abandoned_files,
     temporary_picture,
-    write_arrays,
     write_atomically,
 )
-from app.storage.files.file_lock import LARGEST_LOCK_TEXT
-from app.storage.files.locks import at_lock_byte
-from app.storage.files.reading import LARGEST_FILE, NOT_ORDINARY
+from app.storage.files.cancellation import Cancellation
+from app.storage.files.file_lock import LARGEST_LOCK_TEXT, FileLock, FileLockedError
+from app.storage.files.locks import at_lock_byte, lock
+from app.storage.files.reading import LARGEST_FILE, NOT_ORDINARY, read_file
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
 

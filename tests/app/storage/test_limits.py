@@ -61,7 +61,7 @@ from app.storage.autosave import Autosave, SourceInfo, load_recoverable_file
 from app.storage.project import archive
 from app.storage.project_file import load_project, save_project
 from engine.domain import MeshedDomain
-from engine.geometry.motions import Parameters
+from engine.geometry.motions.motion import Parameters
 from engine.maps import Bounds
 from tests.bench.opening import FILLINGS
 

@@ -21,11 +21,12 @@ from documents import (
 from hypothesis import given, settings, strategies as st
 from messages import says
 
-from app.document.commands import handle_commands, key_commands, layer_commands, track_commands
+from app.document.commands import handle_commands, key_commands, track_commands
+from app.document.commands.layers import layer_commands
 from app.document.keyframe import TangentMode
 from app.document.layer import DUPLICATE_BONES
 from app.document.model import NO_LAYER, PARENT_CIRCLE
-from app.document.timing import Cycle
+from app.document.timing.cycles import Cycle
 from app.errors import LissomError
 from app.storage import NO_FOLDER
 from app.storage.assets import sample_images
@@ -39,8 +40,13 @@ from app.storage.json_values import (
     NOT_TRUE_OR_FALSE,
     NOT_WHOLE,
 )
-from app.storage.project import NO_PROJECT
-from app.storage.project.archive import MEMBER_TOO_LARGE, MIMETYPE, NOT_ARRAY, array_member
+from app.storage.project.archive import (
+    MEMBER_TOO_LARGE,
+    MIMETYPE,
+    NO_PROJECT,
+    NOT_ARRAY,
+    array_member,
+)
 from app.storage.project.members import OTHER_CHECKSUM
 from app.storage.project_file import NEWER_LISSOM, load_project, load_thumbnail, save_project
 from engine.arrays import FEW_ENTRIES, NOT_FINITE

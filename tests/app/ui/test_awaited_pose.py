@@ -7,7 +7,10 @@ import pytest
 from bars import HALF, LAST, bend_bar
 
 from app.document.commands import key_commands
-from app.editor.actions import editing, exporting, keys, playback, posing
+from app.editor.actions import editing, exporting, playback
+from app.editor.actions.posing.inserting import insert_key
+from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.timing import keys
 from app.motion import Animation
 
 FRAME, TURN = HALF, np.exp(0.5j)
@@ -105,7 +108,7 @@ def test_neither_a_drag_that_is_over_nor_steps_are_lost(window, bent, come):
     window.run(play)
     bent.selected_handles = frozenset({1})
     for _ in range(3):
-        window.act(posing.nudge_handles, 5j)
+        window.act(nudge_handles, 5j)
     assert FRAME not in bent.layer.key_frames
     come()
     target = bent.layer.key(FRAME).pose.targets[1]
@@ -163,7 +166,7 @@ def test_it_is_taken_back_before_it_began(window, bent, come):
         lambda session: playback.scrub(session, 2),
         playback.toggle_play,
         exporting.ask_destination_and_export,
-        posing.insert_key,
+        insert_key,
     ],
 )
 def test_it_is_not_lost_where_something_else_follows(window, bent, come, leave):

@@ -11,7 +11,7 @@ from app.editor.actions import editing, exporting, playback, saving
 from app.editor.dialogs import Question
 from app.editor.poses import copying
 from app.storage import load_project
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts.table import BINDINGS
 
 # Which edit the document at once, by a step of their own beside the drag's.
 EDITS = (

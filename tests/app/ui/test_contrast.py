@@ -11,22 +11,23 @@ from PIL import Image
 
 from app.document import Variant
 from app.document.keyframe import Target
-from app.editor import FileDialog, Question, do, layering
-from app.editor.actions import (
-    close_dialog,
-    cut_out_editing,
-    editing,
-    playback,
-    posing,
-    show_dialog,
-    timeline_drag,
-    viewing,
+from app.editor import FileDialog, Question, do
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup import cut_out_editing
+from app.editor.actions.posing.pose_drag import nudge_handles, set_targets
+from app.editor.actions.timing import timeline_drag
+from app.editor.actions.viewing import close_dialog, show_dialog
+from app.editor.layering.layer_list import (
+    set_layer_opacity,
+    toggle_layers_hidden,
+    toggle_visibility_key,
 )
+from app.editor.layering.layer_selection import set_active_layer
 from app.editor.timeline_view import TimeRangeView
 from app.editor.work.promise import Promise
 from app.solving import KeyResolver
 from app.storage.assets import sample_images
-from app.ui.style import PALETTES
+from app.ui.style.theme import PALETTES
 
 FADED = 0.5  # seconds
 TABS = ("Handle", "Layers", "Poses", "Deform", "Distortion", "Mesh", "Cut-out", "Export")
@@ -117,7 +118,7 @@ def test_the_welcome_view(window, tmp_path, check):
 def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
     session = window.session
     width, height = loose.document.canvas
-    posing.set_targets(session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
+    set_targets(session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     viewing.compare_with_method(session, Variant.LINEAR)
     for tab in TABS:
@@ -153,7 +154,7 @@ def test_a_pose_that_no_key_holds_and_a_cut_out(window, loose, check):
     session = window.session
     viewing.toggle_auto_key(session)
     loose.selected_handles = frozenset({1})
-    posing.nudge_handles(session, 30j)
+    nudge_handles(session, 30j)
     window.settle()
     assert loose.unkeyed_pose is not None
     check("unkeyed")
@@ -172,13 +173,13 @@ def test_layers_that_are_chosen_hidden_and_switched(window, tmp_path, check):
     project = window.open(path)
     session = window.session
     (wall, _, arm) = (layer.id for layer in project.document.layers)
-    layering.set_layer_opacity(session, arm, 0.5)
-    layering.toggle_layers_hidden(session, arm)
-    layering.toggle_visibility_key(session, wall)
+    set_layer_opacity(session, arm, 0.5)
+    toggle_layers_hidden(session, arm)
+    toggle_visibility_key(session, wall)
     playback.seek(session, 12)
     timeline_drag.set_time_range(session, TimeRangeView(0.0, 1.0))
     for identity in (arm, wall):
-        layering.set_active_layer(session, identity)
+        set_active_layer(session, identity)
         window.show_tab("Layers")
         check(identity)
 

@@ -5,10 +5,13 @@ import pytest
 from imgui_bundle import ImVec2, imgui
 
 from app.document import HOLD, key_commands
-from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.inserting import insert_key_at
+from app.editor.layering.layer_list import duplicate_layer
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.pictures import make_still
 from app.editor.poses.copying import KEYS_COPIED
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts.table import BINDINGS
 
 CTRL = int(imgui.Key.mod_ctrl)
 ALL, COPY, PASTE = (CTRL | int(key) for key in (imgui.Key.a, imgui.Key.c, imgui.Key.v))
@@ -169,13 +172,13 @@ def test_the_menu_says_what_would_be_copied_and_selected(window, play):
 
 
 def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
-    layering.duplicate_layer(window.session, 0)
-    layering.duplicate_layer(window.session, 0)
+    duplicate_layer(window.session, 0)
+    duplicate_layer(window.session, 0)
     window.settle()
     still = loose.active
-    layering.make_still(window.session, still)
+    make_still(window.session, still)
     window.settle()
-    layering.set_active_layer(window.session, 0)
+    set_active_layer(window.session, 0)
     posed = {layer.id for layer in loose.document.layers} - {still}
     assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
         KEYS_COPIED.format(count=4)
@@ -237,7 +240,7 @@ def test_the_menu_of_a_key_copies_and_pastes_there(window, loose, play):
 
 @pytest.mark.parametrize("item", ["ground", "interval 0"])
 def test_the_menu_of_a_place_between_keys_pastes_there(window, loose, play, item):
-    posing.insert_key_at(window.session, 0, 24)
+    insert_key_at(window.session, 0, 24)
     frame = 12 if item == "interval 0" else 36
 
     def paste(hand):

@@ -13,10 +13,13 @@ from messages import says
 from PIL import Image
 
 from app.document import Target
-from app.editor.actions import cut_out_editing, editing, posing, resolving
+from app.editor.actions import editing
+from app.editor.actions.layer_setup import cut_out_editing, resolving
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
 from app.storage.project_file import load_project, save_project
 from app.ui.panel import is_in_front
-from app.ui.style import TOAST
+from app.ui.style.widgets import TOAST
 from engine.domain.outline.cuts import CUTS_OFF
 from engine.domain.picture.mask import ALL_REMOVED
 
@@ -97,7 +100,7 @@ def test_where_a_background_was_removed_no_brush_is_offered(window, ring):
 
 def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window, drawing):
     session, first = window.session, drawing.document
-    posing.add_handle(session, complex(0.1 * SIZE, SIZE / 2))
+    add_handle(session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     with_handle = drawing.document
     window.act(cut_out_editing.toggle_cut_tool, "remove")
@@ -252,7 +255,7 @@ def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
 
 
 def test_what_cannot_be_is_told_and_undone(window, drawing):
-    posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
+    add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     domain = drawing.layer.domain
     window.act(cut_out_editing.toggle_cut_tool, "remove")
@@ -285,7 +288,7 @@ def test_it_is_saved_and_survives_a_crash(window, drawing, tmp_path):
 def test_a_click_keeps_a_hole_or_fills_it(window, tmp_path):
     Image.fromarray(pictures.ring(SIZE)).save(tmp_path / "ring.png")
     project = window.open(tmp_path / "ring.png")
-    posing.add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
+    add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     before = project.document
     first = len(project.layer.domain.holes)
@@ -411,7 +414,7 @@ def boots(window, tmp_path):
     Image.fromarray(pictures.painted(mask)).save(tmp_path / "boots.png")
     project = window.open(tmp_path / "boots.png")
     for place in (complex(30, 30), complex(90, 30), complex(60, 100)):
-        posing.add_handle(window.session, place)
+        add_handle(window.session, place)
         window.settle()
     return project
 
@@ -438,7 +441,7 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
     # Both sides can be pulled apart.
     targets = layer.keys[0].pose.targets
     wishes = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
-    posing.set_targets(window.session, wishes)
+    set_targets(window.session, wishes)
     window.settle()
     reached = boots.layer_runtime.shown.handle_positions
     assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)

@@ -17,9 +17,12 @@ from app.document import (
     track_commands,
 )
 from app.document.commands.cycle_commands import TWO_POSES_SHOWN
-from app.document.timing import Cycle, Track, TrackKey
-from app.editor import layering
-from app.editor.actions import cycles, editing, keys, playback, tracks
+from app.document.timing.cycles import Cycle
+from app.document.timing.tracks import Track, TrackKey
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import cycles, keys, tracks
+from app.editor.layering.layer_selection import select_layers
+from app.editor.layering.pictures import make_still
 from app.errors import LissomError
 
 RIGHT = 1  # the id of the bar's right handle
@@ -196,7 +199,7 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
         editing.edit_document(window.session, key_commands.move_keys(layer.id, {24}, layer.id))
     editing.edit_document(window.session, cycle_commands.delete_cycle(body, 0))
     window.settle()
-    layering.select_layers(window.session, arm, body)
+    select_layers(window.session, arm, body)
     editing.select_keys_in_rows(window.session, {})
     before = cycling.document
     window.act(cycles.create_cycle)
@@ -217,9 +220,9 @@ def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window
     bar, copy = swinging.active, swinging.active + 1
     editing.edit_document(window.session, layer_commands.duplicate_layer(bar))
     window.settle()
-    layering.make_still(window.session, copy)
+    make_still(window.session, copy)
     window.settle()
-    layering.select_layers(window.session, bar, copy)
+    select_layers(window.session, bar, copy)
     editing.select_keys_in_rows(window.session, {})
     window.act(cycles.create_cycle)
     assert [each.cycles for each in swinging.document.layers] == [(Cycle(first=0, last=48),), ()]

@@ -6,7 +6,8 @@ import pytest
 from imgui_bundle import imgui
 
 from app.document.settings import ExportSettings
-from app.editor.actions import exporting, keys, saving
+from app.editor.actions import exporting, saving
+from app.editor.actions.timing import keys
 from app.editor.dialogs import FileDialog
 from app.export_formats import EXPORT_FORMATS
 from app.storage import load_project

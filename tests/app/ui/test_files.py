@@ -9,8 +9,11 @@ from harness import Harness
 from app.document import UnreadMotion
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, files, posing, saving, viewing
+from app.editor.actions import editing, files, saving, viewing
+from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.actions.posing.pose_solver import POSING
 from app.editor.dialogs import Question
 from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
@@ -48,7 +51,7 @@ def change(window, project):
     """Make a change that is not saved."""
     place = complex(*project.document.canvas) / 2
     shift = 0.1 * len(project.layer.handles) * project.document.canvas[0]
-    window.act(posing.add_handle, place + shift)
+    window.act(add_handle, place + shift)
     window.settle()
     assert not project.history.is_saved
 
@@ -160,7 +163,7 @@ def test_changes_made_while_a_file_is_read_are_asked_about(window, project):
     with window.session.jobs.held():
         window.act(files.open_file, RING)
         assert window.session.dialog is None
-        window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+        window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
     assert len(project.layer.handles) == 1
@@ -174,7 +177,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project
     save_project(path, project.document)
     with window.session.jobs.held():
         window.act(files.recover_file, path)
-        window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+        window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
     assert isinstance(window.session.dialog, Question)
@@ -190,7 +193,7 @@ def test_changes_made_while_the_project_is_saved_are_asked_about(window, project
     window.act(verb)
     with window.session.jobs.held(saving.SAVING):
         window.run(lambda robot: robot.item_click("//###dialog/Save"))
-        window.act(posing.add_handle, complex(*project.document.canvas) / 3)
+        window.act(add_handle, complex(*project.document.canvas) / 3)
     window.settle()
     assert window.session.project is project
     assert not window.session.is_quitting
@@ -271,8 +274,8 @@ def test_the_autosave_waits_for_the_hand_but_not_for_ever(window, project, kept)
     change(window, project)
     place = complex(*project.document.canvas) / 2
     project.autosaved_at -= SECONDS
-    with window.session.jobs.held(posing.POSING):
-        posing.drag_handles(window.session, {0: Target(position=place)})
+    with window.session.jobs.held(POSING):
+        drag_handles(window.session, {0: Target(position=place)})
         window.clock.now += SECONDS / 2
         window.frames(20)
         assert not list(window.folder.glob("unsaved-*.lissom"))
@@ -286,7 +289,7 @@ def test_what_is_saved_stays_so_though_a_pose_had_not_settled(window, project, t
     change(window, project)
     change(window, project)
     place = complex(*project.document.canvas)
-    posing.set_targets(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
+    set_targets(window.session, {0: Target(position=place), 1: Target(position=1.2 * place)})
     window.frames(2)
     assert project.pull is not None
     path = tmp_path / "bar.lissom"
@@ -372,8 +375,8 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     save_project(path, replace(project.document, layers=(layer,)))
     opened = window.open(path)
     place = opened.layer.handles[0].position
-    posing.drag_handles(window.session, {0: Target(position=place + 20j)})
-    window.act(posing.release_drag)
+    drag_handles(window.session, {0: Target(position=place + 20j)})
+    window.act(release_drag)
     window.settle()
     target = opened.layer.keys[0].pose.targets[0]
     assert target.position == place + 20j

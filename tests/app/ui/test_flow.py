@@ -8,7 +8,11 @@ from app.document.commands.shape_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
-from app.editor.actions import editing, exporting, keys, playback, posing, saving, viewing
+from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions.posing.handles import add_handle, remove_handles, toggle_anchor_at_handle
+from app.editor.actions.posing.inserting import insert_key
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.actions.timing import keys
 from app.render.view import View
 from app.storage.assets import sample_images
 from app.ui.viewport import marks
@@ -134,8 +138,8 @@ def test_dragging_follows_and_is_one_step(window, bar, monkeypatch):
 def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
     session = window.session
     wanted = handle_places(bar)[1] + 150j
-    posing.drag_handles(session, {1: Target(position=wanted)})
-    posing.release_drag(session)
+    drag_handles(session, {1: Target(position=wanted)})
+    release_drag(session)
     leave(session)
     assert bar.pull is None
     assert bar.pulls
@@ -149,7 +153,7 @@ def test_a_pose_that_the_playhead_leaves_comes_to_rest(window, bar, leave):
 
 def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window, bar):
     session = window.session
-    posing.drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     window.settle()
     posed = bar.document
     assert bar.pull.is_held
@@ -162,7 +166,7 @@ def test_a_pose_that_rests_in_the_hand_ends_where_the_playhead_leaves_it(window,
 def test_undo_takes_back_a_pose_that_the_playhead_has_left(window, bar):
     session = window.session
     before = bar.document
-    posing.drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
+    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 150j)})
     session.jobs.wait_until_idle()
     window.frames()
     assert bar.document is not before
@@ -173,7 +177,7 @@ def test_undo_takes_back_a_pose_that_the_playhead_has_left(window, bar):
 
 
 def test_a_pose_that_is_held_is_of_the_frame_that_the_playhead_is_on(window, bar):
-    posing.insert_key(window.session)
+    insert_key(window.session)
     playback.seek(window.session, 20)
     window.frames(2)
     shown = bar.layer_runtime.shown
@@ -199,11 +203,11 @@ def test_the_coarse_mesh_is_shown_while_the_playhead_moves(window):
 
 def test_a_shape_that_is_held_back_is_left_alone_when_the_hand_lets_go(window, bar):
     session = window.session
-    posing.drag_handles(session, {1: Target(position=handle_places(bar)[1] + 9000)})
+    drag_handles(session, {1: Target(position=handle_places(bar)[1] + 9000)})
     window.settle()
     held = bar.layer_runtime.shown.positions
     assert bar.pull.drag.state.status is Status.AT_LIMITS
-    posing.release_drag(session)
+    release_drag(session)
     window.settle()
     assert bar.pull is None
     np.testing.assert_array_equal(bar.layer_runtime.shown.positions, held)
@@ -215,7 +219,7 @@ def test_inbetweens_follow_a_drag_before_the_hand_lets_go(window, bar):
     keys.set_inbetween_method(session, "metric")
     playback.seek(session, 24)
     window.settle()
-    posing.set_targets(session, {1: Target(position=handle_places(bar)[1] + 120j)})
+    set_targets(session, {1: Target(position=handle_places(bar)[1] + 120j)})
     window.settle()
     before = bar.layer_runtime.store.positions(bar.clip, 12)
     start = handle_places(bar)[1]
@@ -254,10 +258,10 @@ def test_a_new_handle_moves_nothing(window, bar):
     window.run(lambda robot: drag(robot, window, start, start + 120j))
     window.settle()
     before = bar.layer_runtime.shown.positions
-    posing.add_handle(window.session, handle_places(bar)[0] + 200)
+    add_handle(window.session, handle_places(bar)[0] + 200)
     window.settle()
     np.testing.assert_allclose(bar.layer_runtime.shown.positions, before, rtol=0, atol=1e-9)
-    posing.remove_handles(window.session, frozenset({0}))
+    remove_handles(window.session, frozenset({0}))
     window.settle()
     np.testing.assert_allclose(bar.layer_runtime.shown.positions, before, rtol=0, atol=1e-9)
 
@@ -267,12 +271,12 @@ def test_a_key_between_keys_starts_from_what_is_shown(window, bar):
     playback.seek(session, 20)
     window.settle()
     target = bar.layer_runtime.shown.pose.targets[1]
-    posing.set_targets(session, {1: Target(position=target.position + 150j)})
+    set_targets(session, {1: Target(position=target.position + 150j)})
     window.settle()
     playback.seek(session, 10)
     window.settle()
     between = bar.layer_runtime.shown.positions
-    posing.insert_key(session)
+    insert_key(session)
     window.settle()
     assert [key.frame for key in bar.document.layers[0].keys] == [0, 10, 20]
     np.testing.assert_allclose(bar.layer_runtime.shown.positions, between, rtol=0, atol=1.0)
@@ -611,7 +615,7 @@ def test_ctrl_click_on_the_shape_puts_the_anchor_there(window, bent):
     )
     assert abs(moved[0] - wanted) < 3
     assert abs(marks.find_anchor(bent, bent.layer_runtime.shown) - wanted) < 3
-    posing.toggle_anchor_at_handle(window.session, 0)
+    toggle_anchor_at_handle(window.session, 0)
     window.settle()
     assert marks.find_anchor(bent, bent.layer_runtime.shown) is None  # the handle itself shows it
 
@@ -637,15 +641,15 @@ def test_three_hints_lead_to_the_first_motion(window):
     project = window.open(BAR)
     steps = [hints.find_first_step(project)]
     place = complex(*project.document.canvas) / 2
-    posing.add_handle(session, place)
+    add_handle(session, place)
     window.settle()
     steps.append(hints.find_first_step(project))
-    posing.set_targets(session, {0: Target(position=place + 60j)})
+    set_targets(session, {0: Target(position=place + 60j)})
     window.settle()
     steps.append(hints.find_first_step(project))
     playback.seek(session, 24)
     window.settle()
-    posing.set_targets(session, {0: Target(position=place)})
+    set_targets(session, {0: Target(position=place)})
     window.settle()
     steps.append(hints.find_first_step(project))
     assert steps == [0, 1, 2, None]

@@ -12,16 +12,17 @@ from app.editor.actions import (
     editing,
     exporting,
     files,
-    keys,
     playback,
-    posing,
     saving,
-    stiffness_editing,
     tutorials,
     viewing,
 )
+from app.editor.actions.layer_setup import stiffness_editing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
-from app.ui.window.tutorial import NAME
+from app.ui.window.tutorial.card import NAME
 from app.ui.window.tutorial.layout import Rect, find_free_corner
 
 
@@ -181,8 +182,8 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     assert "Click on a part" in words(window)
     window.act(playback.scrub, 20)
     assert led.step == "handle", "no handle is there yet"
-    window.act(posing.add_handle, first)
-    window.act(posing.add_handle, second)
+    window.act(add_handle, first)
+    window.act(add_handle, second)
     led.reach("pose")  # the playhead was moved before
     window.act(keys.insert_key_in_row)
     window.until(lambda: len(session.project.layer.keys) == 2)
@@ -192,7 +193,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     assert led.step == "time"
     window.act(playback.scrub, 30)
     window.act(viewing.toggle_auto_key)
-    posing.set_targets(session, {1: Target(position=second + 100j)})
+    set_targets(session, {1: Target(position=second + 100j)})
     window.settle()
     assert led.step == "pose", "no key has the pose"
     window.act(keys.insert_key_in_row)
@@ -216,7 +217,7 @@ def test_a_guide_can_be_left_at_any_time(window):
         robot.key_press(window.Key.escape)
 
     for place in places_of_bar(window):
-        window.act(posing.add_handle, place)
+        window.act(add_handle, place)
     window.settle()
     guide, selected = session.tutorial, session.project.selected_handles
     assert selected

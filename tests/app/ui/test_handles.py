@@ -8,7 +8,9 @@ from numpy.testing import assert_allclose
 
 from app.document.commands import key_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import remove_handles
+from app.editor.actions.posing.pose_drag import nudge_handles, pin_selected_handles, set_targets
 
 
 @pytest.fixture
@@ -66,7 +68,7 @@ def click(window, place, key=None):
 
 
 def test_handles_are_suggested_and_taken_back_by_a_click(window, bar, play):
-    posing.remove_handles(window.session, frozenset({0, 1}))
+    remove_handles(window.session, frozenset({0, 1}))
     window.frames(2)
     before = bar.document
     play(lambda robot: robot.item_click("**/###Suggest handles"))
@@ -101,14 +103,14 @@ def test_a_locked_handle_is_not_dragged_and_holds_its_place(window, bar, play):
     start = places(bar)[0]
     drag(window, start, start + 60j)
     drag(window, start, start + 60j, key=window.Key.mod_alt)
-    posing.nudge_handles(window.session, 5j)
+    nudge_handles(window.session, 5j)
     window.settle()
     assert bar.document is before, "neither dragged nor turned, nudged or deleted"
     assert bar.selected_handles == {0}, "but selected"
     other = places(bar)[1]
     # Far beyond the limits: a free handle would be drawn along.
     drag(window, other, other + 0.4 * bar.document.canvas[0])
-    posing.set_targets(window.session, {1: Target(position=4 * other)})
+    set_targets(window.session, {1: Target(position=4 * other)})
     window.settle()
     layer = bar.layer
     lags = layer.target_errors(layer.key(24).pose)
@@ -152,7 +154,7 @@ def test_how_firmly_handles_hold_is_said_in_words(window, bar, play):
 
 def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
     width, height = loose.document.canvas
-    posing.set_targets(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
+    set_targets(window.session, {1: Target(position=complex(3 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
     assert max(layer.target_errors(layer.key(24).pose).values()) > 20
@@ -166,7 +168,7 @@ def test_pinned_handles_are_wanted_where_they_are(window, loose, play):
 
 
 def test_partners_are_made_and_found_by_their_names(window, bar, play):
-    posing.remove_handles(window.session, frozenset({1}))
+    remove_handles(window.session, frozenset({1}))
     editing.select_handles(window.session, frozenset({0}))
     window.frames(2)
     play(lambda robot: robot.item_click("**/###mirror"))
@@ -264,7 +266,7 @@ def test_where_a_handle_is_wanted_it_is_selected_and_has_its_menu(window, short)
 def test_a_handle_is_taken_only_where_something_is_seen_of_it(window, short):
     target = short.layer.key(24).pose.targets[1].position
     editing.select_handles(window.session, frozenset({1}))
-    posing.pin_selected_handles(window.session)
+    pin_selected_handles(window.session)
     window.settle()
     click(window, target)
     assert not short.selected_handles

@@ -23,13 +23,17 @@ from app.document import (
     shape_commands,
     transform_at,
 )
-from app.editor import layering
-from app.editor.actions import editing, files, playback, posing, viewing
-from app.editor.layering.parenting import PARENT_IS_DESCENDANT
+from app.editor.actions import editing, files, playback, viewing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.layering.layer_list import move_layer
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
+from app.editor.layering.pictures import add_layers
 from app.motion import ParentTransforms
-from app.motion.parenting import layer_animation
+from app.motion.parenting.parent_transforms import layer_animation
 from app.storage import Autosave, SourceInfo, make_still_layer
-from app.ui.style import PALETTES
+from app.ui.style.theme import PALETTES
 from app.ui.viewport.marks import find_anchor, mark_all
 from engine.geometry import IDENTITY_MOTION
 
@@ -62,7 +66,7 @@ def scene(window, drawing):
 
 def open_with_arm(window, drawing):
     project = window.open(drawing)
-    window.act(layering.set_active_layer, identity(project, "arm"))
+    window.act(set_active_layer, identity(project, "arm"))
     window.settle()
 
 
@@ -184,12 +188,12 @@ def test_esc_and_a_drop_beside_all_layers_leave_it_as_it_was(window, scene, drag
 def test_a_circle_is_refused_in_words(window, scene, drag):
     hand, arm, body = (identity(scene, name) for name in ("hand", "arm", "body"))
     drag(SHOULDER)
-    window.act(layering.set_active_layer, hand)
+    window.act(set_active_layer, hand)
     window.settle()
     drag(170 + 118j)
     assert scene.document.layer(hand).attachments[0].parent == arm
     before = scene.document
-    window.act(layering.set_active_layer, body)
+    window.act(set_active_layer, body)
     window.settle()
     told = drag(212 + 120j)
     assert "hangs on body itself" in told[-1]
@@ -215,7 +219,7 @@ def test_a_click_on_the_anchor_adds_a_handle_there_as_ever(window, scene):
 
 
 def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(window, scene, drag):
-    window.act(posing.add_handle, SHOULDER)
+    window.act(add_handle, SHOULDER)
     window.settle()
     window.act(editing.edit_layer, shape_commands.set_anchor, scene.layer.handles[0].position)
     window.settle()
@@ -232,7 +236,7 @@ def test_a_handle_that_is_the_anchor_is_dragged_onto_another_layer_with_ctrl(win
 def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag, tmp_path):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     drag(SHOULDER)
-    window.act(posing.add_handle, PALM)
+    window.act(add_handle, PALM)
     window.settle()
     hand = scene.layer.handles[0].id
     window.act(editing.edit_document, layer_commands.set_depth(arm, hand, -0.5, 70.0))
@@ -275,7 +279,7 @@ def swung(window, scene):
     window.act(editing.edit_document, joint)
     window.act(playback.seek, 24)
     window.settle()
-    window.act(posing.add_handle, PALM)
+    window.act(add_handle, PALM)
     for overlay in ("paths", "onion"):
         window.act(viewing.toggle_overlay, overlay)
     window.settle()
@@ -291,7 +295,7 @@ def ways(window, project):
 def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
     (way,) = ways(window, swung)
     assert abs(way[-1] - way[0]) > 10
-    window.act(layering.detach_layer, identity(swung, "arm"))
+    window.act(detach_layer, identity(swung, "arm"))
     window.settle()
     assert ways(window, swung) == []
     window.act(editing.undo)
@@ -308,7 +312,7 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
     window.settle()
     shown = swung.layer_runtimes[arm].shown
     before = shown.placement.apply(shown.positions)
-    window.act(layering.detach_layer, arm)
+    window.act(detach_layer, arm)
     window.settle()
     after = swung.layer_runtimes[arm].shown
     assert not swung.document.layer(arm).has_parent
@@ -335,12 +339,12 @@ def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, 
 def test_a_layer_that_comes_to_a_scene_with_joints_has_its_own_way(window, swung, tmp_path):
     path = tmp_path / "ball.png"
     Image.new("RGBA", (40, 40), (90, 200, 90, 255)).save(path)
-    window.act(layering.add_layers, [path])
+    window.act(add_layers, [path])
     window.settle()
     assert swung.layer.name == "ball"
     shown = swung.layer_runtime.shown
-    window.act(posing.add_handle, complex(shown.positions.mean()))
-    window.act(posing.nudge_handles, 12)
+    window.act(add_handle, complex(shown.positions.mean()))
+    window.act(nudge_handles, 12)
     window.settle()
     (way,) = ways(window, swung)
     assert abs(way[-1] - way[0] - 12) < 1e-6
@@ -376,7 +380,7 @@ def nodding(window, swung):
     wall = make_still_layer(wall)
     swung.history.do(layer_commands.add_layer(wall), gesture=None)
     editing.update_layer_runtimes(swung)
-    window.act(layering.move_layer, wall.id, 0)
+    window.act(move_layer, wall.id, 0)
     window.act(viewing.set_onion_skin, 1, 1, 12)
     window.act(playback.seek, 12)
     window.act(viewing.toggle_overlay, "handles")

@@ -6,11 +6,12 @@ from harness import Harness
 from imgui_bundle import imgui
 
 from app.editor import Question, do
-from app.editor.actions import show_dialog, viewing
+from app.editor.actions import viewing
+from app.editor.actions.viewing import show_dialog
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
-from app.ui.shortcuts import BINDINGS, MENUS
 from app.ui.shortcuts.keys import format_chord, format_modified, parse_chords
+from app.ui.shortcuts.table import BINDINGS, MENUS
 
 OPEN = imgui.test_engine.TestAction.open
 CTRL, SHIFT, ALT = (

@@ -8,16 +8,21 @@ import pytest
 from app.document import Pose, segment_keys, segment_time_at
 from app.document.commands import key_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, keys, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import drag_handles, release_drag
+from app.editor.actions.posing.pose_lifecycle import commit_all_poses
+from app.editor.actions.posing.pose_solver import POSING, STEPS
+from app.editor.actions.timing import keys
 from app.motion import PoseSampler
-from app.motion.inbetweens import AutoPins, segment_key
+from app.motion.inbetweens.auto_pins import AutoPins
+from app.motion.inbetweens.segment_keys import segment_key
 
 
 def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
     wish = Target(position=bar.document.layers[0].handle(1).position + by)
     assert window.session.jobs.wait_until_idle()
-    window.act(posing.drag_handles, {1: wish})
+    window.act(drag_handles, {1: wish})
     assert window.session.jobs.wait_until_idle()
     window.frames()
     return wish
@@ -43,7 +48,7 @@ def test_a_slow_solver_shows_every_step(window, bar):
 def test_a_hand_that_moves_sees_every_step(window, bar):
     for step in range(1, 6):
         pull(window, bar, 40j * step)
-        assert 1 <= bar.pull.steps <= posing.STEPS
+        assert 1 <= bar.pull.steps <= STEPS
 
 
 def test_a_hand_that_rests_gets_as_many_steps_as_fit_before_the_next_picture(window, bar):
@@ -53,7 +58,7 @@ def test_a_hand_that_rests_gets_as_many_steps_as_fit_before_the_next_picture(win
     assert window.session.jobs.wait_until_idle()
     window.frames()
     assert bar.pull.drag.is_over
-    assert bar.pull.steps > posing.STEPS
+    assert bar.pull.steps > STEPS
 
 
 def test_nothing_moves_once_the_pose_rests(window, bar):
@@ -63,8 +68,8 @@ def test_nothing_moves_once_the_pose_rests(window, bar):
     assert bar.pull.is_at_rest
     rested, shown = bar.document, bar.layer_runtime.shown.positions
     window.frames(20)
-    assert posing.POSING not in window.session.jobs.kinds
-    window.act(posing.release_drag)
+    assert POSING not in window.session.jobs.kinds
+    window.act(release_drag)
     window.settle()
     window.frames(20)
     assert bar.pull is None
@@ -135,7 +140,7 @@ def check(bent):
 def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window, bent, check):
     window.session.clock = count().__next__  # the solver takes one step at a time
     pull(window, bent, 80j)
-    window.act(posing.release_drag)
+    window.act(release_drag)
     while bent.pull.ready is None:
         assert window.session.jobs.wait_until_idle()
         window.frames()
@@ -153,15 +158,15 @@ def test_in_betweens_are_there_when_the_playhead_leaves_a_pose_on_its_way(window
     # Nor where the program may end at any moment.
     window.act(playback.scrub, 12)
     (moving,) = bent.pulls
-    posing.commit_all_poses(window.session, bent)
+    commit_all_poses(window.session, bent)
     assert bent.layer.key(24).pose is moving.newest
 
 
 @pytest.mark.parametrize(
     ("variant", "ends"),
     [
-        ("nu", (posing.release_drag,)),
-        pytest.param("metric", (posing.release_drag, None), marks=pytest.mark.long),
+        ("nu", (release_drag,)),
+        pytest.param("metric", (release_drag, None), marks=pytest.mark.long),
     ],
     ids=["let go", "held, too"],
 )

@@ -20,16 +20,29 @@ from app.document import (
     shape_commands,
 )
 from app.document.keyframe import Target
-from app.editor import do, layering
-from app.editor.actions import (
-    close_dialog,
-    editing,
-    files,
-    keys,
-    playback,
-    posing,
-    saving,
-    timeline_drag,
+from app.editor import do
+from app.editor.actions import editing, files, playback, saving
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.timing import keys, timeline_drag
+from app.editor.actions.viewing import close_dialog
+from app.editor.layering.layer_list import (
+    duplicate_layer,
+    layer_at,
+    move_layer,
+    rename_layer,
+    set_layer_opacity,
+    toggle_layers_hidden,
+    toggle_visibility_key,
+)
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.parenting import attach_layer, delete_layers, detach_layer
+from app.editor.layering.pictures import (
+    add_layers,
+    drop_files,
+    make_posable,
+    make_still,
+    replace_picture,
 )
 from app.editor.poses import pasting
 from app.editor.timeline_view import TimeRangeView
@@ -37,7 +50,7 @@ from app.errors import EMPTY_IMPORT_LOG
 from app.motion import ParentTransforms
 from app.storage import load_project, save_project
 from app.ui.panel import is_in_front
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts.table import BINDINGS
 from app.ui.window import memory
 from engine.domain import Stroke
 
@@ -131,7 +144,7 @@ def test_the_list_of_layers(window, scene):
     assert scene.document.layer(arm).hidden
     assert scene.document.layer(body).locked
     # What is hidden or locked is passed through.
-    assert layering.layer_at(scene, 100 + 118j) is None
+    assert layer_at(scene, 100 + 118j) is None
     for _ in range(6):
         window.act(editing.undo)
     window.settle()
@@ -232,7 +245,7 @@ def test_a_layer_is_named_by_a_double_click_by_f2_and_from_its_menu(window, scen
     window.show_tab("Export")
     listed(by_key)
     assert scene.document.layer(body).name == "torso"
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
     window.show_tab("Layers")
 
     def by_menu(rows):
@@ -268,7 +281,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     # What hung on a layer that is deleted hangs on it again when that is undone.
     joint = Attachment(parent=body, parent_point=95 + 118j)
     window.act(editing.edit_document, layer_commands.attach_layer(arm, 95 + 118j, joint))
-    window.act(layering.set_active_layer, body)
+    window.act(set_active_layer, body)
     joined = scene.document
     listed(lambda rows: rows.menu(body, "Delete"))
     window.settle()
@@ -286,11 +299,11 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     window.act(playback.seek, 6)
     window.settle()
     window.session.toasts = []
-    window.act(layering.duplicate_layer, arm)
+    window.act(duplicate_layer, arm)
     assert not window.session.toasts
     assert keyed.layer_runtime.shown is not None
     assert keyed.layer.name == "arm copy"
-    window.act(layering.delete_layers, keyed.active)
+    window.act(delete_layers, keyed.active)
     window.act(editing.undo)
     assert all(puppet.shown is not None for puppet in keyed.layer_runtimes.values())
 
@@ -309,12 +322,12 @@ def test_the_list_shows_small_pictures(window, scene, listed):
 
     shown = red()
     assert shown > 100
-    window.act(layering.toggle_layers_hidden, arm)
+    window.act(toggle_layers_hidden, arm)
     assert red() < shown / 4
     small = scene.layer_runtimes[arm].small.value
     assert max(small.shape[:2]) == 96
     # Made once, whatever else is done with the layer.
-    window.act(layering.set_layer_opacity, arm, 0.5)
+    window.act(set_layer_opacity, arm, 0.5)
     window.settle()
     assert scene.layer_runtimes[arm].small.value is small
 
@@ -329,7 +342,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     before = scene.document
     hat = saved(tmp_path / "hat.png", blob(90, 60, (250, 220, 0)))
     cap = saved(tmp_path / "cap.png", blob(80, 50))
-    window.act(layering.drop_files, [hat])
+    window.act(drop_files, [hat])
     question = window.session.dialog
     assert [text for text, _ in question.answers] == ["New layer", "Replace arm", "New scene"]
     # Enter takes the first one.
@@ -343,7 +356,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     def over(rows):
         rows.robot.mouse_move(f"**/###row {body}")
         window.session.dialog = None
-        window.program.queue_action(do(layering.drop_files, [cap]))
+        window.program.queue_action(do(drop_files, [cap]))
         rows.robot.yield_(3)
 
     listed(over)
@@ -357,7 +370,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
         window.act(editing.undo)
     assert scene.document is before
     # Several at once, and a drawing on layers, are one step.
-    window.act(layering.drop_files, [hat, cap, drawing])
+    window.act(drop_files, [hat, cap, drawing])
     texts = [text for text, _ in window.session.dialog.answers]
     assert texts == ["New layers", "New scene"]
     window.run(enter)
@@ -372,15 +385,15 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
 def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     window.act(editing.edit_layer, shape_commands.set_anchor, 95 + 118j)
-    window.act(layering.attach_layer, arm, body)
+    window.act(attach_layer, arm, body)
     window.settle()
-    window.act(layering.set_active_layer, body)
+    window.act(set_active_layer, body)
     for place in (85 + 40j, 85 + 160j):
-        window.act(posing.add_handle, place)
+        window.act(add_handle, place)
         window.settle()
     window.act(playback.seek, 24)
     top = scene.layer.handles[1].id
-    window.act(posing.set_targets, {top: Target(position=110 + 155j)})
+    window.act(set_targets, {top: Target(position=110 + 155j)})
     window.settle()
     hung, carrier = scene.layer_runtimes[arm].shown, scene.layer_runtimes[body].shown
     joint = scene.document.layer(arm).attachments[0]
@@ -389,17 +402,17 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     assert abs(place - at.position) < 1e-6 * WIDTH
     assert abs(hung.placement.factor - at.rotation) < 0.02
     assert hung.placement.factor.imag < -0.05
-    window.act(layering.set_active_layer, arm)
-    window.act(posing.add_handle, 190 + 118j)
+    window.act(set_active_layer, arm)
+    window.act(add_handle, 190 + 118j)
     window.settle()
     hand = scene.layer.handles[0].id
-    window.act(posing.set_targets, {hand: Target(position=170 + 170j)})
+    window.act(set_targets, {hand: Target(position=170 + 170j)})
     window.settle()
     after = scene.layer_runtimes[arm].shown
     held = after.placement.apply(np.array([after.pivot_frame_at(95 + 118j).position]))[0]
     assert abs(held - at.position) < 1e-3 * WIDTH
     before = after.placement.apply(after.positions)
-    window.act(layering.detach_layer, arm)
+    window.act(detach_layer, arm)
     window.settle()
     loose = scene.layer_runtimes[arm].shown
     assert np.abs(loose.placement.apply(loose.positions) - before).max() < 1e-3
@@ -407,7 +420,7 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
 
 def test_a_layer_stands_still_and_is_posed_again(window, scene):
     arm = identity(scene, "arm")
-    window.act(layering.make_still, arm)
+    window.act(make_still, arm)
     window.settle()
     assert scene.document.layer(arm).still
     assert len(scene.document.layer(arm).domain.mesh.triangles) == 2
@@ -423,7 +436,7 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
 
 def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
-    window.act(layering.attach_layer, arm, body)
+    window.act(attach_layer, arm, body)
     window.settle()
     commands = (
         filming_commands.key_opacity(arm, 12, 0.5),
@@ -455,10 +468,10 @@ def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
             assert getattr(now, name) == getattr(before, name)
         return now
 
-    window.act(layering.make_still, arm)
+    window.act(make_still, arm)
     window.settle()
     assert as_layer().still
-    window.act(layering.make_posable, arm)
+    window.act(make_posable, arm)
     window.settle()
     assert not as_layer().still
 
@@ -467,7 +480,7 @@ def test_layers_take_turns(window, scene):
     arm = identity(scene, "arm")
     window.act(playback.seek, 12)
     window.settle()
-    window.act(layering.toggle_visibility_key, arm)
+    window.act(toggle_visibility_key, arm)
     window.settle()
     with_arm = np.asarray(window.picture()).astype(int)
     window.act(playback.seek, 11)
@@ -477,7 +490,7 @@ def test_layers_take_turns(window, scene):
 
 
 def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
-    window.act(posing.add_handle, 190 + 118j)
+    window.act(add_handle, 190 + 118j)
     window.settle()
     window.show_tab("Handle")
     tinted = []
@@ -595,7 +608,7 @@ def test_keys_of_several_rows_are_chosen_by_a_box_and_move_together(window, keye
     assert keyed.active == body
     window.act(editing.undo)
     assert keyed.document is before
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
     # One of them waits before a key that is in the way, and so does the other one.
     play(box)
     play(lambda rows: rows.drag("arm", "key 12", 24))
@@ -634,14 +647,14 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
 def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     window.act(playback.seek, 6)
-    window.act(layering.toggle_visibility_key, body)
+    window.act(toggle_visibility_key, body)
     window.settle()
     assert [switch.frame for switch in keyed.document.layer(body).visibility_keys] == [0, 6]
     window.act(playback.seek, 20)
     play(lambda rows: rows.click("body", "switch 6"))
     assert playback.current_frame(window.session, keyed) == 6
     assert keyed.active == body
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
 
     def delete(rows):
         rows.click("body", "switch 6", 1)
@@ -705,7 +718,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     before = keyed.document
     window.act(editing.select_keys_in_rows, {arm: frozenset({12}), body: frozenset({0, 18})})
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.c)))
-    window.act(layering.set_active_layer, identity(keyed, "wall"))
+    window.act(set_active_layer, identity(keyed, "wall"))
     window.act(playback.seek, 30)
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.v)))
     window.settle()
@@ -715,7 +728,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.
-    window.act(layering.delete_layers, body)
+    window.act(delete_layers, body)
     window.act(playback.seek, 40)
     window.act(pasting.paste_copied)
     assert frames_of(keyed, "arm") == (0, 12, 24, 40)
@@ -785,10 +798,10 @@ def test_the_overview_shows_the_keys_of_all_layers(window, keyed):
 def test_rows_scroll_where_there_are_many(window, keyed):
     for _ in range(8):
         window.act(editing.edit_document, layer_commands.duplicate_layer(identity(keyed, "wall")))
-    window.act(layering.set_active_layer, identity(keyed, "arm"))
+    window.act(set_active_layer, identity(keyed, "arm"))
     window.frames(3)
     assert keyed.timeline.scrolled == 0
-    window.act(layering.set_active_layer, identity(keyed, "wall"))
+    window.act(set_active_layer, identity(keyed, "wall"))
     window.frames(3)
     low = keyed.timeline.scrolled
     assert low > 0
@@ -805,7 +818,7 @@ def test_rows_scroll_where_there_are_many(window, keyed):
 def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_are_awaited(
     window, scene
 ):
-    window.act(posing.add_handle, 190 + 118j)
+    window.act(add_handle, 190 + 118j)
     window.settle()
     window.act(editing.select_handles, frozenset())
     # As long as the worker has not made them, no layer has a sampler.
@@ -836,9 +849,9 @@ def posed(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     joint = Attachment(parent=body, parent_point=95 + 118j)
     window.act(editing.edit_document, layer_commands.attach_layer(arm, 95 + 118j, joint))
-    window.act(posing.add_handle, 190 + 118j)
+    window.act(add_handle, 190 + 118j)
     window.act(playback.seek, 24)
-    window.act(posing.set_targets, {0: Target(position=170 + 160j)})
+    window.act(set_targets, {0: Target(position=170 + 160j)})
     window.settle()
     assert len(scene.layer.keys) == 2
     return scene
@@ -846,13 +859,13 @@ def posed(window, scene):
 
 def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
     arm = identity(posed, "arm")
-    window.act(layering.rename_layer, arm, "limb")
-    window.act(layering.set_layer_opacity, arm, 0.75)
-    window.act(layering.move_layer, arm, 1)
+    window.act(rename_layer, arm, "limb")
+    window.act(set_layer_opacity, arm, 0.75)
+    window.act(move_layer, arm, 1)
     before = posed.document
     green = saved(tmp_path / "green.png", painted((85, 66, 205, 99), (30, 180, 60, 255)))
-    window.act(layering.set_active_layer, identity(posed, "body"))
-    window.act(layering.replace_picture, arm, green)
+    window.act(set_active_layer, identity(posed, "body"))
+    window.act(replace_picture, arm, green)
     window.settle()
     assert posed.active == arm
     layer, old = posed.document.layer(arm), before.layer(arm)
@@ -889,11 +902,11 @@ def test_another_picture_keeps_handles_keys_and_joints(window, posed, tmp_path):
 
 def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_path):
     arm, body = identity(posed, "arm"), identity(posed, "body")
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
     before = posed.document
     # Smaller than the layer: it comes where the middle of the arm was, from 105 to 180.
     short = saved(tmp_path / "short.png", blob(76, 24))
-    window.act(layering.replace_picture, arm, short)
+    window.act(replace_picture, arm, short)
     window.settle()
     layer = posed.document.layer(arm)
     assert abs(layer.domain.outline.mean() - (142 + 117j)) < 3
@@ -906,7 +919,7 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     assert layer.attachments == before.layer(arm).attachments
     # The body without the place where the arm hangs.
     legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
-    window.act(layering.replace_picture, body, legs)
+    window.act(replace_picture, body, legs)
     window.settle()
     joint = posed.document.layer(arm).attachments[0]
     assert posed.document.layer(body).domain.contains(np.array([joint.parent_point])).all()
@@ -924,7 +937,7 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
     for path, told in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
         window.session.toasts = []
-        window.act(layering.replace_picture, arm, path)
+        window.act(replace_picture, arm, path)
         window.settle()
         (toast,) = window.session.toasts
         assert toast.text.startswith("The picture of arm was not replaced")
@@ -932,7 +945,7 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     assert scene.document is before
     # A still layer takes any picture.
     path = saved(tmp_path / "sky.png", Image.new("RGBA", (240, 200), (90, 160, 250, 255)))
-    window.act(layering.replace_picture, wall, path)
+    window.act(replace_picture, wall, path)
     window.settle()
     assert scene.document.layer(wall).still
     assert pixel(window, 20 + 20j) == (90, 160, 250)
@@ -941,10 +954,10 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
 
 def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scene, tmp_path):
     gone = max(layer.id for layer in scene.document.layers)
-    window.act(layering.delete_layers, gone)
+    window.act(delete_layers, gone)
     window.settle()
     path = saved(tmp_path / "dot.png", blob(60, 40, (250, 220, 0)))
-    window.act(layering.add_layers, [path])
+    window.act(add_layers, [path])
     window.settle()
     added = scene.document.layers[-1]
     assert (added.id, added.name, added.corner) == (gone, "dot", 90 + 80j)
@@ -1014,7 +1027,7 @@ def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_p
 
 def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
     before = scene.document.import_log
-    window.act(layering.add_layers, [stranger])
+    window.act(add_layers, [stranger])
     window.settle()
     losses = scene.document.import_log.warnings
     assert losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
@@ -1026,7 +1039,7 @@ def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
 def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
     arm = identity(project, "arm")
-    window.act(layering.set_active_layer, arm)
+    window.act(set_active_layer, arm)
     window.show_tab("Layers")
     window.act(files.toggle_import_log)
 
@@ -1055,7 +1068,7 @@ def test_layers_of_one_picture_share_it_on_the_graphics_card_until_one_is_cut(wi
     drawing = window.program.canvas.resources
     arm, glow, shine = (identity(project, name) for name in ("arm", "glow", "shine"))
     assert drawing.picture(arm) is drawing.picture(glow) is drawing.picture(shine)
-    window.act(layering.set_active_layer, glow)
+    window.act(set_active_layer, glow)
     # Behind it are others with the same picture.
     project.solo = frozenset({glow})
     before = window.picture()
@@ -1080,7 +1093,7 @@ def brush_at(project, layer):
 def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window, keyed, monkeypatch
 ):
-    window.act(layering.set_active_layer, identity(keyed, "arm"))
+    window.act(set_active_layer, identity(keyed, "arm"))
     window.settle()
     arm, body = (keyed.layer_runtimes[identity(keyed, name)] for name in ("arm", "body"))
     body_id = identity(keyed, "body")
@@ -1104,7 +1117,7 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     assert body.store.prepared(clip_of(keyed.document, body_id)) is None
     assert arm.store.prepared(keyed.clip) is not None
     assert body.shown.is_current
-    window.act(layering.set_active_layer, body_id)
+    window.act(set_active_layer, body_id)
     window.settle()
     assert body.store.prepared(keyed.clip) is not None
     window.act(editing.edit_document, key_commands.move_keys(body_id, [BODY[1]], 1))

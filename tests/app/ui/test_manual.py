@@ -4,7 +4,8 @@ import webbrowser
 
 import pytest
 
-from app.editor.actions import cut_out_editing, viewing
+from app.editor.actions import viewing
+from app.editor.actions.layer_setup import cut_out_editing
 from app.storage import manual_page
 
 

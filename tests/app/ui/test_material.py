@@ -6,8 +6,11 @@ from bars import BENT
 from imgui_bundle import ImVec2
 
 from app.document import Target, handle_commands
-from app.document.rig import Bone
-from app.editor.actions import editing, playback, posing, stiffness_editing, viewing
+from app.document.rig.stiffness import Bone
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup import stiffness_editing
+from app.editor.actions.posing.handles import remove_handles
+from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.tools import move_tool
 from app.ui.viewport.interaction.drag import triangulate_stroke
 from app.ui.viewport.stiffness_overlay import measure_vertex_stiffness
@@ -176,7 +179,7 @@ def test_hidden_bones_act_and_a_handle_that_goes_takes_its_bones_along(window, t
     stiffness_editing.add_bone(window.session, ENDS)
     stiffness_editing.set_bones_visible(window.session, shown=False)
     assert tab.layer.bones == (Bone(ends=ENDS, is_shown=False),)
-    posing.remove_handles(window.session, frozenset({ENDS[1]}))
+    remove_handles(window.session, frozenset({ENDS[1]}))
     window.settle()
     assert tab.layer.bones == ()
     editing.undo(window.session)
@@ -188,8 +191,8 @@ def test_dragging_goes_on_where_a_part_is_stiff(window, tab):
     playback.scrub(window.session, BENT)
     window.settle()
     place = place_of(tab, ENDS[1])
-    posing.set_targets(window.session, {ENDS[1]: Target(position=place + 12j)})
-    posing.release_drag(window.session)
+    set_targets(window.session, {ENDS[1]: Target(position=place + 12j)})
+    release_drag(window.session)
     window.settle()
     assert abs(place_of(tab, ENDS[1]) - place - 12j) < 2
     assert tab.layer.key(BENT).pose.certificate.is_certified

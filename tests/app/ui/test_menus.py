@@ -7,11 +7,12 @@ from bars import BENT
 from harness import FRAME
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
-from app.document.commands import Command, handle_commands
+from app.document.commands import handle_commands
+from app.document.commands.command import Command
 from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import draw_tooltip
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.widgets import draw_tooltip
 from app.ui.viewport.viewport import CANVAS
 
 RIGHT = 1

@@ -8,15 +8,10 @@ from silhouettes import paint
 
 from app.document import is_motion_unedited
 from app.editor import pending_changes
-from app.editor.actions import (
-    apply_motion,
-    editing,
-    joint_placement,
-    playback,
-    posing,
-    preset_setup,
-    saving,
-)
+from app.editor.actions import editing, playback, saving
+from app.editor.actions.posing.handles import remove_handles, suggest_handles
+from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.actions.posing.pose_drag import set_targets
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
 
@@ -160,7 +155,7 @@ def test_what_a_motion_needs_is_told(window, child):
 
 def test_handles_that_are_there_are_joints(window):
     project = window.open(paint(window.folder, "child"))
-    posing.suggest_handles(window.session)
+    suggest_handles(window.session)
     head = next(each for each in project.layer.handles if each.name == "head")
     preset_setup.begin_motion_setup(window.session)
     assert project.motion_setup.joints["head"] == head.position
@@ -212,7 +207,7 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     window.settle()
     identity, target = next(iter(key.pose.targets.items()))
     wish = replace(target, position=target.position + 4j)
-    posing.set_targets(window.session, {identity: wish})
+    set_targets(window.session, {identity: wish})
     window.settle()
     preset_setup.begin_motion_setup(window.session)
     window.frames(3)
@@ -255,7 +250,7 @@ def test_on_its_way_it_is_given_up_and_drafted_again(window, child, how):
 def test_a_change_meanwhile_refuses_it(window, ghost):
     preset_setup.begin_motion_setup(window.session)
     apply_motion.apply_motion_preset(window.session)
-    posing.remove_handles(window.session, frozenset({ghost.layer.handles[0].id}))
+    remove_handles(window.session, frozenset({ghost.layer.handles[0].id}))
     changed = ghost.document
     arrive(window, ghost)
     assert ghost.document is changed

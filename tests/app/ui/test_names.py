@@ -11,7 +11,8 @@ import pytest
 
 from app.document.settings import ExportSettings
 from app.editor.action import do
-from app.editor.actions import exporting, files, keys, saving, viewing
+from app.editor.actions import exporting, files, saving, viewing
+from app.editor.actions.timing import keys
 from app.editor.dialogs import FileDialog
 from app.storage.assets import sample_images
 from app.storage.autosave import Autosave, SourceInfo

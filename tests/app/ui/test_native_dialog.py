@@ -9,7 +9,8 @@ from functools import partial
 import pytest
 
 from app.editor.action import do
-from app.editor.actions import files, posing, saving, viewing
+from app.editor.actions import files, saving, viewing
+from app.editor.actions.posing.handles import add_handle
 from app.editor.dialogs import FileDialog, Question
 from app.storage.assets import sample_images
 from app.ui.dialogs import native_dialog
@@ -248,7 +249,7 @@ def test_the_window_can_cancel_a_dialog_that_hangs(window, program, ask, chosen,
 
 def test_a_question_that_comes_up_takes_the_dialog_away(window, program, ask):
     project = window.open(sample_images() / "bar.png")
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     ask()
     program.asked()
     window.act(saving.request_quit)

@@ -11,10 +11,12 @@ from PIL import Image, ImageDraw
 from projects import project_of
 
 from app.document import handle_commands
-from app.editor.actions import editing, playback, posing, resolving
+from app.editor.actions import editing, playback
+from app.editor.actions.layer_setup import resolving
+from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.poses import flipping
 from app.storage import load_project, save_project
-from app.ui.shortcuts import BINDINGS
+from app.ui.shortcuts.table import BINDINGS
 
 CTRL, SHIFT, ALT = (
     int(key) for key in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt)
@@ -48,7 +50,7 @@ def pose(window, frame, way):
     playback.scrub(window.session, frame)
     window.settle()
     editing.select_handles(window.session, frozenset({LEFT}))
-    posing.nudge_handles(window.session, way)
+    nudge_handles(window.session, way)
     window.settle()
     editing.select_handles(window.session, frozenset())
     return project

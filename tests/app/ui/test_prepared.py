@@ -4,10 +4,10 @@ import pytest
 from bars import bend_bar
 
 from app.document import track_commands
-from app.document.timing import Track, TrackKey
+from app.document.timing.tracks import Track, TrackKey
 from app.editor import Session
 from app.editor.actions import editing, playback
-from app.editor.work import Jobs
+from app.editor.work.jobs import Jobs
 from app.motion import StreamedVertices
 from app.motion.extents.extent import extent_key
 

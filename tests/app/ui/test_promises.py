@@ -11,20 +11,17 @@ from PIL import Image
 from app.document.commands import key_commands, scene_commands
 from app.document.keyframe import Target
 from app.document.settings import FrameRange
-from app.editor import layering
-from app.editor.actions import (
-    editing,
-    exporting,
-    keys,
-    playback,
-    posing,
-    resolving,
-    saving,
-    viewing,
-)
-from app.editor.actions.posing.inserting import INSERTING
-from app.editor.actions.posing.pose_solver import is_display_final
+from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions.layer_setup import resolving
+from app.editor.actions.posing.handles import add_handle, mirror_handles, remove_handles
+from app.editor.actions.posing.inserting import INSERTING, insert_key
+from app.editor.actions.posing.pose_drag import cancel_drag, release_drag, set_targets
+from app.editor.actions.posing.pose_solver import POSING, is_display_final
+from app.editor.actions.timing import keys
 from app.editor.dialogs import Question
+from app.editor.layering.layer_list import duplicate_layer
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.pictures import add_layers, make_still
 from app.editor.poses import copying, library, pasting
 from app.storage import load_project
 from engine.maps import Bounds
@@ -41,9 +38,9 @@ FOLLOWS = {
     "solve again": resolving.solve_keys_again,
     "another drag elsewhere": lambda session: (
         playback.scrub(session, 0),
-        posing.set_targets(session, {0: Target(position=200 + 60j)}),
+        set_targets(session, {0: Target(position=200 + 60j)}),
     ),
-    "duplicate the layer": lambda session: layering.duplicate_layer(session, 0),
+    "duplicate the layer": lambda session: duplicate_layer(session, 0),
 }
 
 
@@ -59,7 +56,7 @@ def test_drag_comes_to_rest_whatever_follows(window, loose, name):
     window.settle()
     assert not loose.pending
     check_at_rest(loose.document, goal)
-    layering.set_active_layer(window.session, 0)
+    set_active_layer(window.session, 0)
     while loose.document is not start:
         assert loose.history.undo_label is not None
         editing.undo(window.session)
@@ -77,11 +74,11 @@ def test_drag_goes_on_while_rough_frames_play(window, loose):
 
 
 def test_drag_that_has_ended_can_be_given_up(window, loose):
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         drag_bar(window, loose)
         (pull,) = loose.pulls
         for _ in range(2):
-            posing.cancel_drag(window.session, loose, pull)
+            cancel_drag(window.session, loose, pull)
     assert not loose.pulls
 
 
@@ -90,7 +87,7 @@ def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
     if is_seen:
         goal = drag_bar(window, loose)
     else:
-        with window.session.jobs.held(posing.POSING):
+        with window.session.jobs.held(POSING):
             goal = drag_bar(window, loose)
         assert loose.pulls[-1].kept is None
     editing.edit_document(window.session, key_commands.copy_keys(0, {24}, 24))
@@ -105,7 +102,7 @@ def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
 def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key):
     if not auto_key:
         viewing.toggle_auto_key(window.session)
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         goal = drag_bar(window, loose)
         viewing.toggle_auto_key(window.session)
     window.settle()
@@ -116,9 +113,9 @@ def test_a_drag_is_in_a_key_as_was_wanted_when_it_began(window, loose, auto_key)
 
 def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
     goal = drag_bar(window, loose)
-    posing.add_handle(window.session, complex(loose.layer_runtime.shown.handle_positions.mean()))
+    add_handle(window.session, complex(loose.layer_runtime.shown.handle_positions.mean()))
     (added,) = loose.selected_handles
-    posing.remove_handles(window.session, frozenset({0}))
+    remove_handles(window.session, frozenset({0}))
     window.settle()
     layer, pose = loose.layer, loose.layer.key(24).pose
     assert pose.targets.keys() == {1, added}
@@ -127,12 +124,12 @@ def test_a_handle_that_comes_or_goes_meanwhile_keeps_its_place(window, loose):
 
 
 def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
-    layering.duplicate_layer(window.session, 0)
+    duplicate_layer(window.session, 0)
     window.settle()
     (other,) = loose.layer_runtimes.keys() - {0}
     goals = {}
     for identity in (0, other):
-        layering.set_active_layer(window.session, identity)
+        set_active_layer(window.session, identity)
         goals[identity] = drag_bar(window, loose)
     assert loose.active == other
     assert len(loose.pulls) == 2
@@ -143,12 +140,12 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
 
 def test_a_save_has_a_drag_on_each_of_many_layers(window, loose, tmp_path):
     for _ in range(3):
-        layering.duplicate_layer(window.session, 0)
+        duplicate_layer(window.session, 0)
         window.frames()
     path, goals = tmp_path / "a.lissom", {}
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         for layer in loose.document.layers:
-            layering.set_active_layer(window.session, layer.id)
+            set_active_layer(window.session, layer.id)
             goals[layer.id] = drag_bar(window, loose)
         assert len(loose.pulls) == len(goals) == 4
         saving.write_project(window.session, path, None)
@@ -229,9 +226,9 @@ ON_ITS_WAY = {
     "a key": lambda window, _: (
         playback.scrub(window.session, 7),
         window.settle(),
-        posing.insert_key(window.session),
+        insert_key(window.session),
     ),
-    "a layer": lambda window, folder: layering.add_layers(window.session, [drawn(folder)]),
+    "a layer": lambda window, folder: add_layers(window.session, [drawn(folder)]),
     "a pose of the library": lambda window, _: (
         playback.scrub(window.session, 7),
         window.settle(),
@@ -241,7 +238,7 @@ ON_ITS_WAY = {
     "a pull of an in-between": lambda window, _: (
         playback.scrub(window.session, 7),
         window.settle(),
-        posing.set_targets(window.session, {1: Target(position=700 + 30j)}),
+        set_targets(window.session, {1: Target(position=700 + 30j)}),
     ),
 }
 
@@ -278,7 +275,7 @@ def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
     playback.scrub(window.session, 7)
     window.settle()
     with window.session.jobs.held(INSERTING):
-        posing.insert_key(window.session)
+        insert_key(window.session)
         saving.close_project(window.session)
         assert question(window) is None
         saving.close_project(window.session)
@@ -295,7 +292,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     window.session.preferences = replace(window.session.preferences, auto_key=False)
     playback.scrub(window.session, 7)
     window.settle()
-    posing.set_targets(window.session, {1: Target(position=700 + 30j)})
+    set_targets(window.session, {1: Target(position=700 + 30j)})
     window.settle()
     assert loose.unkeyed_pose is not None
     # Also by the autosave.
@@ -317,7 +314,7 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
     with window.session.jobs.held(INSERTING):
         for frame in (7, 14):
             playback.scrub(window.session, frame)
-            posing.insert_key(window.session)
+            insert_key(window.session)
     window.settle()
     told = [toast.text for toast in window.session.toasts]
     assert loose.layer.key_frames == {0, 7, 14, 24}, told
@@ -326,7 +323,7 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
 def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_path):
     for number in range(4):
         path = drawn(tmp_path)
-        window.act(layering.add_layers, [path.rename(tmp_path / f"{number}.png")])
+        window.act(add_layers, [path.rename(tmp_path / f"{number}.png")])
         window.settle()
         window.act(editing.undo)
         window.settle()
@@ -345,9 +342,7 @@ def test_within_a_job_the_clock_goes_on(window):
 
 def beside_the_axis(window, project):
     """Add a handle that has no partner, but room for one; return its id."""
-    posing.add_handle(
-        window.session, complex(project.layer_runtime.shown.handle_positions.mean()) + 60
-    )
+    add_handle(window.session, complex(project.layer_runtime.shown.handle_positions.mean()) + 60)
     window.settle()
     (added,) = project.selected_handles
     return added
@@ -363,7 +358,7 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, l
     window.frames()
     before = loose.document
     loose.selected_handles = frozenset({added})
-    posing.mirror_handles(window.session)
+    mirror_handles(window.session)
     assert len(loose.layer.handles) == 4, [toast.text for toast in window.session.toasts]
     editing.undo(window.session)
     assert loose.document is before
@@ -372,17 +367,17 @@ def test_mirroring_handles_is_one_step_also_while_a_pose_is_on_its_way(window, l
 def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(window, loose):
     added = beside_the_axis(window, loose)
     before, handles = loose.document, loose.layer.handles
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         drag_bar(window, loose)
         loose.selected_handles = frozenset({added})
-        posing.mirror_handles(window.session)
+        mirror_handles(window.session)
         (pull,) = loose.pulls
         assert pull.kept is None
         editing.undo(window.session)
         assert loose.layer.handles == handles
         assert loose.pulls == [pull]
         assert loose.document is before
-        posing.mirror_handles(window.session)
+        mirror_handles(window.session)
         editing.undo(window.session)
         editing.undo(window.session)
         assert loose.document is before
@@ -393,7 +388,7 @@ def test_undo_takes_back_first_what_was_done_since_a_drag_that_is_not_seen_yet(w
 
 def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, loose):
     before = loose.document
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         goal = drag_bar(window, loose)
         assert loose.pulls[-1].kept is None
         editing.undo(window.session)
@@ -407,7 +402,7 @@ def test_a_drag_that_was_undone_before_anything_was_seen_is_done_again(window, l
 
 def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(window, loose):
     before = loose.document
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         goal = drag_bar(window, loose)
         copying.copy_pose_or_keys(window.session)
         playback.scrub(window.session, 40)
@@ -428,7 +423,7 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(wind
 
 def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
     loose.path = tmp_path / "bent.lissom"
-    with window.session.jobs.held(posing.POSING):
+    with window.session.jobs.held(POSING):
         drag_bar(window, loose)
         saving.save(window.session)
         editing.undo(window.session)
@@ -441,14 +436,14 @@ def test_handles_that_come_before_a_drag_knows_where_it_begins_are_held_by_it(wi
     playback.scrub(window.session, 12)
     window.settle()
     places = loose.layer_runtime.shown.handle_positions
-    with window.session.jobs.held(posing.POSING):
-        posing.set_targets(window.session, {0: Target(position=places[0] + 5j)})
-        posing.release_drag(window.session)
-        posing.add_handle(window.session, complex(places.mean()))
+    with window.session.jobs.held(POSING):
+        set_targets(window.session, {0: Target(position=places[0] + 5j)})
+        release_drag(window.session)
+        add_handle(window.session, complex(places.mean()))
         (added,) = loose.selected_handles
         # Of a document that is not shown yet, nobody knows where a drag begins.
-        posing.set_targets(window.session, {1: Target(position=places[1] + 5j)})
-        posing.release_drag(window.session)
+        set_targets(window.session, {1: Target(position=places[1] + 5j)})
+        release_drag(window.session)
         (pull,) = loose.pulls
         assert pull.start is None
     window.settle()
@@ -461,7 +456,7 @@ def test_a_drag_of_a_layer_that_stands_still_since_comes_to_rest(window, loose):
     window.until(lambda: pull.kept is not None)
     playback.scrub(window.session, 7)
     window.frames(1)
-    layering.make_still(window.session, 0)
+    make_still(window.session, 0)
     copying.copy_pose_or_keys(window.session)
     window.until(lambda: not loose.pending)
     assert pull.kept is pull.newest

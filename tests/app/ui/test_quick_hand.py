@@ -5,7 +5,8 @@ import pytest
 from bars import open_bar
 from imgui_bundle import imgui
 
-from app.editor.actions import editing, posing
+from app.editor.actions import editing
+from app.editor.actions.posing.handles import add_handle
 
 
 @pytest.fixture
@@ -55,7 +56,7 @@ def test_it_leaves_the_canvas_for_a_handle(window, project):
 
 def test_it_takes_the_upper_one_of_two_handles(window, project):
     press(window, project, 0.9)
-    posing.add_handle(window.session, place_of(project, 0.901))
+    add_handle(window.session, place_of(project, 0.901))
     window.frames(3)
     press(window, project, 0.9)
     assert project.selected_handles == {2}

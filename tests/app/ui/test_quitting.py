@@ -6,7 +6,9 @@ import pytest
 from imgui_bundle import hello_imgui
 
 from app.document.keyframe import Target
-from app.editor.actions import posing, saving
+from app.editor.actions import saving
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.dialogs import Question
 from app.storage import NO_FOLDER
 from app.storage.project_file import load_project
@@ -52,7 +54,7 @@ def wish_of(document):
 
 def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
     place = wish_of(bar.document)
-    posing.set_targets(window.session, {1: Target(position=place + 5j)})
+    set_targets(window.session, {1: Target(position=place + 5j)})
     assert bar.history.is_saved  # nothing of it has come yet
     saving.request_quit(window.session)
     assert not window.session.is_quitting
@@ -65,7 +67,7 @@ def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
 
 def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, bar, saved, gate):
     for step in (3j, 6j):
-        posing.add_handle(window.session, complex(50, 50) + step)
+        add_handle(window.session, complex(50, 50) + step)
         window.frames(2)
         window.act(saving.save)
     gate.close()
@@ -78,7 +80,7 @@ def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, ba
 def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
     window, bar, saved, gate
 ):
-    posing.add_handle(window.session, complex(50, 50))
+    add_handle(window.session, complex(50, 50))
     window.act(saving.save)
     for title in (None, saving.UNSAVED):
         quit_lissom(window)
@@ -95,7 +97,7 @@ def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
 
 @pytest.mark.usefixtures("bar")
 def test_a_save_that_fails_ends_nothing(window, saved):
-    posing.add_handle(window.session, complex(50, 50))
+    add_handle(window.session, complex(50, 50))
     window.frames(2)
     for path in saved.parent.iterdir():
         path.unlink()

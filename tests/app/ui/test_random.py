@@ -15,38 +15,65 @@ from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
 from app.document import Document, Layer
-from app.document.commands import (
-    handle_commands,
-    key_commands,
-    layer_commands,
-    shape_commands,
-    track_commands,
-)
+from app.document.commands import handle_commands, key_commands, shape_commands, track_commands
+from app.document.commands.layers import layer_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.document.timing import PRESETS, Easing, Spring
-from app.editor import layering
-from app.editor.actions import (
-    cut_out_editing,
-    editing,
-    exporting,
-    keys,
-    playback,
-    posing,
-    resolving,
-    springs,
-    stiffness_editing,
-    timeline_drag,
-    tracks,
-    viewing,
+from app.document.timing.easing import PRESETS, Easing
+from app.document.timing.springs import Spring
+from app.editor.actions import editing, exporting, playback, viewing
+from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
+from app.editor.actions.posing.handles import (
+    add_handle,
+    mirror_handles,
+    suggest_handles,
+    toggle_anchor_at_handle,
 )
+from app.editor.actions.posing.pose_drag import (
+    free_rotation,
+    pin_selected_handles,
+    release_drag,
+    set_targets,
+)
+from app.editor.actions.timing import keys, springs, timeline_drag, tracks
+from app.editor.layering.layer_channels import (
+    delete_draw_order_key,
+    delete_opacity_key,
+    delete_transform_key,
+    key_camera,
+    key_draw_order,
+    key_opacity,
+    key_transform,
+)
+from app.editor.layering.layer_list import (
+    delete_visibility_key,
+    duplicate_layer,
+    move_layer,
+    rename_layer,
+    set_layer_opacity,
+    toggle_layers_hidden,
+    toggle_layers_locked,
+    toggle_reference,
+    toggle_visibility_key,
+)
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.parenting import (
+    attach_layer,
+    delete_layers,
+    detach_layer,
+    set_inherits_rotation,
+)
+from app.editor.layering.pictures import add_layers, make_posable, make_still
+from app.editor.layering.switches import create_switch, delete_switch
 from app.editor.poses import copying, flipping, library, pasting
 from app.editor.timeline_view import TimeRangeView
 from app.editor.work import pull
 from app.editor.work.jobs import JobKind, Jobs
 from app.export_formats import EXPORT_FORMATS
 from app.storage.project_file import load_project, save_project
-from app.ui.shortcuts import ARROWS, BINDINGS, MODIFIERS
+from app.ui.shortcuts.key_input import ARROWS
+from app.ui.shortcuts.keys import MODIFIERS
+from app.ui.shortcuts.table import BINDINGS
 from engine.domain.outline import enclosure, fitting
 from engine.domain.picture.cut_out import Stroke
 from engine.interpolation.added.pins import pinning
@@ -359,7 +386,7 @@ class Walk:
     def add_handle(self) -> None:
         shown = self.project.layer_runtime.shown
         if len(self.project.layer.handles) < MOST_HANDLES:
-            self.act(posing.add_handle, complex(self.choice(shown.positions)))
+            self.act(add_handle, complex(self.choice(shown.positions)))
 
     def pull(self) -> None:
         shown = self.project.layer_runtime.shown
@@ -371,7 +398,7 @@ class Walk:
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
                 wishes[handle.id] = Target(position=complex(place) + offset, rotation=turn)
         if wishes:
-            self.act(posing.set_targets, wishes)
+            self.act(set_targets, wishes)
 
     def change_handle(self) -> None:
         handles = self.project.layer.handles
@@ -380,9 +407,9 @@ class Walk:
         handle = self.choice(handles)
         match self.rng.integers(8):
             case 7:
-                self.act(self.choice((posing.suggest_handles, posing.mirror_handles)))
+                self.act(self.choice((suggest_handles, mirror_handles)))
             case 6:
-                self.act(posing.pin_selected_handles)
+                self.act(pin_selected_handles)
             case 5:
                 self.act(
                     self.choice(
@@ -409,9 +436,9 @@ class Walk:
                     )
                 )
             case 3:
-                self.act(posing.free_rotation, handle.id)
+                self.act(free_rotation, handle.id)
             case 4:
-                self.act(posing.toggle_anchor_at_handle, handle.id)
+                self.act(toggle_anchor_at_handle, handle.id)
 
     def set_anchor(self) -> None:
         inside = complex(self.choice(self.project.layer.domain.mesh.vertices))
@@ -563,44 +590,44 @@ class Walk:
         layer = self.choice(layers)
         match self.rng.integers(9):
             case 0:
-                self.act(layering.set_active_layer, layer.id)
+                self.act(set_active_layer, layer.id)
             case 1 if len(layers) < MOST_LAYERS:
-                self.act(layering.add_layers, [self.picture])
+                self.act(add_layers, [self.picture])
             case 2 if len(layers) < MOST_LAYERS:
-                self.act(layering.duplicate_layer, layer.id)
+                self.act(duplicate_layer, layer.id)
             case 3 | 1 | 2 if len(layers) > 1:
-                self.act(layering.delete_layers, layer.id)
+                self.act(delete_layers, layer.id)
             case 4:
-                self.act(layering.move_layer, layer.id, int(self.rng.integers(len(layers))))
+                self.act(move_layer, layer.id, int(self.rng.integers(len(layers))))
             case 5:
                 verb = self.choice(
                     (
-                        layering.toggle_layers_hidden,
-                        layering.toggle_layers_locked,
-                        layering.toggle_reference,
+                        toggle_layers_hidden,
+                        toggle_layers_locked,
+                        toggle_reference,
                     )
                 )
                 self.act(verb, layer.id)
             case 6:
-                self.act(layering.rename_layer, layer.id, self.choice(("arm", "leg", "")))
-                self.act(layering.set_layer_opacity, layer.id, float(self.rng.random()))
+                self.act(rename_layer, layer.id, self.choice(("arm", "leg", "")))
+                self.act(set_layer_opacity, layer.id, float(self.rng.random()))
             case 7:
                 self.act(
-                    self.choice((layering.toggle_visibility_key, layering.delete_visibility_key)),
+                    self.choice((toggle_visibility_key, delete_visibility_key)),
                     layer.id,
                 )
             case 8:
-                self.act(self.choice((layering.make_still, layering.make_posable)), layer.id)
+                self.act(self.choice((make_still, make_posable)), layer.id)
 
     def change_joints(self) -> None:
         child, parent = self.choice(self.document.layers), self.choice(self.document.layers)
         match self.rng.integers(4):
             case 0:
-                self.act(layering.detach_layer, child.id)
+                self.act(detach_layer, child.id)
             case 1:
-                self.act(layering.set_inherits_rotation, child.id, self.chance(0.5))
+                self.act(set_inherits_rotation, child.id, self.chance(0.5))
             case _:
-                self.act(layering.attach_layer, child.id, parent.id, self.chance(0.5))
+                self.act(attach_layer, child.id, parent.id, self.chance(0.5))
 
     def change_tracks(self) -> None:
         """Move a handle by a track of its own, or by a spring."""
@@ -634,25 +661,25 @@ class Walk:
         layer, other = self.choice(layers).id, self.choice(layers).id
         match self.rng.integers(7):
             case 0:
-                self.act(layering.key_opacity, layer, float(self.rng.random()))
+                self.act(key_opacity, layer, float(self.rng.random()))
             case 1:
                 shift = complex(*self.rng.normal(0, 0.1 * self.size, 2))
-                self.act(layering.key_transform, layer, shift, float(self.rng.normal()))
+                self.act(key_transform, layer, shift, float(self.rng.normal()))
             case 2:
-                self.act(layering.key_draw_order, layer, None if other == layer else other)
+                self.act(key_draw_order, layer, None if other == layer else other)
             case 3:
                 verbs = (
-                    layering.delete_opacity_key,
-                    layering.delete_transform_key,
-                    layering.delete_draw_order_key,
+                    delete_opacity_key,
+                    delete_transform_key,
+                    delete_draw_order_key,
                 )
                 self.act(self.choice(verbs), layer)
             case 4:
-                self.act(layering.key_camera)
+                self.act(key_camera)
             case 5:
-                self.act(layering.create_switch, *{layer, other})
+                self.act(create_switch, *{layer, other})
             case 6 if self.document.switch_groups:
-                self.act(layering.delete_switch, self.choice(self.document.switch_groups).name)
+                self.act(delete_switch, self.choice(self.document.switch_groups).name)
 
     def change_depth(self) -> None:
         layer = self.project.layer
@@ -900,7 +927,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
             last = "\n".join(walk.told)
             raise AssertionError(f"seed {seed}, step {number}: {error}\nafter\n{last}") from error
     walk.release()
-    walk.act(posing.release_drag)
+    walk.act(release_drag)
     # What is still on its way, such as a rebuilt domain, would come where undo leads back to.
     workers.release()
     window.settle()

@@ -7,10 +7,12 @@ import pytest
 
 from app.document.keyframe import Target
 from app.document.settings import Meshing
-from app.editor.actions import editing, playback, posing, viewing
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
 from app.render import heat_colormap
 from app.storage.assets import sample_images
-from app.ui.style import PALETTES
+from app.ui.style.theme import PALETTES
 
 SIZES = {"1280": ((1280, 800), 1.0), "2560": ((2560, 1440), 2.0)}
 # Where the handles go, as shares of the picture, and by how much two of them move in two keys.
@@ -37,14 +39,14 @@ def dragon(window, wanted):
         return complex(share.real * size.real, share.imag * size.imag)
 
     for share in HANDLES:
-        posing.add_handle(session, scaled(share))
+        add_handle(session, scaled(share))
         window.frames(2)
     rest = project.layer_runtime.shown.pose.targets
     for frame, (head, tail) in MOVES.items():
         playback.seek(session, frame)
         window.settle()
         wishes = {0: head, 2: tail}
-        posing.set_targets(
+        set_targets(
             session,
             {i: Target(position=rest[i].position + scaled(move)) for i, move in wishes.items()},
         )

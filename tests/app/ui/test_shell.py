@@ -4,10 +4,11 @@ from harness import Harness
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.editor.actions import editing, playback, posing, saving, viewing
+from app.editor.actions import editing, playback, saving, viewing
+from app.editor.actions.posing.handles import add_handle
 from app.editor.work.jobs import Job, JobKind
 from app.storage.assets import sample_images
-from app.ui.style import PALETTES
+from app.ui.style.theme import PALETTES
 from app.ui.style.widgets import shorten_text
 from app.ui.window import window as window_module
 from app.ui.window.title import window_title
@@ -267,7 +268,7 @@ def test_the_title_names_the_file_and_marks_changes(window, tmp_path):
     assert window_title(session) == "Lissom"
     window.open(sample_images() / "bar.png")
     assert window_title(session) == "bar – Lissom"
-    posing.add_handle(session, complex(*session.project.layer_runtime.picture.size) / 2)
+    add_handle(session, complex(*session.project.layer_runtime.picture.size) / 2)
     assert window_title(session) == "bar* – Lissom"
     saving.write_project(session, tmp_path / "posed.lissom", None)
     window.settle()

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 from held import held, in_use
 
-from app.document.commands import layer_commands
-from app.editor.actions import editing, keys, playback, posing, saving
+from app.document.commands.layers import layer_commands
+from app.editor.actions import editing, playback, saving
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
 from app.ui.window import memory
 from tests.campaigns import soak
@@ -66,7 +69,7 @@ def test_a_project_that_was_closed_is_let_go(slow_window, tmp_path):
 def test_the_mesh_of_a_project_that_was_closed_is_let_go(window):
     """Also where something of it is in front, and the anchor and the status bar were shown."""
     project = window.open(sample_images() / "bar.png")
-    window.act(posing.add_handle, project.layer.domain.mesh.vertices.mean())
+    window.act(add_handle, project.layer.domain.mesh.vertices.mean())
     window.act(editing.edit_document, layer_commands.set_depth(project.active, 0, 1.0, None))
     window.settle()
     shown = project.layer_runtime.shown
@@ -105,7 +108,7 @@ def test_what_is_free_is_given_back_once_after_work_has_come_to_rest(slow_window
         return len(given)
 
     before = bar.document
-    window.act(posing.nudge_handles, 20j)
+    window.act(nudge_handles, 20j)
     window.settle()
     assert bar.document is not before
     # The last work may have ended some frames ago.

@@ -6,7 +6,9 @@ from bars import HALF, LAST, bend_bar
 from imgui_bundle import ImVec2
 
 from app.document import Baseline, Target, Variant
-from app.editor.actions import playback, posing, viewing
+from app.editor.actions import playback, viewing
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
 
 
 @pytest.fixture
@@ -21,7 +23,7 @@ def stop_half_way(window):
     wishes = dict(bent.layer_runtime.shown.pose.targets)
     last = max(wishes)
     wishes[last] = Target(position=complex(0.35 * width, 0.6 * width))
-    posing.set_targets(window.session, wishes)
+    set_targets(window.session, wishes)
     window.settle()
     playback.seek(window.session, HALF)
     window.settle()
@@ -113,7 +115,7 @@ def test_a_method_that_leads_handles_leads_a_new_one(window, between):
     shown = between.layer_runtime.comparison.shown
     assert shown.is_current
     middle = np.abs(shown.mesh.domain.mesh.vertices - shown.mesh.domain.mesh.vertices.mean())
-    posing.add_handle(session, complex(between.layer_runtime.shown.positions[middle.argmin()]))
+    add_handle(session, complex(between.layer_runtime.shown.positions[middle.argmin()]))
     window.settle()
     led = between.layer_runtime.comparison.shown
     assert led.is_current
@@ -170,7 +172,7 @@ def test_a_key_looks_the_same_by_every_method_and_posing_goes_on(window, between
     )
     middle = between.layer_runtime.shown.mesh.domain.mesh.vertices.mean()
     nearest = np.abs(between.layer_runtime.shown.mesh.domain.mesh.vertices - middle).argmin()
-    posing.add_handle(session, complex(between.layer_runtime.shown.positions[nearest]))
+    add_handle(session, complex(between.layer_runtime.shown.positions[nearest]))
     window.settle()
     assert between.layer_runtime.comparison.layer.handles == between.layer.handles
 

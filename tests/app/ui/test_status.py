@@ -10,16 +10,17 @@ from documents import altered
 from app.document import RUBBERY, DistortionRange
 from app.document.keyframe import Target
 from app.document.queries.clips import clip_of
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import set_targets
 from app.errors import LissomError
 from app.motion import InbetweenCache
 from app.reports.curves import TIMES, measure_curves
-from app.ui import bars
+from app.ui.bars.status import describe_pose_limit, list_status_items
 from engine.maps import distortion
 
 
 def facts(window):
-    return [fact.text for fact in bars.list_status_items(window.session)]
+    return [fact.text for fact in list_status_items(window.session)]
 
 
 def test_frames_per_second_are_told_while_it_plays(window, loose):
@@ -70,21 +71,21 @@ def test_inbetweens_show_what_was_measured(window, loose):
 
 @pytest.mark.usefixtures("loose")
 def test_a_bound_that_is_reached_warns(window):
-    posing.set_targets(window.session, {1: Target(position=complex(9000, 0))})
+    set_targets(window.session, {1: Target(position=complex(9000, 0))})
     window.settle()
-    fact = bars.list_status_items(window.session)[0]
+    fact = list_status_items(window.session)[0]
     assert fact.is_warning
-    assert not bars.list_status_items(window.session)[1].is_warning
+    assert not list_status_items(window.session)[1].is_warning
 
 
 def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
-    assert bars.describe_pose_limit(window.session) == ""
+    assert describe_pose_limit(window.session) == ""
     width, height = loose.document.canvas
-    posing.set_targets(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
+    set_targets(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
     lag = layer.target_errors(layer.key(24).pose)[1]
-    told = bars.describe_pose_limit(window.session)
+    told = describe_pose_limit(window.session)
     assert re.fullmatch(
         r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
     ), told

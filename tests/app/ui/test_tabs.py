@@ -11,8 +11,10 @@ from app.document.commands import key_commands
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
-from app.editor.actions import editing, exporting, playback, posing, upkeep
+from app.editor.actions import editing, exporting, playback, upkeep
 from app.editor.actions.layer_setup.resolving import SOLVING_KEYS
+from app.editor.actions.posing.handles import remove_handles
+from app.editor.actions.posing.pose_drag import set_targets
 from app.export_formats import MeshOptions, SpriteSheetOptions
 from app.motion.extents.extent import extent_key
 from app.storage import NO_FOLDER
@@ -193,7 +195,7 @@ def test_knob_that_is_dragged_sets_the_bound_once(window, project, tab):
 
 
 def test_pose_that_no_handle_holds_is_brought_within_the_bounds(window, project, tab):
-    posing.remove_handles(window.session, frozenset({0, 1}))
+    remove_handles(window.session, frozenset({0, 1}))
     bound = round(0.5 * largest(project, "k"), 2)
     tab("Deform", lambda robot: enter_bound(robot, "k", bound))
     certificate = project.layer.key(24).pose.certificate
@@ -312,7 +314,7 @@ def test_rebuilt_domain_keeps_handles_and_poses_as_one_step(window, project, tab
 
 
 def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
-    posing.remove_handles(window.session, frozenset({0, 1}))
+    remove_handles(window.session, frozenset({0, 1}))
 
     def act(robot):
         robot.item_input_value("**/##triangles", 4000.0)
@@ -418,7 +420,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     first = project.extent.value
     known, place = note_of_the_frame(window, project)
     assert known
-    posing.set_targets(window.session, {1: Target(position=CENTRE + 2.5 * RADIUS)})
+    set_targets(window.session, {1: Target(position=CENTRE + 2.5 * RADIUS)})
     window.frames(1)
     known, waiting = note_of_the_frame(window, project)
     window.settle()

@@ -16,12 +16,14 @@ from app.document import (
 )
 from app.document.keyframe import Handle, Keyframe, TangentMode, Target
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, LINEAR, PRESETS
-from app.editor import layering
-from app.editor.actions import editing, keys, playback, resolving, timeline_drag, viewing
+from app.document.timing.easing import HOLD, LINEAR, PRESETS
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup import resolving
+from app.editor.actions.timing import keys, timeline_drag
+from app.editor.layering.layer_channels import change_camera_key, key_camera, toggle_camera_view
 from app.editor.timeline_view import TimeRangeView
 from app.ui.bars.status import describe_motion_limit
-from app.ui.style import PALETTES
+from app.ui.style.theme import PALETTES
 from app.ui.timeline import segments
 from app.ui.viewport.marks import mark_all
 from engine.maps import Bounds
@@ -752,29 +754,29 @@ def camera_of(project):
 def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, project, play):
     first, canvas = project.document, project.document.canvas
     # What fits the canvas is the canvas.
-    layering.key_camera(window.session)
+    key_camera(window.session)
     shot = camera_at(project.document, 0)
     assert shot.centre == complex(*canvas) / 2
     assert shot.zoom == pytest.approx(1, rel=1e-12)
     playback.scrub(window.session, 30)
     view = project.view(window.session.screen)
     viewing.set_view(window.session, replace(view, centre=60 + 70j, scale=2 * view.scale))
-    layering.key_camera(window.session)
+    key_camera(window.session)
     window.settle()
     assert camera_of(project) == [(0, 1), (30, 2)]
     assert camera_at(project.document, 30).centre == 60 + 70j
     looked = project.view(window.session.screen)
     viewing.set_view(window.session, None)
-    layering.toggle_camera_view(window.session)
+    toggle_camera_view(window.session)
     again = project.view(window.session.screen)
     assert (again.centre, again.scale) == (looked.centre, pytest.approx(looked.scale))
     playback.scrub(window.session, 0)
     window.settle()
     assert project.view(window.session.screen).centre == complex(*canvas) / 2
     # A key from there, turned, is what it was; looking elsewhere ends it.
-    layering.change_camera_key(window.session, 0, turn=7.0)
+    change_camera_key(window.session, 0, turn=7.0)
     window.settle()
-    layering.key_camera(window.session)
+    key_camera(window.session)
     assert project.document.camera[0].turn == pytest.approx(7.0)
     editing.undo(window.session)
     viewing.set_view(window.session, None)
@@ -817,7 +819,7 @@ def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
         return np.mean(window.picture().convert("RGB").getpixel((int(point.x), int(point.y))))
 
     before = brightness(inside), brightness(outside)
-    layering.key_camera(window.session)
+    key_camera(window.session)
     key = replace(project.document.camera[0], zoom=2.0)
     editing.edit_document(window.session, filming_commands.key_camera(key))
     window.settle()

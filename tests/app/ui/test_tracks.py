@@ -13,11 +13,15 @@ from app.document import (
     track_commands,
 )
 from app.document.keyframe import Handle
-from app.document.timing import PRESETS, Spring, TangentMode, Track, TrackKey
-from app.editor.actions import editing, keys, playback, springs, timeline_drag, tracks
+from app.document.timing.easing import PRESETS
+from app.document.timing.springs import Spring
+from app.document.timing.tangent_mode import TangentMode
+from app.document.timing.tracks import Track, TrackKey
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import keys, springs, timeline_drag, tracks
 from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
-from app.ui.style import PALETTES
+from app.ui.style.theme import PALETTES
 from app.ui.timeline.track_residuals import describe_residual, find_residuals
 from app.ui.viewport.marks import find_auto_pinned, find_off_target, mark_all
 

@@ -9,11 +9,21 @@ from harness import FRAME, MOST_FRAMES
 from numpy.testing import assert_allclose
 
 from app.document import Keyframe, Target, clip_of, track_at, transform_at
-from app.document.commands import filming_commands, key_commands, scene_commands, track_commands
-from app.document.timing import Track, TrackKey
-from app.editor.actions import editing, playback, posing, tracking
+from app.document.commands import key_commands, scene_commands, track_commands
+from app.document.commands.layers import filming_commands
+from app.document.timing.tracks import Track, TrackKey
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import remove_handles
+from app.editor.actions.posing.pose_drag import release_drag, set_targets
 from app.editor.actions.timing import tracks
 from app.editor.actions.tracking.correction_jobs import COMPLAINT
+from app.editor.actions.tracking.recording import (
+    drag_recorded_handle,
+    smooth_recording,
+    start_recording,
+    stop_recording,
+)
+from app.editor.actions.tracking.track_space import track_target
 from app.motion import Animation
 from app.ui.bars.status import describe_pose_limit
 from app.ui.viewport.marks import find_off_target
@@ -315,12 +325,12 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     # The motion is near what the hand did.
     for sample in take.samples:
         if sample.time == int(sample.time):
-            wished = tracking.track_target(bent, track, int(sample.time))
+            wished = track_target(bent, track, int(sample.time))
             assert abs(wished - sample.place) < 4
     few = len(frames)
-    tracking.smooth_recording(window.session, 0.0)
+    smooth_recording(window.session, 0.0)
     many = len(bent.layer.tracks[0].keys)
-    tracking.smooth_recording(window.session, 1.0)
+    smooth_recording(window.session, 1.0)
     fewest = len(bent.layer.tracks[0].keys)
     assert many > few >= fewest
     window.run(lambda robot: robot.item_click("**/Keep"))
@@ -340,7 +350,7 @@ def test_a_recording_is_as_smooth_as_the_hand_was_on_the_screen(window, bent):
     keys = {}
     for factor in (0.1, 1.0, 10.0):
         take.scale = factor * scale
-        tracking.smooth_recording(window.session, 0.5)
+        smooth_recording(window.session, 0.5)
         keys[factor] = len(bent.layer.track_of(END).keys)
     assert keys[0.1] < keys[1.0] < keys[10.0]
 
@@ -413,12 +423,12 @@ def test_in_a_loop_a_recording_goes_on_over_the_seam_at_most_once_round(window, 
 def test_deleting_a_handle_ends_its_recording(window, brief, is_over):
     session, place = window.session, complex(brief.layer_runtime.shown.handle_positions[-1])
     with session.jobs.held():
-        tracking.start_recording(session, END, place, gesture=object())
+        start_recording(session, END, place, gesture=object())
         window.clock.now += 0.2
         window.frames(3)
         if is_over:
-            tracking.stop_recording(session)
-        window.act(posing.remove_handles, frozenset({END}))
+            stop_recording(session)
+        window.act(remove_handles, frozenset({END}))
         window.frames(2)
         assert brief.recording is None
         assert END not in [handle.id for handle in brief.layer.handles]
@@ -480,7 +490,7 @@ def test_a_still_pointer_over_a_hopping_body_records_a_still_handle(window, brie
         robot.mouse_up(0)
 
     record(window, brief, [], until=until)
-    tracking.smooth_recording(window.session, 0.0)
+    smooth_recording(window.session, 0.0)
     assert brief.layer.track_of(END).keys[-1].frame == LATER
     places = in_scene(window, brief, range(1, LATER))
     assert np.abs(places - start).max() < 2
@@ -503,12 +513,12 @@ def test_a_pointer_that_goes_with_the_body_changes_no_shape(window, brief, hop):
         return complex(placement.apply(body.positions(frame))[0])
 
     begun = session.clock()
-    tracking.start_recording(session, END, place(), gesture=object())
+    start_recording(session, END, place(), gesture=object())
     while not brief.recording.is_over:
-        tracking.drag_recorded_handle(session, place())
+        drag_recorded_handle(session, place())
         window.frames()
     window.settle()
-    tracking.smooth_recording(session, 0.0)
+    smooth_recording(session, 0.0)
     (track,) = brief.layer.tracks
     assert np.abs([key.place for key in track.keys]).max() < 1.0, "it speeds up between frames"
 
@@ -562,8 +572,8 @@ def test_a_hand_sees_its_track_while_a_pose_elsewhere_waits_for_what_is_shown(wi
     playback.scrub(window.session, LAST)
     keyed.selected_track = None
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)
-    posing.set_targets(window.session, {END: Target(position=place - 15j)})
-    posing.release_drag(window.session)
+    set_targets(window.session, {END: Target(position=place - 15j)})
+    release_drag(window.session)
     playback.scrub(window.session, HALF)
     keyed.selected_track = track
     assert any(not pull.is_at_rest for pull in keyed.pulls)
@@ -593,8 +603,8 @@ def test_a_pose_elsewhere_comes_to_rest_where_frames_cannot_be_corrected(
     keyed.selected_track = None
     playback.scrub(window.session, LAST)
     place = complex(keyed.layer.key(LAST).pose.targets[END].position)
-    posing.set_targets(window.session, {END: Target(position=place - 15j)})
-    posing.release_drag(window.session)
+    set_targets(window.session, {END: Target(position=place - 15j)})
+    release_drag(window.session)
     playback.scrub(window.session, EARLIER)
     window.until(lambda: not keyed.pending)
     assert any(COMPLAINT in toast.text for toast in window.session.toasts)

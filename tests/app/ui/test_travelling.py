@@ -10,8 +10,9 @@ from walkers import walker
 
 from app.document import layer_commands
 from app.document.rig.mirror_names import NO_PAIR
-from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.layering.layer_selection import set_active_layer
 from app.storage import save_project
 
 CTRL, SHIFT, ALT = (
@@ -32,7 +33,7 @@ def open_walker(window, folder):
     choose(window, "near leg")
     for handle, way in ((1, 18 + 8j), (2, -20 + 30j)):
         editing.select_handles(window.session, frozenset({handle}))
-        posing.nudge_handles(window.session, way)
+        nudge_handles(window.session, way)
         window.settle()
     editing.select_handles(window.session, frozenset())
     return project
@@ -54,7 +55,7 @@ def layer(window, name):
 
 
 def choose(window, name):
-    layering.set_active_layer(window.session, layer(window, name).id)
+    set_active_layer(window.session, layer(window, name).id)
     window.settle()
 
 

@@ -18,9 +18,24 @@ from app.document import (
     layers_in_draw_order,
     switch_group_commands,
 )
-from app.editor import layering
-from app.editor.actions import editing, playback, posing
-from app.editor.layering.parenting import PARENT_IS_DESCENDANT
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.inserting import insert_key
+from app.editor.layering.layer_list import layer_at, toggle_layers_hidden
+from app.editor.layering.layer_selection import (
+    select_layers,
+    set_active_layer,
+    solo_layers,
+    toggle_tree_row,
+)
+from app.editor.layering.parenting import (
+    PARENT_IS_DESCENDANT,
+    attach_layer,
+    delete_layers,
+    delete_parent_key,
+    reparent_layer,
+)
+from app.editor.layering.switches import create_switch
 
 WIDTH, HEIGHT = 240, 200
 FACES = {
@@ -137,8 +152,8 @@ def test_only_the_layer_that_is_seen_has_a_full_circle(window, scene, ids, use):
         editing.edit_document,
         switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
     )
-    window.act(layering.toggle_tree_row, "choice mouth")
-    window.act(layering.set_active_layer, ids["head"])
+    window.act(toggle_tree_row, "choice mouth")
+    window.act(set_active_layer, ids["head"])
     window.settle()
     boxes = {}
 
@@ -208,7 +223,7 @@ def test_rows_stay_where_they_are_when_another_layer_is_chosen(window, ids):
 
     shown = ("oh", "ah", "hat")
     for name in shown:
-        window.act(layering.set_active_layer, ids[name])
+        window.act(set_active_layer, ids[name])
         window.frames(2)
         window.run(look)
     assert all(each == tops[0] for each in tops)
@@ -221,7 +236,7 @@ def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_draw
         editing.edit_document,
         switch_group_commands.create_switch_group("mouth", [ids["ah"], ids["oh"]]),
     )
-    window.act(layering.set_active_layer, ids["ah"])
+    window.act(set_active_layer, ids["ah"])
     window.frames(2)
     tops = []
 
@@ -238,7 +253,7 @@ def test_what_is_listed_stays_below_the_pointer_until_that_goes_back_to_the_draw
 
 
 def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids, use):
-    window.act(layering.select_layers, ids["hat"], ids["head"])
+    window.act(select_layers, ids["hat"], ids["head"])
     use(lambda robot: robot.item_click("###group layers"))
     assert [each.name for each in scene.document.groups] == ["group"]
     key = next(row.key for row in scene.tree if row.group)
@@ -279,10 +294,10 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
         says(PARENT_IS_DESCENDANT, name="hat", parent="head", other="head"), toast.text
     )
     # So it is where it hangs there by others, and where one of several would.
-    window.act(layering.attach_layer, ids["ah"], ids["hat"])
+    window.act(attach_layer, ids["ah"], ids["hat"])
     window.settle()
     before, window.session.toasts = scene.document, []
-    window.act(layering.select_layers, ids["head"], ids["oh"])
+    window.act(select_layers, ids["head"], ids["oh"])
     use(lambda robot: drop(robot, ids["oh"], ids["ah"]))
     assert scene.document is before
     (toast,) = window.session.toasts
@@ -293,7 +308,7 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
 def test_chosen_layers_are_dropped_together(window, scene, ids, use):
     before, both = scene.document, (ids["hat"], ids["stick"])
     places = [place(scene, name, window) for name in ("hat", "stick")]
-    window.act(layering.select_layers, *both)
+    window.act(select_layers, *both)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
     assert [scene.document.layer(each).attachments[0].parent for each in both] == [ids["head"]] * 2
@@ -310,11 +325,11 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
 
 
 def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use):
-    window.act(layering.create_switch, ids["ah"], ids["oh"])
+    window.act(create_switch, ids["ah"], ids["oh"])
     before = scene.document
     (choice,) = before.switch_groups
     (row,) = (row for row in scene.tree if row.switch_group is choice)
-    window.act(layering.select_layers, ids["hat"], ids["stick"])
+    window.act(select_layers, ids["hat"], ids["stick"])
     use(lambda robot: drop(robot, ids["stick"], row.key))
     (joined,) = scene.document.switch_groups
     assert set(joined.layers) == {*choice.layers, ids["hat"], ids["stick"]}
@@ -324,14 +339,14 @@ def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use)
 
 def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
     for child, parent in (("ah", "hat"), ("hat", "head")):
-        window.act(layering.attach_layer, ids[child], ids[parent])
+        window.act(attach_layer, ids[child], ids[parent])
         window.settle()
-    window.act(layering.set_active_layer, ids["head"])
-    window.act(posing.add_handle, 120 + 100j)
+    window.act(set_active_layer, ids["head"])
+    window.act(add_handle, 120 + 100j)
     window.settle()
     before = scene.document
     there = place(scene, "ah", window)
-    window.act(layering.delete_layers, ids["hat"])
+    window.act(delete_layers, ids["hat"])
     window.settle()
     assert scene.document.layer(ids["ah"]).attachments[0].parent == ids["head"]
     assert abs(place(scene, "ah", window) - there) < 0.1
@@ -339,14 +354,14 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     window.act(editing.undo)
     assert scene.document is before
     # Also where it is handed over to it at another time, and without a jump.
-    window.act(layering.attach_layer, ids["ah"], ids["stick"])
+    window.act(attach_layer, ids["ah"], ids["stick"])
     window.settle()
     window.act(playback.seek, 10)
-    window.act(layering.reparent_layer, ids["ah"], ids["hat"])
+    window.act(reparent_layer, ids["ah"], ids["hat"])
     window.settle()
     there = place(scene, "ah", window)
     window.act(playback.seek, 0)
-    window.act(layering.delete_layers, ids["hat"])
+    window.act(delete_layers, ids["hat"])
     window.settle()
     joints = scene.document.layer(ids["ah"]).attachments
     assert [(each.frame, each.parent) for each in joints] == [(0, ids["stick"]), (10, ids["head"])]
@@ -355,9 +370,9 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
 
 
 def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, use):
-    window.act(layering.attach_layer, ids["stick"], ids["head"])
+    window.act(attach_layer, ids["stick"], ids["head"])
     window.settle()
-    window.act(layering.set_active_layer, ids["stick"])
+    window.act(set_active_layer, ids["stick"])
     for frame, button in ((10, f"**/To hat###to {ids['hat']}"), (20, "**/Let it go")):
         window.act(playback.seek, frame)
         window.settle()
@@ -376,19 +391,19 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
         ids["hat"],
         None,
     ]
-    window.act(layering.delete_parent_key, ids["stick"], 20)
+    window.act(delete_parent_key, ids["stick"], 20)
     assert len(scene.document.layer(ids["stick"]).attachments) == 2
 
 
 def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
-    window.act(layering.attach_layer, ids["stick"], ids["head"])
+    window.act(attach_layer, ids["stick"], ids["head"])
     window.settle()
     window.act(editing.edit_document, cycle_commands.set_cycle(ids["stick"], 0, 12))
-    window.act(layering.set_active_layer, ids["stick"])
+    window.act(set_active_layer, ids["stick"])
     window.act(playback.seek, 18)
     window.settle()
     before, document = place(scene, "stick", window), scene.document
-    window.act(layering.reparent_layer, ids["stick"], ids["hat"])
+    window.act(reparent_layer, ids["stick"], ids["hat"])
     window.settle()
     assert [joint.frame for joint in scene.document.layer(ids["stick"]).attachments] == [0, 6]
     assert abs(place(scene, "stick", window) - before) < 0.5
@@ -408,17 +423,17 @@ def test_a_layer_is_looked_at_alone_while_exports_have_all(window, scene, ids):
 
     window.settle()
     whole = blue()
-    window.act(layering.solo_layers, ids["stick"])
+    window.act(solo_layers, ids["stick"])
     window.settle()
     assert blue() < whole / 2
-    assert layering.layer_at(scene, 120 + 100j) is None
+    assert layer_at(scene, 120 + 100j) is None
     assert len(scene.document.exported_layers) == 5
-    window.act(layering.solo_layers, ids["stick"])
+    window.act(solo_layers, ids["stick"])
     window.settle()
     assert blue() == whole
     # What is deleted is looked at no more, and all others again.
-    window.act(layering.solo_layers, ids["hat"])
-    window.act(layering.delete_layers, ids["hat"])
+    window.act(solo_layers, ids["hat"])
+    window.act(delete_layers, ids["hat"])
     window.settle()
     assert scene.solo == frozenset()
 
@@ -429,24 +444,24 @@ def test_several_layers_get_keys_together_and_go_together(window, scene, ids):
         command = key_commands.insert_key(layer.id, 24, layer.keys[0].pose)
         window.act(editing.edit_document, command)
     before = scene.document
-    window.act(layering.select_layers, ids["hat"], ids["head"])
+    window.act(select_layers, ids["hat"], ids["head"])
     window.act(playback.seek, 12)
-    window.act(posing.insert_key)
+    window.act(insert_key)
     window.settle()
     for name in ("hat", "head"):
         assert 12 in scene.document.layer(ids[name]).key_frames
     window.act(editing.undo)
     assert scene.document is before
-    window.act(layering.delete_layers, *scene.selected_layers)
+    window.act(delete_layers, *scene.selected_layers)
     window.settle()
     assert {layer.name for layer in scene.document.layers} == {"stick", "ah", "oh"}
-    window.act(layering.delete_layers, *(layer.id for layer in scene.document.layers))
+    window.act(delete_layers, *(layer.id for layer in scene.document.layers))
     assert "at least one layer" in window.session.toasts[-1].text
 
 
 def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use):
-    window.act(layering.toggle_layers_hidden, ids["hat"])
-    window.act(layering.set_active_layer, ids["hat"])
+    window.act(toggle_layers_hidden, ids["hat"])
+    window.act(set_active_layer, ids["hat"])
     window.act(playback.seek, 8)
     window.frames(3)
     use(lambda robot: robot.item_click("**/Show from frame 8 on"))
@@ -523,7 +538,7 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):
-    window.act(layering.set_active_layer, ids["stick"])
+    window.act(set_active_layer, ids["stick"])
     window.act(playback.seek, 12)
     window.frames(3)
     before = place(scene, "stick", window)

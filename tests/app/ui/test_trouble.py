@@ -10,7 +10,10 @@ import pytest
 from harness import Harness
 
 from app.document.keyframe import Target
-from app.editor.actions import exporting, files, posing, saving, upkeep
+from app.editor.actions import exporting, files, saving, upkeep
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.posing.pose_solver import POSING
 from app.editor.dialogs import FileDialog, Question, RecoveryDialog
 from app.editor.work.jobs import Job, JobKind
 from app.errors import CANCELLED
@@ -24,8 +27,8 @@ from app.storage.autosave import (
     load_recoverable_file,
     remove_recoverable_file,
 )
-from app.storage.files import FileLock, FileLockedError
-from app.storage.project import NO_PROJECT
+from app.storage.files.file_lock import FileLock, FileLockedError
+from app.storage.project.archive import NO_PROJECT
 from app.storage.project_file import load_project, save_project
 from app.ui.bars.status import ENDLESS
 from app.ui.viewport.canvas import Canvas
@@ -142,7 +145,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     window.settle()
     saved = path.read_bytes()
     place = complex(*project.document.canvas) / 2
-    window.act(posing.add_handle, place)
+    window.act(add_handle, place)
     window.settle()
     crash(window, project)
 
@@ -173,7 +176,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
     assert len(load_project(path).layers[0].handles) == 1
     assert find_recoverable_files(window.folder) == []
 
-    window.act(posing.add_handle, place / 2)
+    window.act(add_handle, place / 2)
     window.settle()
     window.act(saving.save)
     window.settle()
@@ -182,7 +185,7 @@ def test_recovered_work_has_its_name_and_goes_back_to_its_file_once_that_was_sho
 
 
 def test_recovered_work_on_a_picture_has_its_name_and_no_file(window, project):
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert crash(window, project) == ("bar", None)
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
@@ -272,7 +275,7 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     ours = replace(other, fps=12.0)
     save_project(saved, ours)
     theirs = saved.read_bytes()
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.act(saving.save)
     window.settle()
@@ -286,7 +289,7 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     window.settle()
     answer(window, "Replace it")
     assert len(load_project(saved).layers[0].handles) == 1
-    window.act(posing.add_handle, complex(*project.document.canvas) / 3)
+    window.act(add_handle, complex(*project.document.canvas) / 3)
     window.settle()
     window.act(saving.save)
     window.settle()
@@ -299,7 +302,7 @@ def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project,
     saved.unlink()
     saved.write_bytes(content)
     os.utime(saved, (2e9, 2e9))
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.act(saving.save)
     window.settle()
@@ -311,7 +314,7 @@ def test_a_folder_that_was_removed_is_told_and_the_work_stays(window, project, s
     for path in saved.parent.iterdir():
         path.unlink()
     saved.parent.rmdir()
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.act(saving.save)
     window.settle()
@@ -330,7 +333,7 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.session.autosave.remove()
     with monkeypatch.context() as patch:
@@ -353,7 +356,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window, project, end
 ):
     middle = complex(*project.document.canvas) / 2
-    window.act(posing.add_handle, middle)
+    window.act(add_handle, middle)
     window.settle()
     window.session.autosave.remove()
     project.autosaved = None
@@ -362,7 +365,7 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window.clock.now += SECONDS
     window.frames(2)
     assert saving.AUTOSAVING in window.session.jobs.kinds
-    window.act(posing.add_handle, middle + 50)
+    window.act(add_handle, middle + 50)
     saving.autosave_now(window.session)
     end.set()
     window.settle()
@@ -424,10 +427,10 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
 def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window, project, tmp_path, monkeypatch, end
 ):
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     monkeypatch.setattr("app.editor.actions.posing.pose_solver._take_steps", lambda *_: end.wait())
-    posing.set_targets(window.session, {0: Target(position=complex(*project.document.canvas) / 3)})
+    set_targets(window.session, {0: Target(position=complex(*project.document.canvas) / 3)})
     # What may wait longer is no obstacle.
     window.act(exporting.start_export, tmp_path / "frames")
     window.act(saving.write_project, tmp_path / "a.lissom", None)
@@ -436,7 +439,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
     window.clock.now += saving.PATIENCE
     window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
-    window.act(upkeep.give_up, posing.POSING)
+    window.act(upkeep.give_up, POSING)
     end.set()
     window.settle()
     assert any(CANCELLED in text for text in texts(window))
@@ -446,7 +449,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
 def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
     window, project, monkeypatch, has_room
 ):
-    window.act(posing.add_handle, complex(*project.document.canvas) / 2)
+    window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.session.autosave.remove()
     project.autosaved = None

@@ -12,20 +12,13 @@ from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import TangentMode, Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import (
-    editing,
-    exporting,
-    files,
-    keys,
-    playback,
-    posing,
-    resolving,
-    saving,
-    timeline_drag,
-    upkeep,
-    viewing,
-)
-from app.editor.actions.posing.inserting import INSERTING
+from app.editor.actions import editing, exporting, files, playback, saving, upkeep, viewing
+from app.editor.actions.layer_setup import resolving
+from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.posing.inserting import INSERTING, insert_key
+from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.timing import keys, timeline_drag
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
 from app.errors import CANCELLED, report_progress
@@ -96,8 +89,8 @@ def test_undo_during_a_drag(window, loose):
 
 def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(window, loose):
     before = loose.document
-    with window.session.jobs.held(posing.POSING):
-        posing.set_targets(window.session, {1: Target(position=900 + 50j)})
+    with window.session.jobs.held(POSING):
+        set_targets(window.session, {1: Target(position=900 + 50j)})
         window.act(editing.undo)
     window.settle()
     assert loose.document is before
@@ -108,7 +101,7 @@ def test_undo_of_a_drag_that_is_not_to_be_seen_yet_takes_nothing_else_back(windo
 def test_undo_takes_a_loose_pose_back_first(window, loose):
     window.act(viewing.toggle_auto_key)
     before = loose.document
-    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
+    set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     assert loose.unkeyed_pose is not None
     window.run(lambda robot: press(robot, window.Key.mod_ctrl, window.Key.z))
@@ -122,7 +115,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
     before = loose.document
     poses = [None]
     for shift in (-30j, -60j, -90j):
-        posing.set_targets(session, {1: Target(position=place_of(loose, 1) + shift)})
+        set_targets(session, {1: Target(position=place_of(loose, 1) + shift)})
         window.settle()
         poses.append(loose.unkeyed_pose)
     assert len(set(poses)) == 4
@@ -135,7 +128,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
         assert loose.unkeyed_pose is pose
     window.frames(2)
     assert loose.layer_runtime.shown.pose is poses[-1]
-    posing.insert_key(session)
+    insert_key(session)
     assert loose.unkeyed_pose is None
     assert loose.layer.key(24).pose is poses[-1]
     editing.undo(session)
@@ -145,7 +138,7 @@ def test_undo_and_redo_go_through_loose_poses_one_by_one(window, loose):
 def test_a_loose_pose_waits_at_its_frame(window, loose):
     session = window.session
     window.act(viewing.toggle_auto_key)
-    posing.set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
+    set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     pose = loose.unkeyed_pose
     playback.scrub(session, 24)
@@ -215,7 +208,7 @@ def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
     window, loose, change, frames
 ):
     editing.select_keys(window.session, frozenset({24}))
-    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
+    set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
     assert loose.pull is not None
     change(window.session)
     window.settle()
@@ -223,7 +216,7 @@ def test_key_that_goes_while_the_solver_still_follows_does_not_come_back(
 
 
 def test_other_changes_leave_the_solver_at_work(window, loose):
-    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
+    set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
     keys.set_fps(window.session, 12.0)
     assert loose.pull is not None
     window.settle()
@@ -237,7 +230,7 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
         handle_commands.move_handle(0, 1, rest - 30),
     ):
         wish = place_of(loose, 1) - 20j
-        posing.set_targets(window.session, {1: Target(position=wish)})
+        set_targets(window.session, {1: Target(position=wish)})
         editing.edit_document(window.session, command)
         window.settle()
         pose = loose.layer.key(24).pose
@@ -247,7 +240,7 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
 
 
 def test_playhead_that_goes_elsewhere_ends_the_pull(window, loose):
-    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
+    set_targets(window.session, {1: Target(position=place_of(loose, 1) - 150j)})
     playback.scrub(window.session, 24)
     assert loose.pull is not None
     playback.scrub(window.session, 7)
@@ -290,7 +283,7 @@ def test_only_what_is_there_is_selected(window, loose):
 
 def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
     window.act(viewing.toggle_auto_key)
-    posing.set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
+    set_targets(window.session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     before = loose.layer_runtime.shown.positions
     editing.select_handles(window.session, frozenset({0}))
@@ -304,7 +297,7 @@ def test_loose_pose_stays_when_a_handle_is_deleted_by_its_key(window, loose):
 def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
     session = window.session
     window.act(viewing.toggle_auto_key)
-    posing.set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
+    set_targets(session, {1: Target(position=place_of(loose, 1) - 80j)})
     window.settle()
     cage = loose.document.layers[0].domain.cage
     viewing.preview_meshing(session, Meshing(triangles=1_500, detail="fine"))
@@ -469,7 +462,7 @@ FAILURES = {
     ),
     "Posing": (
         "app.editor.actions.posing.pose_solver._take_steps",
-        lambda session: posing.set_targets(session, {1: Target(position=900 + 50j)}),
+        lambda session: set_targets(session, {1: Target(position=900 + 50j)}),
     ),
     "Inserting a key": (
         "app.editor.actions.posing.inserting.fit_shown_pose",
@@ -516,7 +509,7 @@ def test_job_that_raises_is_told_once_and_the_window_lives_on(
     assert frames_of(loose) == [0]
     assert loose.document.layers[0].handles == ()
     playback.seek(window.session, 5)
-    posing.add_handle(window.session, complex(*loose.layer_runtime.picture.size) / 2)
+    add_handle(window.session, complex(*loose.layer_runtime.picture.size) / 2)
     window.settle()
     assert loose.layer_runtime.shown.is_current
     assert loose.key_resolver is None
@@ -554,7 +547,7 @@ WAITING = {
         upkeep.maintain(session),
     ),
     resolving.SOLVING_KEYS: resolving.solve_keys_again,
-    posing.POSING: lambda session: posing.set_targets(session, {1: Target(position=900 + 50j)}),
+    POSING: lambda session: set_targets(session, {1: Target(position=900 + 50j)}),
     INSERTING: lambda session: keys.insert_key_in_row_at(session, 12),
 }
 
@@ -563,10 +556,8 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, loose
     """Never the pose of the key that was changed, however long in-betweens take."""
     with window.session.jobs.held(*INBETWEENS):
         width, height = loose.document.canvas
-        posing.set_targets(
-            window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))}
-        )
-        window.until(lambda: posing.POSING not in window.session.jobs.kinds)
+        set_targets(window.session, {1: Target(position=complex(0.85 * width, 0.1 * height))})
+        window.until(lambda: POSING not in window.session.jobs.kinds)
         mesh, (first, last) = loose.layer_runtime.shown.mesh, loose.layer.keys
         for frame, key in ((18, last), (6, first)):
             playback.seek(window.session, frame)
@@ -578,9 +569,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, loose
             window.frames(2)
             assert loose.layer_runtime.shown is shown, "nothing is worked out again while it waits"
         # Where the handles will be is not known yet: what is wished comes once it is.
-        posing.set_targets(
-            window.session, {1: Target(position=complex(0.85 * width, 0.4 * height))}
-        )
+        set_targets(window.session, {1: Target(position=complex(0.85 * width, 0.4 * height))})
         window.frames(2)
     window.settle()
     assert loose.layer_runtime.shown.is_current
@@ -676,8 +665,8 @@ def test_panels_draw_in_every_window(window, sized, request, kind, size):
     elif kind != "welcome":
         window.open(BAR)
         if kind == "one key":
-            posing.add_handle(window.session, 500 + 100j)
-            posing.set_targets(window.session, {0: Target(position=500 + 120j)})
+            add_handle(window.session, 500 + 100j)
+            set_targets(window.session, {0: Target(position=500 + 120j)})
             window.settle()
     sized(*size)
     for tab in TABS:

@@ -18,16 +18,10 @@ from PIL import Image
 
 from app.document import PreviewPose
 from app.document.settings import ExportSettings, FrameRange
-from app.editor.actions import (
-    cut_out_editing,
-    editing,
-    exporting,
-    files,
-    keys,
-    playback,
-    posing,
-    saving,
-)
+from app.editor.actions import editing, exporting, files, playback, saving
+from app.editor.actions.layer_setup import cut_out_editing
+from app.editor.actions.posing.handles import add_handle, remove_handles
+from app.editor.actions.timing import keys
 from app.editor.dialogs import Question
 from app.editor.layering import pictures
 from app.export.writers.gif import GifWriter
@@ -51,7 +45,7 @@ DEADLOCK = 4 * PATIENCE
 def project(window):
     """A bar with a handle and nine frames; each takes more than half of an export's share."""
     project = window.again(Harness.open, BAR)
-    posing.add_handle(window.session, complex(*project.document.canvas) / 2)
+    add_handle(window.session, complex(*project.document.canvas) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
     exporting.set_export_settings(window.session, ExportSettings(size=SIZE))
     window.settle()
@@ -189,7 +183,7 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
     assert all(map(is_whole, written))
     assert exporting.CANCELLED_MIDWAY in texts(window)
     before = project.document
-    posing.remove_handles(window.session, frozenset({0}))
+    remove_handles(window.session, frozenset({0}))
     assert project.document is not before
     window.act(exporting.start_export, out)
     window.settle()
@@ -531,7 +525,7 @@ def test_export_and_in_betweens_of_the_window_do_not_wait_for_each_other(window,
         window.settle()
         finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == FRAMES
-    posing.remove_handles(window.session, frozenset({0}))
+    remove_handles(window.session, frozenset({0}))
     window.act(exporting.start_export, tmp_path / "more frames")
     window.session.jobs.wait_until_idle()
     # In-betweens of the same maps, whatever handles they have.

@@ -11,7 +11,7 @@ from scenes import PICTURE, random_scene, random_state
 
 from app.editor.actions import saving
 from app.errors import EXPECTED_ERRORS
-from app.ui.shortcuts import MENUS
+from app.ui.shortcuts.table import MENUS
 
 VERBS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}
 TABS = ("Handle", "Layers", "Poses", "Motion", "Deform", "Material", "Mesh", "Export")

@@ -13,7 +13,7 @@ from app.document import Target
 from app.editor import Jobs, Project, Session, do
 from app.editor.actions import playback
 from app.render import Renderer
-from app.render.gpu import create_context
+from app.render.gpu.context import create_context
 from app.ui.window.window import PAUSE, SIZE, Window
 from tests.support.offscreen import Offscreen
 

@@ -13,9 +13,9 @@ from pathlib import Path
 from app.editor import Jobs, Session, do
 from app.editor.actions import files
 from app.render import Renderer
-from app.render.gpu import window_context
+from app.render.gpu.context import window_context
 from app.storage import sample_images
-from app.ui.window import Window, has_display
+from app.ui.window.window import Window, has_display
 from tests.bench.table import Row, Table
 
 SAMPLE = "dragon.png"  # samples that move would play

@@ -9,9 +9,9 @@ from pathlib import Path
 from app.editor import Jobs, Session, do
 from app.editor.actions import files, saving
 from app.render import Renderer
-from app.render.gpu import create_context, window_context
+from app.render.gpu.context import create_context, window_context
 from app.storage import load_preferences
-from app.ui.window import Window, has_display
+from app.ui.window.window import Window, has_display
 from tests.bench.table import Table, row_at_most
 from tests.support.offscreen import Offscreen
 

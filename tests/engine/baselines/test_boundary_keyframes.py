@@ -14,7 +14,7 @@ from engine.baselines import (
     harmonic_coordinate_maps,
     prepare_baseline,
 )
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
 from engine.interpolation import prepare
 

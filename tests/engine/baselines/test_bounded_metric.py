@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from engine.baselines import prepare_baseline
 from engine.baselines.flattening import Flattening, _angles, edge_lengths
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 from engine.interpolation import prepare
 from engine.maps import distortion
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from engine.baselines import Baseline, prepare_baseline
 from engine.baselines.mesh_keyframes import WINDS
-from engine.domain.meshing import triangulate
+from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
 from engine.geometry.polygon import OUTSIDE_OUTLINE
 from engine.interpolation import prepare

@@ -10,22 +10,17 @@ from messages import says
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
-from engine.deform.correction import (
-    WIDTH,
-    BaseFrame,
-    CorrectedFrame,
-    LimitBarrier,
-    PointPaths,
+from engine.deform.correction.barrier import WIDTH, LimitBarrier, extremes
+from engine.deform.correction.corrector import build_corrector
+from engine.deform.correction.frame import BaseFrame, CorrectedFrame
+from engine.deform.correction.limits import frame_limits, max_feasible_share, solve_within
+from engine.deform.correction.paths import PointPaths
+from engine.deform.correction.solver import (
+    UNFINISHED,
     PointSolution,
     PointTargets,
-    build_corrector,
-    extremes,
-    frame_limits,
-    max_feasible_share,
     solve_correction,
-    solve_within,
 )
-from engine.deform.correction.solver import UNFINISHED
 from engine.errors import EngineError
 from engine.maps import Boundary, Bounds
 

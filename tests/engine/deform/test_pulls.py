@@ -10,7 +10,7 @@ from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import BoundedPull, Deformer, Handles, Objective, Status, projected_hessian
-from engine.deform.interior_point import OPTIMAL
+from engine.deform.interior_point.search import OPTIMAL
 from engine.deform.model.hessian import hessian_product
 from engine.deform.pulls import FORCE_NOT_POSITIVE, PULL_HANDLES
 from engine.errors import EngineError

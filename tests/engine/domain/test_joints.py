@@ -7,7 +7,7 @@ from silhouettes import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot
 
 from engine.domain import guess_kind, suggest_joints
 from engine.geometry import contains, signed_area
-from engine.geometry.motions import KINDS, find_kind
+from engine.geometry.motions.kinds import KINDS, find_kind
 
 
 def suggested(loops, kind):

@@ -5,7 +5,9 @@ import pytest
 from interpolation_shapes import subdivided
 from numpy.testing import assert_allclose, assert_array_equal
 
-from engine.domain.material import brush_weights, copy_nearest_stiffness, limb_weights
+from engine.domain.material.brush import brush_weights
+from engine.domain.material.limb import limb_weights
+from engine.domain.material.transfer import copy_nearest_stiffness
 from engine.errors import EngineError
 
 # A trunk, 4 wide and 6 high, with an arm to the right at its top that hangs down along it, .4 away.

@@ -9,7 +9,7 @@ from pictures import blob, limbs, ring, star
 from shapes import regular_polygon
 
 from engine.domain import MeshedDomain, build_domain, require_domain
-from engine.domain.meshing import Mesh
+from engine.domain.meshing.mesh import Mesh
 from engine.domain.picture.cut_out import CutOut
 from engine.domain.validity import (
     MESH_CORNERS,

@@ -23,7 +23,8 @@ from engine.interpolation import (
     sample_domain,
     sample_keyframes,
 )
-from engine.interpolation.proof import bisection, prove
+from engine.interpolation.proof import bisection
+from engine.interpolation.proof.bisection import prove
 from engine.maps import Boundary, Bounds, HarmonicMap, distortion
 from engine.paths import root_sheets
 

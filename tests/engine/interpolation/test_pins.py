@@ -7,7 +7,8 @@ import pytest
 from interpolation_shapes import bar, bent, inner_points, stage_of
 from numpy.testing import assert_allclose
 
-from engine.deform.correction import build_corrector, solve_correction
+from engine.deform.correction.corrector import build_corrector
+from engine.deform.correction.solver import solve_correction
 from engine.interpolation import (
     SegmentPins,
     Variant,

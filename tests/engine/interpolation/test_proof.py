@@ -18,16 +18,17 @@ from messages import says
 from engine.errors import EngineError
 from engine.geometry import Domain
 from engine.interpolation import InteriorKnot, Tangent, TimeWeights, Variant, prepare
-from engine.interpolation.added.pins import CorrectionSeries
+from engine.interpolation.added.pins.pinning import CorrectionSeries
 from engine.interpolation.blends.eta import EtaBlend
 from engine.interpolation.blends.linear import LinearBlend
 from engine.interpolation.blends.metric import MetricBlend
 from engine.interpolation.blends.nu import NuBlend
-from engine.interpolation.enclosures import BernsteinPatch, BlendChanges, Subdivision
-from engine.interpolation.proof import bisection, prove
-from engine.interpolation.proof.bisection import TIGHTNESS
+from engine.interpolation.enclosures.cells import BernsteinPatch, BlendChanges
+from engine.interpolation.enclosures.pieces import Subdivision
+from engine.interpolation.proof import bisection
+from engine.interpolation.proof.bisection import TIGHTNESS, prove
 from engine.interpolation.sampled_domain import NO_SAMPLES
-from engine.interpolation.series import constant_one
+from engine.interpolation.series.chebyshev import constant_one
 from engine.maps import Boundary, Bounds, distortion
 from engine.maps.harmonic_map import HarmonicMap
 

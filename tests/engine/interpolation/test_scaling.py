@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 
 from engine.geometry.polygon import edge_vectors
 from engine.interpolation import TimeWeights, prepare
-from engine.interpolation.scaling import BESIDE_KEY, ExactRho, PointSamples
+from engine.interpolation.scaling.exact_rho import BESIDE_KEY, ExactRho
+from engine.interpolation.scaling.pointwise import PointSamples
 from engine.interpolation.scaling.smoothed_rho import (
     FARTHEST,
     HALF_WINDOW,

@@ -9,7 +9,7 @@ from interpolation_shapes import bar, bent, letter_l, narrow_u, random_map
 from messages import says
 from numpy.testing import assert_allclose
 
-from engine.deform.correction import build_corrector
+from engine.deform.correction.corrector import build_corrector
 from engine.dirichlet import HilbertTransform
 from engine.errors import EngineError
 from engine.geometry import Domain

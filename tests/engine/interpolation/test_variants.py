@@ -19,7 +19,7 @@ from interpolation_shapes import (
 from numpy.testing import assert_allclose
 
 from engine.interpolation import Variant, prepare
-from engine.interpolation.scaling import BESIDE_KEY
+from engine.interpolation.scaling.exact_rho import BESIDE_KEY
 from engine.maps import distortion
 from engine.maps.harmonic_map import HarmonicMap
 

@@ -8,9 +8,10 @@ from app.document.commands import retime
 from app.document.commands.command import command, layer_command
 from app.document.commands.retime import Keys
 from app.document.layer import Layer
-from app.document.layers import CameraKey, DrawOrderKey, OpacityKey, TransformKey
+from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
 from app.document.model import Document
-from app.document.queries import change_frame, keyed_frame, repeating_cycle
+from app.document.queries.layers.layer_state import keyed_frame, repeating_cycle
+from app.document.queries.layers.visibility import change_frame
 from app.document.settings import FrameRange
 
 Key = TypeVar("Key", CameraKey, TransformKey, OpacityKey)

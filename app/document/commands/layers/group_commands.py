@@ -11,7 +11,7 @@ from app.document.commands.layers.layer_commands import (
     without_empty_groups,
 )
 from app.document.layer import Layer
-from app.document.layers import Group, GroupBlend, ancestor_paths, common_path
+from app.document.layers.groups import Group, GroupBlend, ancestor_paths, common_path
 from app.document.model import Document
 from app.errors import LissomError
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from app.document.layers import ancestor_paths
+from app.document.layers.groups import ancestor_paths
 from app.document.model import Document
 
 

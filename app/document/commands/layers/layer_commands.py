@@ -12,9 +12,11 @@ from app.document.commands.layers import switch_group_commands
 from app.document.commands.layers.hidden import with_layer_shown
 from app.document.keyframe import Pose, Target
 from app.document.layer import Layer
-from app.document.layers import Attachment, BlendMode, VisibilityKey, ancestor_paths, common_path
+from app.document.layers.attachments import Attachment
+from app.document.layers.groups import BlendMode, ancestor_paths, common_path
+from app.document.layers.visibility import VisibilityKey
 from app.document.model import Document
-from app.document.queries import change_frame
+from app.document.queries.layers.visibility import change_frame
 from app.errors import ImportLog, LissomError
 
 LAST_LAYER = "A document has at least one layer; add another one first."

@@ -5,9 +5,14 @@ from dataclasses import replace
 
 from app.document.commands.command import command
 from app.document.commands.layers.hidden import with_layer_shown
-from app.document.layers import SwitchGroup, SwitchKey
+from app.document.layers.visibility import SwitchGroup, SwitchKey
 from app.document.model import Document
-from app.document.queries import is_visible, turn_frame, visibility_keys, with_repeats
+from app.document.queries.layers.visibility import (
+    is_visible,
+    turn_frame,
+    visibility_keys,
+    with_repeats,
+)
 from app.errors import LissomError
 
 

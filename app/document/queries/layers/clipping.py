@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from app.document.layer import Layer
-from app.document.layers import ancestor_paths
+from app.document.layers.groups import ancestor_paths
 from app.document.model import Document
 
 

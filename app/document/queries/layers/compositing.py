@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Generic, NamedTuple, TypeVar
 
 from app.document.layer import Layer
-from app.document.layers import BlendMode
+from app.document.layers.groups import BlendMode
 from app.document.model import Document
 from app.document.queries.layers.clipping import group_runs
 from app.document.queries.layers.layer_state import layers_in_draw_order, opacity_at

@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from app.document.layer import Layer
-from app.document.layers import CameraKey, DrawOrderKey, OpacityKey, TransformKey
+from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
 from app.document.model import Document
 from app.document.queries.layers.clipping import clip_stacks
 from app.document.queries.layers.visibility import repeated
@@ -19,7 +19,7 @@ from app.document.queries.tangents import (
     Value,
     sample_segment,
 )
-from app.document.timing import Cycle
+from app.document.timing.cycles import Cycle
 from engine.arrays import Complexes
 from engine.geometry import IDENTITY_MOTION, RigidMotion, Similarity
 

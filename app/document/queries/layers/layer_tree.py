@@ -4,7 +4,8 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 from app.document.layer import Layer
-from app.document.layers import Group, SwitchGroup, ancestor_paths
+from app.document.layers.groups import Group, ancestor_paths
+from app.document.layers.visibility import SwitchGroup
 from app.document.model import Document
 
 

@@ -4,7 +4,7 @@ import re
 from collections import Counter
 
 from app.document.layer import Layer
-from app.document.layers import ancestor_paths
+from app.document.layers.groups import ancestor_paths
 from app.document.model import Document
 
 # Parts of which a character has one.

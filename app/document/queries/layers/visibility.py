@@ -7,9 +7,10 @@ from itertools import pairwise
 from typing import TypeVar
 
 from app.document.layer import Layer
-from app.document.layers import DrawOrderKey, SwitchGroup, SwitchKey, VisibilityKey
+from app.document.layers.layer_keys import DrawOrderKey
+from app.document.layers.visibility import SwitchGroup, SwitchKey, VisibilityKey
 from app.document.model import Document
-from app.document.timing import Cycle, count_changes_within
+from app.document.timing.cycles import Cycle, count_changes_within
 
 Change = TypeVar("Change", VisibilityKey, DrawOrderKey, SwitchKey)
 

@@ -12,7 +12,7 @@ from app.editor.actions import editing
 from app.editor.error_reports import run_job
 from app.editor.project import Project
 from app.editor.session import CutTool, Session, with_project
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.storage import (
     check_writable,
     cut_picture,

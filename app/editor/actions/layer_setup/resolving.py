@@ -7,11 +7,13 @@ from functools import partial
 from app.document import Target, relax_limits, shape_commands
 from app.editor import pending_changes
 from app.editor.action import do
-from app.editor.actions import editing, posing
+from app.editor.actions import editing
+from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.error_reports import as_sentence, report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind, Promise
+from app.editor.work.jobs import JobKind
+from app.editor.work.promise import Promise
 from app.solving import KeyResolver, step_resolver
 from engine.maps import Bounds
 
@@ -60,7 +62,7 @@ def relax_limits_and_solve(
     gesture = object()
     # The old limits lie within the new ones, so no key has to be solved again.
     project.history.do(shape_commands.set_limits(project.active, bounds), gesture=gesture)
-    posing.solve_pose_again(session, asked or {}, gesture=gesture)
+    solve_pose_again(session, asked or {}, gesture=gesture)
 
 
 @with_project

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from app.document import bone_region, brushed_stiffness, stiffness_commands
-from app.document.rig import Bone
-from app.editor.actions import editing, playback, posing
+from app.document import Bone, bone_region, brushed_stiffness, stiffness_commands
+from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import cut_out_editing
+from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.project import Project
 from app.editor.session import MaterialTool, Session, with_project
 from app.errors import LissomError
@@ -154,4 +154,4 @@ def suggest_stiffness(session: Session, project: Project) -> None:
 
 def solve_shown_pose_again(session: Session) -> None:
     """Solve the shown pose for its targets again, with the present stiffness."""
-    posing.solve_pose_again(session, {}, gesture=object())
+    solve_pose_again(session, {}, gesture=object())

@@ -10,7 +10,7 @@ from app.editor.actions import playback
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose
 
 INSERTING = JobKind("Inserting a key", "The key could not be inserted", "hand")

@@ -6,7 +6,7 @@ from app.document import Command, Layer, Pose, PreviewPose, key_commands, with_a
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work import Pull
+from app.editor.work.pull import Pull
 from app.errors import LissomError
 
 NO_POSE = "The pose could not be kept"

@@ -10,7 +10,7 @@ from app.editor.actions.posing.pose_commit import commit_pose
 from app.editor.actions.posing.pose_solver import POSING, step_pose_solver
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import DragStart, Pull, TargetChange, absolute_targets
+from app.editor.work.pull import DragStart, Pull, TargetChange, absolute_targets
 from engine.deform import BoundedPull
 
 

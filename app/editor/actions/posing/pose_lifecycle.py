@@ -7,7 +7,7 @@ from app.editor.actions.posing.pose_commit import commit_pose
 from app.editor.actions.posing.pose_solver import is_drag_at_playhead, step_pose_solver
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work import Pull
+from app.editor.work.pull import Pull
 
 MOST_UNSEEN = 8  # most undone drags that are still solved, in case they are redone
 

@@ -10,10 +10,10 @@ from app.editor.actions.posing.pose_commit import commit_pose
 from app.editor.error_reports import report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work import (
+from app.editor.work.jobs import JobKind
+from app.editor.work.pull import (
     MOST_STEPS,
     DragStart,
-    JobKind,
     Pull,
     TargetChange,
     combine_targets,

@@ -7,7 +7,7 @@ from app.editor.action import do
 from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import Pull
+from app.editor.work.pull import Pull
 
 # Relaxes the limits, and drags handles once more to their original targets.
 RelaxLimits = Callable[[Session, Mapping[int, Target]], None]

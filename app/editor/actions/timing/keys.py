@@ -14,7 +14,8 @@ from app.document import (
     shape_commands,
     track_commands,
 )
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.timing import tracks
 from app.editor.project import Project
 from app.editor.session import Session, with_project
@@ -46,7 +47,7 @@ def insert_key_in_row(session: Session, project: Project) -> None:
     """Insert a key at the present frame into the selected row: of the pose, or of a track."""
     track = project.selected_track
     if track is None or project.unkeyed_pose is not None:
-        posing.insert_key(session)
+        insert_key(session)
     else:
         tracks.key_handles_at_playhead(session, (track,))
 

@@ -11,11 +11,11 @@ from app.document import Document, Spring, Track, TrackKey, track_commands
 from app.editor import pending_changes
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
-from engine.geometry.kinematics import fit_keys
+from engine.geometry.kinematics.recordings import fit_keys
 
 KEYING = JobKind("Making keys of a spring", "The swing could not be made into keys")
 NEAR = 4e-4  # of the layer's diameter: largest distance of the keys' motion from the swing

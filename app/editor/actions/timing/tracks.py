@@ -18,11 +18,13 @@ from app.document import (
     velocity_at,
 )
 from app.editor import pending_changes
-from app.editor.actions import editing, playback, posing, tracking
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import release_drag
+from app.editor.actions.tracking.track_space import find_key_frame
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import display_frame
-from app.editor.work import JobKind
+from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
@@ -51,7 +53,7 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
     Handles without a track get a shared track relative to the pose; its first key has offset 0.
     """
     playback.stop_playback(session)
-    posing.release_drag(session)
+    release_drag(session)
     layer, gesture = project.layer, object()
     new = tuple(identity for identity in handles if layer.track_of(identity) is None)
     if new:
@@ -70,7 +72,7 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
 def _key(session: Session, project: Project, track: Track, gesture: object) -> None:
     """Insert a key into a track at the present frame without moving the handle."""
     frame, layer = playback.current_frame(session, project), project.layer
-    own = tracking.find_key_frame(session, project.document, track, frame)
+    own = find_key_frame(session, project.document, track, frame)
     if own is None or own in track.key_frames:
         return
     easing, clip = session.preferences.easing, project.clip
@@ -113,7 +115,7 @@ def set_handle_value(
     if track is None:
         return
     frame = playback.current_frame(session, project)
-    own = tracking.find_key_frame(session, project.document, track, frame)
+    own = find_key_frame(session, project.document, track, frame)
     if own is not None:
         key, easing = track_commands.put_track_key, session.preferences.easing
         velocity = velocity_at(track, project.clip, frame)

@@ -7,7 +7,8 @@ from app.editor.actions import playback
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.work import Job, JobKind, LayerRuntime
+from app.editor.work.jobs import Job, JobKind
+from app.editor.work.layer_runtime import LayerRuntime
 from app.motion import CorrectedFrames, CorrectionUpdate
 
 COMPLAINT = "The handles cannot follow their tracks"

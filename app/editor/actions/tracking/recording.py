@@ -3,18 +3,19 @@
 from dataclasses import replace
 
 from app.document import Track, TrackKey, track_at, track_commands
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.actions.tracking.track_dragging import commit_track_drags, commit_track_key
 from app.editor.actions.tracking.track_space import base_frame_at, handle_index
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import CLICK, Session, with_project
 from app.editor.timeline_view import source_frame
-from app.editor.work import RecordedSample, Recording, TrackDrag
+from app.editor.work.track_drag import RecordedSample, Recording, TrackDrag
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
 from engine.geometry import RigidMotion
-from engine.geometry.kinematics import fit_keys
+from engine.geometry.kinematics.recordings import fit_keys
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # Largest distance of the fitted motion from the recorded one, in pixels of the screen, since
@@ -34,7 +35,7 @@ def toggle_recording_armed(session: Session, project: Project) -> None:
         session.show_notice("Click on the drawing to add a handle; then record how it is dragged.")
     else:
         playback.stop_playback(session)
-        posing.release_drag(session)
+        release_drag(session)
         session.records, session.moves = True, False
 
 

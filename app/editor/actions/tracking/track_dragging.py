@@ -15,7 +15,7 @@ from app.editor.actions.tracking.track_space import (
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import TrackDrag
+from app.editor.work.track_drag import TrackDrag
 from app.errors import LissomError
 
 NO_KEY = "The key of the handle could not be kept"

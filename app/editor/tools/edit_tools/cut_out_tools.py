@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from app.editor.actions import cut_out_editing
+from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.project import Project
 from app.editor.session import Hint, KnifeOverlay, Mark, Session, StrokeOverlay
 from app.editor.tools.tool import PointerHit, Tool

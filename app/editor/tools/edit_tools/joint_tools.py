@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Self
 
-from app.editor.actions import joint_placement
+from app.editor.actions.posing.motion_presets import joint_placement
 from app.editor.project import Project
 from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
-from app.editor.work import MotionSetup
+from app.editor.work.motion_setup import MotionSetup
 
 REACH = 14.0  # screen pixels: reach of the pointer around a joint
 

@@ -5,7 +5,8 @@ from imgui_bundle import imgui
 from app.document import Handle, handle_commands, shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing
-from app.ui.style import FILL, Look, draw_tooltip, heading, small_text, text_button
+from app.ui.style.theme import Look
+from app.ui.style.widgets import FILL, draw_tooltip, heading, small_text, text_button
 
 
 def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:

@@ -7,18 +7,18 @@ from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import SPRING_PRESETS, Handle, Layer, Spring, spring_root, track_commands
 from app.editor import Action, Project, do
-from app.editor.actions import editing, springs
-from app.ui.style import (
+from app.editor.actions import editing
+from app.editor.actions.timing import springs
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     FILL,
-    Look,
-    Scale,
     align_right,
     draw_tooltip,
     heading,
     icon_button,
     label,
     option_buttons,
-    slider,
     small_text,
     text_button,
 )

@@ -7,18 +7,17 @@ from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import Handle, Track, mirrored_handles, misses_target, track_at, track_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, playback, tracks
-from app.ui.style import (
-    Look,
-    Scale,
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import tracks
+from app.ui.style.sliders import Scale, number_field, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     align_right,
     draw_tooltip,
     heading,
     icon_button,
     label,
-    number_field,
     option_buttons,
-    slider,
     small_text,
     split_line,
     text_button,

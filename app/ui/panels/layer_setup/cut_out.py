@@ -3,12 +3,12 @@
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, CutTool, Project, Session, do
-from app.editor.actions import cut_out_editing, resolving
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import (
+from app.editor.actions.layer_setup import cut_out_editing, resolving
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     FILL,
-    Look,
-    Scale,
     align_right,
     draw_tooltip,
     heading,
@@ -16,7 +16,6 @@ from app.ui.style import (
     label,
     option_buttons,
     progress_bar,
-    slider,
     small_text,
     split_line,
     text_button,

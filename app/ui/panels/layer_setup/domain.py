@@ -7,21 +7,22 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Meshing
 from app.editor import Action, Overlays, Project, Session, do
-from app.editor.actions import OverlayName, resolving, viewing
-from app.ui.style import (
+from app.editor.actions import viewing
+from app.editor.actions.layer_setup import resolving
+from app.editor.actions.viewing import OverlayName
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     FILL,
-    Look,
-    Scale,
     draw_tooltip,
     heading,
     label,
     main_button,
     option_buttons,
     progress_bar,
-    slider,
     small_text,
 )
-from engine.domain.meshing import Mesh
+from engine.domain.meshing.mesh import Mesh
 
 DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)

@@ -5,19 +5,20 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Layer
 from app.editor import Action, MaterialTool, Project, Session, do
-from app.editor.actions import cut_out_editing, posing, resolving, stiffness_editing, viewing
+from app.editor.actions import viewing
+from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
+from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.ui.panels.layer_setup.cut_out import BRUSHES
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import (
-    Look,
-    Scale,
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     align_right,
     draw_tooltip,
     heading,
     icon_button,
     label,
     progress_bar,
-    slider,
     small_text,
     split_line,
     text_button,
@@ -164,7 +165,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
         )
     actions: list[Action] = []
     is_possible = renewal is None and bool(project.layer.handles)
-    is_here = is_possible and posing.pose_at_playhead(session, project) is not None
+    is_here = is_possible and pose_at_playhead(session, project) is not None
     widths = split_line(2)
     hint = "Pull the handles of the pose that is shown to their targets again"
     if text_button("Pose this key again", next(widths), hint, enabled=is_here):

@@ -4,5 +4,3 @@ In: a session.
 Out: actions.
 Imports: `app.ui.style`, `app.ui.shortcuts`.
 """
-
-from app.ui.panels.layers.tab import draw_layers_panel as draw_layers_panel

@@ -13,18 +13,19 @@ from app.document import (
     opacity_at,
     transform_at,
 )
-from app.editor import Action, do, layering
-from app.ui.style import (
-    FILL,
-    Look,
-    Scale,
-    draw_tooltip,
-    label,
-    number_field,
-    slider,
-    small_text,
-    text_button,
+from app.editor import Action, do
+from app.editor.layering.layer_channels import (
+    delete_draw_order_key,
+    delete_opacity_key,
+    delete_transform_key,
+    key_draw_order,
+    key_opacity,
+    key_transform,
 )
+from app.editor.layering.layer_list import set_layer_opacity
+from app.ui.style.sliders import Scale, number_field, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import FILL, draw_tooltip, label, small_text, text_button
 
 PERCENT = Scale(left=0, right=100)
 HOW = {"right": "goes right", "up": "goes up", "turn": "turns, counter-clockwise"}
@@ -38,16 +39,16 @@ def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: in
         hint += "; a change is a key at this frame"
     faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
-        fade = layering.key_opacity if layer.opacity_keys else layering.set_layer_opacity
+        fade = key_opacity if layer.opacity_keys else set_layer_opacity
         actions.append(do(fade, layer.id, min(max(faded.value / 100, 0.0), 1.0)))
     keyed = keyed_frame(layer, layer.opacity_keys, frame)
     is_keyed = any(key.frame == keyed for key in layer.opacity_keys)
     changed, _ = imgui.checkbox("Opacity keyed here", is_keyed)
     draw_tooltip("It fades evenly from key to key")
     if changed and is_keyed:
-        actions.append(do(layering.delete_opacity_key, layer.id))
+        actions.append(do(delete_opacity_key, layer.id))
     elif changed:
-        actions.append(do(layering.key_opacity, layer.id, opacity))
+        actions.append(do(key_opacity, layer.id, opacity))
     return actions
 
 
@@ -82,12 +83,12 @@ def draw_transform_channel(
     if entered:
         right, up = entered.get("right", shift.real), entered.get("up", shift.imag)
         radians = math.radians(entered.get("turn", turn))
-        actions.append(do(layering.key_transform, layer.id, complex(right, up), radians))
+        actions.append(do(key_transform, layer.id, complex(right, up), radians))
     keyed = keyed_frame(layer, layer.transform_keys, frame)
     if any(key.frame == keyed for key in layer.transform_keys) and text_button(
         f"No movement key at frame {keyed}", FILL, "It goes on between the keys around"
     ):
-        actions.append(do(layering.delete_transform_key, layer.id))
+        actions.append(do(delete_transform_key, layer.id))
     if layer.has_parent and layer.transform_keys:
         small_text(look, "While it hangs on another layer it is moved by that one alone.")
     return actions
@@ -107,11 +108,11 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     label(look, "Painted")
     if imgui.begin_combo("##painted", words):
         if imgui.selectable("where it lies", beside is None)[0] and beside is not None:
-            actions.append(do(layering.key_draw_order, layer.id, None))
+            actions.append(do(key_draw_order, layer.id, None))
         for in_front, word in ((True, "in front of"), (False, "behind")):
             imgui.separator()
             actions += [
-                do(layering.key_draw_order, layer.id, each.id, in_front)
+                do(key_draw_order, layer.id, each.id, in_front)
                 for each in others
                 if imgui.selectable(
                     f"{word} {each.name}###{word} {each.id}",
@@ -124,5 +125,5 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     if any(each.frame == keyed for each in layer.draw_order_keys) and text_button(
         f"No change of order at frame {frame}", FILL, "What was said before it holds on"
     ):
-        actions.append(do(layering.delete_draw_order_key, layer.id))
+        actions.append(do(delete_draw_order_key, layer.id))
     return actions

@@ -3,8 +3,12 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.document import TreeRow
-from app.editor import Action, Project, do, layering
-from app.ui.style import Look, colour_u32
+from app.editor import Action, Project, do
+from app.editor.layering.layer_list import add_layers_to_group, move_layers_beside
+from app.editor.layering.layer_selection import select_layers
+from app.editor.layering.parenting import attach_layers, is_same_or_descendant
+from app.editor.layering.switches import add_to_switch
+from app.ui.style.theme import Look, colour_u32
 
 MOVED = "layer"  # type of the drag-and-drop payload
 ONTO = 0.25  # share of a row's height at each edge in which a drop is beside the row
@@ -23,7 +27,7 @@ def drag_layer_row(
     if imgui.begin_drag_drop_source():
         imgui.set_drag_drop_payload_py_id(MOVED, row.layers[0])
         if row.layer is None and set(project.selected_layers) != set(row.layers):
-            actions.append(do(layering.select_layers, *row.layers))
+            actions.append(do(select_layers, *row.layers))
         dragged = _dragged(project, row.layers[0])
         imgui.text(row.name if set(dragged) <= set(row.layers) else f"{len(dragged)} layers")
         imgui.end_drag_drop_source()
@@ -62,27 +66,24 @@ def _onto(project: Project, row: TreeRow, identity: int) -> Action | None:
     if set(row.layers) <= set(dragged):
         return None
     if row.group is not None:
-        return do(layering.add_layers_to_group, row.group.name, *dragged)
+        return do(add_layers_to_group, row.group.name, *dragged)
     if row.switch_group is not None:
-        return do(layering.add_to_switch, row.switch_group.name, *dragged)
+        return do(add_to_switch, row.switch_group.name, *dragged)
     # The action refuses a circle, and reports it.
-    return do(layering.attach_layers, row.layers[0], *dragged)
+    return do(attach_layers, row.layers[0], *dragged)
 
 
 def _is_circle(project: Project, row: TreeRow, identity: int) -> bool:
     """Return whether a drop would attach layers to their own descendant."""
     return row.layer is not None and any(
-        layering.is_same_or_descendant(project, row.layer.id, each)
-        for each in _dragged(project, identity)
+        is_same_or_descendant(project, row.layer.id, each) for each in _dragged(project, identity)
     )
 
 
 def _beside(project: Project, identity: int, dragged: int, *, is_above: bool) -> list[Action]:
     """Return the action of a drop above or below another layer."""
     moved = _dragged(project, dragged)
-    return (
-        [] if identity in moved else [do(layering.move_layers_beside, identity, is_above, *moved)]
-    )
+    return [] if identity in moved else [do(move_layers_beside, identity, is_above, *moved)]
 
 
 def _show(look: Look, low: ImVec2, high: ImVec2, *, is_onto: bool, is_above: bool) -> None:

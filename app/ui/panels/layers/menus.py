@@ -5,9 +5,28 @@ from collections.abc import Sequence
 from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import Group, Layer, SwitchGroup, TreeRow, subgroups_with_layers
-from app.editor import Action, Project, do, layering
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import draw_tooltip
+from app.editor import Action, Project, do
+from app.editor.layering.layer_list import (
+    duplicate_layer,
+    group_layers,
+    put_layers_in_group,
+    toggle_group_hidden,
+    toggle_layers_hidden,
+    toggle_layers_locked,
+    toggle_reference,
+    ungroup_layers,
+)
+from app.editor.layering.layer_selection import select_layers, solo_layers
+from app.editor.layering.parenting import delete_layers
+from app.editor.layering.pictures import ask_replacement_picture, make_posable, make_still
+from app.editor.layering.switches import (
+    create_switch,
+    delete_switch,
+    key_switch,
+    remove_from_switch,
+)
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.widgets import draw_tooltip
 
 SOLO = icons.ICON_FA_BINOCULARS
 item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
@@ -45,17 +64,17 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     many = f" {len(chosen)} layers" if is_many else ""
     if not is_many:
         if item("Duplicate", icons.ICON_FA_CLONE):
-            actions.append(do(layering.duplicate_layer, identity))
+            actions.append(do(duplicate_layer, identity))
         if item("Replace picture…", icons.ICON_FA_FILE_IMAGE):
-            actions.append(do(layering.ask_replacement_picture, identity))
+            actions.append(do(ask_replacement_picture, identity))
     imgui.separator()
     if item(("Show" if layer.hidden else "Hide") + many, icons.ICON_FA_EYE):
-        actions.append(do(layering.toggle_layers_hidden, *whom))
+        actions.append(do(toggle_layers_hidden, *whom))
     if item(("Unlock" if layer.locked else "Lock") + many, icons.ICON_FA_LOCK):
-        actions.append(do(layering.toggle_layers_locked, *whom))
+        actions.append(do(toggle_layers_locked, *whom))
     alone = project.solo == set(whom)
     if item("Look at all again" if alone else f"Look at{many or ' it'} alone", SOLO):
-        actions.append(do(layering.solo_layers, *whom))
+        actions.append(do(solo_layers, *whom))
     if not is_many:
         actions += _kind(layer)
     imgui.separator()
@@ -64,30 +83,30 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
         icons.ICON_FA_FOLDER_PLUS,
         enabled=is_many or not project.other_selected_layers,
     ):
-        actions.append(do(layering.select_layers, *whom))
-        actions.append(do(layering.group_layers))
+        actions.append(do(select_layers, *whom))
+        actions.append(do(group_layers))
     if layer.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
-        actions.append(do(layering.put_layers_in_group, layer.group.rpartition("/")[0], *whom))
+        actions.append(do(put_layers_in_group, layer.group.rpartition("/")[0], *whom))
     free = is_many and all(project.document.switch_group_of(each) is None for each in chosen)
     if item("Let them take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
-        actions.append(do(layering.create_switch, *chosen))
+        actions.append(do(create_switch, *chosen))
     if project.document.switch_group_of(identity) and item(
         "Take out of the choice", icons.ICON_FA_XMARK
     ):
-        actions.append(do(layering.remove_from_switch, identity))
+        actions.append(do(remove_from_switch, identity))
     imgui.separator()
     left = len(project.document.layers) > len(whom)
     if item(f"Delete{many}", icons.ICON_FA_TRASH, enabled=left):
-        actions.append(do(layering.delete_layers, *whom))
+        actions.append(do(delete_layers, *whom))
     return actions
 
 
 def _kind(layer: Layer) -> list[Action]:
     actions: list[Action] = []
     if item("Take into exports" if layer.reference else "Reference only", icons.ICON_FA_BAN):
-        actions.append(do(layering.toggle_reference, layer.id))
+        actions.append(do(toggle_reference, layer.id))
     if item("Let it be posed" if layer.still else "Make it a still picture", icons.ICON_FA_IMAGE):
-        turn = layering.make_posable if layer.still else layering.make_still
+        turn = make_posable if layer.still else make_still
         actions.append(do(turn, layer.id))
     return actions
 
@@ -95,13 +114,13 @@ def _kind(layer: Layer) -> list[Action]:
 def _draw_switch_items(project: Project, choice: SwitchGroup) -> list[Action]:
     imgui.separator()
     actions = [
-        do(layering.key_switch, identity)
+        do(key_switch, identity)
         for identity in choice.layers
         if item(f"Show {project.document.layer(identity).name}", icons.ICON_FA_CIRCLE_DOT)
     ]
     imgui.separator()
     if item("Let them take turns no more", icons.ICON_FA_XMARK):
-        actions.append(do(layering.delete_switch, choice.name))
+        actions.append(do(delete_switch, choice.name))
     return actions
 
 
@@ -109,24 +128,24 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
     if item("Choose all layers in it", icons.ICON_FA_LIST_CHECK):
-        actions.append(do(layering.select_layers, *row.layers))
+        actions.append(do(select_layers, *row.layers))
     if item("Show" if group.hidden else "Hide", icons.ICON_FA_EYE):
-        actions.append(do(layering.toggle_group_hidden, group.name))
+        actions.append(do(toggle_group_hidden, group.name))
     locked = all(project.document.layer(each).locked for each in row.layers)
     if item("Unlock" if locked else "Lock", icons.ICON_FA_LOCK):
-        actions.append(do(layering.toggle_layers_locked, *row.layers))
+        actions.append(do(toggle_layers_locked, *row.layers))
     alone = project.solo == set(row.layers)
     if item("Look at all again" if alone else "Look at it alone", SOLO):
-        actions.append(do(layering.solo_layers, *row.layers))
+        actions.append(do(solo_layers, *row.layers))
     whole = subgroups_with_layers(project.document, group.name)
     free = len(row.layers) > 1 and all(
         project.document.switch_group_of(each) is None for each in row.layers
     )
     if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
-        actions.append(do(layering.create_switch, *row.layers, name=row.name))
+        actions.append(do(create_switch, *row.layers, name=row.name))
     if whole:
         draw_tooltip(explain_unswitchable_groups(whole))
     imgui.separator()
     if item("Ungroup", icons.ICON_FA_FOLDER_MINUS):
-        actions.append(do(layering.ungroup_layers, group.name))
+        actions.append(do(ungroup_layers, group.name))
     return actions

@@ -12,21 +12,40 @@ from app.document import (
     is_visible,
     with_repeats,
 )
-from app.editor import Action, Project, do, layering
+from app.editor import Action, Project, do
+from app.editor.layering.layer_list import (
+    delete_visibility_key,
+    rename_layer,
+    set_blend_mode,
+    set_group_opacity,
+    toggle_clipping,
+    toggle_group_hidden,
+    toggle_reference,
+    toggle_visibility_key,
+)
+from app.editor.layering.parenting import (
+    attach_layer,
+    delete_parent_key,
+    detach_layer,
+    is_same_or_descendant,
+    reparent_layer,
+    set_inherits_rotation,
+)
+from app.editor.layering.pictures import make_posable, make_still
+from app.editor.layering.switches import key_switch, remove_from_switch
 from app.ui.panels.layers.channels import (
     draw_opacity_channel,
     draw_order_channel,
     draw_transform_channel,
 )
-from app.ui.style import (
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look
+from app.ui.style.widgets import (
     FILL,
     LABEL_WIDTH,
-    Look,
-    Scale,
     draw_tooltip,
     label,
     shorten_text,
-    slider,
     small_text,
     text_button,
 )
@@ -43,12 +62,12 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
         "##layer name", layer.name, imgui.InputTextFlags_.enter_returns_true
     )
     if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
-        actions.append(do(layering.rename_layer, identity, name))
+        actions.append(do(rename_layer, identity, name))
     actions += draw_opacity_channel(project.document, look, layer, frame)
     label(look, "Blend")
     if imgui.begin_combo("##blend", layer.blend):
         actions += [
-            do(layering.set_blend_mode, identity, blend)
+            do(set_blend_mode, identity, blend)
             for blend in BLENDS
             if imgui.selectable(blend, blend == layer.blend)[0]
         ]
@@ -59,13 +78,13 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     changed, _ = imgui.checkbox("Clipped", layer.clipped)
     draw_tooltip("Seen only where that is which lies below it in its group")
     if changed:
-        actions.append(do(layering.toggle_clipping, identity))
+        actions.append(do(toggle_clipping, identity))
     for group in project.document.groups_around(layer.group):
         actions += _group(look, group)
     changed, _ = imgui.checkbox("Reference only", layer.reference)
     draw_tooltip("Seen while you work, left out of exports")
     if changed:
-        actions.append(do(layering.toggle_reference, identity))
+        actions.append(do(toggle_reference, identity))
     actions += _draw_visibility(project.document, look, layer, frame)
     actions += _draw_parent(project, look, layer, frame)
     actions += draw_transform_channel(project.document, look, layer, frame)
@@ -73,9 +92,9 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     if layer.still:
         small_text(look, "A still picture: it is shown as it was drawn.")
         if imgui.button("Let it be posed", ImVec2(FILL, 0)):
-            actions.append(do(layering.make_posable, identity))
+            actions.append(do(make_posable, identity))
     elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
-        actions.append(do(layering.make_still, identity))
+        actions.append(do(make_still, identity))
     return actions
 
 
@@ -87,11 +106,9 @@ def _group(look: Look, group: Group) -> list[Action]:
     hint = f"How much all layers of the group {group.name} together cover of what lies behind"
     faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
-        actions.append(
-            do(layering.set_group_opacity, group.name, min(max(faded.value / 100, 0.0), 1.0))
-        )
+        actions.append(do(set_group_opacity, group.name, min(max(faded.value / 100, 0.0), 1.0)))
     if imgui.checkbox(shorten_text(f"Hide all of {name}", 14 * look.em), group.hidden)[0]:
-        actions.append(do(layering.toggle_group_hidden, group.name))
+        actions.append(do(toggle_group_hidden, group.name))
     imgui.pop_id()
     return actions
 
@@ -112,11 +129,11 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
         else "For props that come and go; what is in one place takes turns by a choice"
     )
     if text_button(text, FILL, hint):
-        actions.append(do(layering.toggle_visibility_key, layer.id))
+        actions.append(do(toggle_visibility_key, layer.id))
     keyed = change_frame(layer.visibility_keys, layer.cycles, frame)
     is_switched = any(switch.frame == keyed for switch in layer.visibility_keys)
     if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
-        actions.append(do(layering.delete_visibility_key, layer.id))
+        actions.append(do(delete_visibility_key, layer.id))
     if layer.visibility_keys:
         told = (
             f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in layer.visibility_keys
@@ -134,14 +151,14 @@ def _draw_switch_keys(
     seen = with_repeats(document, choice).layer_at(frame)
     if imgui.begin_combo("##turn", document.layer(seen).name):
         actions += [
-            do(layering.key_switch, each)
+            do(key_switch, each)
             for each in choice.layers
             if imgui.selectable(f"{document.layer(each).name}###turn {each}", each == seen)[0]
         ]
         imgui.end_combo()
     draw_tooltip(f"Which of these layers is seen from frame {frame} on")
     if text_button("Take it out of the choice", FILL, "It is seen when it was, by itself"):
-        actions.append(do(layering.remove_from_switch, layer.id))
+        actions.append(do(remove_from_switch, layer.id))
     return actions
 
 
@@ -150,7 +167,7 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
     document = project.document
 
     def can_carry(other: Layer) -> bool:
-        return not layering.is_same_or_descendant(project, other.id, layer.id)
+        return not is_same_or_descendant(project, other.id, layer.id)
 
     if not layer.attachments and not any(map(can_carry, document.layers)):
         return []
@@ -160,9 +177,9 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
     label(look, "Attached to")
     if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
         if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
-            actions.append(do(layering.detach_layer, layer.id))
+            actions.append(do(detach_layer, layer.id))
         actions += [
-            do(layering.attach_layer, layer.id, other.id)
+            do(attach_layer, layer.id, other.id)
             for other in filter(can_carry, document.layers)
             if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
         ]
@@ -171,7 +188,7 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
     if joint is not None and parent is not None:
         changed, turns = imgui.checkbox("Turns with it", joint.inherits_rotation)
         if changed:
-            actions.append(do(layering.set_inherits_rotation, layer.id, turns))
+            actions.append(do(set_inherits_rotation, layer.id, turns))
     if frame > document.frames.first:
         actions += _draw_reparent(project, look, layer, frame)
     return actions
@@ -186,12 +203,12 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
         imgui.open_popup("hand over")
     if imgui.begin_popup("hand over"):
         if imgui.menu_item_simple("Let it go", enabled=now is not None):
-            actions.append(do(layering.reparent_layer, layer.id, None))
+            actions.append(do(reparent_layer, layer.id, None))
         for other in reversed([each for each in document.layers if each is not layer]):
             is_circle = any(each is layer for each in document.parent_chain(other.id, frame))
             name = f"To {other.name}###to {other.id}"
             if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
-                actions.append(do(layering.reparent_layer, layer.id, other.id))
+                actions.append(do(reparent_layer, layer.id, other.id))
             if is_circle:
                 draw_tooltip(f"At frame {frame} it hangs on {layer.name} itself")
             elif other.id == now:
@@ -201,7 +218,7 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
     if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:
         hint = "What held it before goes on holding it"
         if text_button(f"No change at frame {keyed}###joint", FILL, hint):
-            actions.append(do(layering.delete_parent_key, layer.id, keyed))
+            actions.append(do(delete_parent_key, layer.id, keyed))
     if len(layer.attachments) > 1:
         told = (
             f"{'nothing' if each.parent is None else document.layer(each.parent).name} from "

@@ -3,13 +3,16 @@
 from imgui_bundle import imgui
 
 from app.document import subgroups_with_layers, suggest_switch_groups
-from app.editor import Action, Project, Session, do, layering
-from app.editor.actions import files, playback, resolving
+from app.editor import Action, Project, Session, do
+from app.editor.actions import files, playback
+from app.editor.actions.layer_setup import resolving
+from app.editor.layering.switches import create_switch, dismiss_switch_suggestion
 from app.errors import few_notices
 from app.ui.panels.layers.menus import explain_unswitchable_groups
 from app.ui.panels.layers.settings import draw_layer_settings
 from app.ui.panels.layers.tree import SmallPictures, draw_layer_tree
-from app.ui.style import Look, heading, progress_bar, shorten_text, small_text
+from app.ui.style.theme import Look
+from app.ui.style.widgets import heading, progress_bar, shorten_text, small_text
 
 _FOLD = imgui.TreeNodeFlags_.no_tree_push_on_open | imgui.TreeNodeFlags_.span_avail_width
 
@@ -70,9 +73,9 @@ def _offers(look: Look, project: Project) -> list[Action]:
         if whole:
             small_text(look, f"{explain_unswitchable_groups(whole)}.")
         if imgui.button("Let them take turns"):
-            actions.append(do(layering.create_switch, *layers, name=name))
+            actions.append(do(create_switch, *layers, name=name))
         imgui.same_line()
         if imgui.button("No"):
-            actions.append(do(layering.dismiss_switch_suggestion, path))
+            actions.append(do(dismiss_switch_suggestion, path))
         imgui.pop_id()
     return actions

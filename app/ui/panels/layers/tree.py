@@ -5,17 +5,41 @@ from collections.abc import Callable, Sequence
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import Document, Layer, TreeRow, is_visible, parent_label, with_repeats
-from app.editor import Action, Project, Session, do, layering
+from app.editor import Action, Project, Session, do
 from app.editor.actions import playback
+from app.editor.layering.layer_list import (
+    ask_layer_name,
+    duplicate_layer,
+    group_layers,
+    move_layer,
+    note_listed_layer,
+    rename_group,
+    rename_layer,
+    toggle_group_hidden,
+    toggle_layers_hidden,
+    toggle_layers_locked,
+)
+from app.editor.layering.layer_selection import (
+    select_layers,
+    select_layers_up_to,
+    set_active_layer,
+    toggle_layers_selected,
+    toggle_tree_row,
+)
+from app.editor.layering.parenting import delete_layers
+from app.editor.layering.pictures import (
+    ask_pictures_to_add,
+    ask_replacement_picture,
+    set_drop_target,
+)
+from app.editor.layering.switches import key_switch, rename_switch
 from app.render import Thumbnail
 from app.ui.panels.layers.dragging import drag_layer_row, scroll_while_dragged
 from app.ui.panels.layers.menus import draw_layer_menu
-from app.ui.style import (
-    SMALL,
-    Look,
+from app.ui.style.drawing import draw_centred_text
+from app.ui.style.theme import SMALL, Look, colour_u32
+from app.ui.style.widgets import (
     begin_tooltip,
-    colour_u32,
-    draw_centred_text,
     icon_button,
     is_hovered_or_held,
     name_popup,
@@ -60,7 +84,7 @@ def draw_layer_tree(
     scroll_while_dragged(look, ROW)
     imgui.end_child()
     if project.last_listed_layer != project.active:
-        actions.append(do(layering.note_listed_layer))
+        actions.append(do(note_listed_layer))
     return actions
 
 
@@ -74,7 +98,7 @@ def _bar(look: Look, project: Project) -> list[Action]:
             actions.append(action)
         imgui.same_line()
 
-    forward, back = (do(layering.move_layer, active, index + by) for by in (1, -1))
+    forward, back = (do(move_layer, active, index + by) for by in (1, -1))
     replace = "Replace the layer's picture by another file: handles, keys and joints stay"
     what = "the layer" if len(chosen) == 1 else f"the {len(chosen)} chosen layers"
     delete = f"Delete {what}" if last else "A scene has at least one layer"
@@ -83,30 +107,30 @@ def _bar(look: Look, project: Project) -> list[Action]:
         icons.ICON_FA_PLUS,
         "add layer",
         "Add a picture as a layer",
-        do(layering.ask_pictures_to_add),
+        do(ask_pictures_to_add),
     )
     button(
         icons.ICON_FA_CLONE,
         "copy layer",
         "Duplicate the layer",
-        do(layering.duplicate_layer, active),
+        do(duplicate_layer, active),
     )
     button(
         icons.ICON_FA_FILE_IMAGE,
         "replace picture",
         replace,
-        do(layering.ask_replacement_picture, active),
+        do(ask_replacement_picture, active),
     )
     button(
         icons.ICON_FA_ARROW_UP, "raise", "Bring the layer forward", forward, enabled=index < last
     )
     button(icons.ICON_FA_ARROW_DOWN, "lower", "Send the layer back", back, enabled=index > 0)
-    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(layering.group_layers))
+    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(group_layers))
     button(
         icons.ICON_FA_TRASH,
         "delete layer",
         delete,
-        do(layering.delete_layers, *chosen),
+        do(delete_layers, *chosen),
         enabled=last > 0,
     )
     imgui.new_line()
@@ -131,7 +155,7 @@ def _row(
         imgui.set_scroll_here_y(0.5)
     if layer is not None and imgui.is_mouse_hovering_rect(low, high):
         # While another program drags a file here, nothing else is hovered.
-        actions.append(do(layering.set_drop_target, layer.id))
+        actions.append(do(set_drop_target, layer.id))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     actions += drag_layer_row(look, project, row, low, high)
     _tell(project.document, row)
@@ -172,12 +196,12 @@ def _chosen(row: TreeRow) -> Action:
     """Return the action of a click on a row: Ctrl toggles, Shift selects a range."""
     io = imgui.get_io()
     if io.key_ctrl:
-        return do(layering.toggle_layers_selected, *row.layers)
+        return do(toggle_layers_selected, *row.layers)
     if io.key_shift:
-        return do(layering.select_layers_up_to, row.layers[-1])
+        return do(select_layers_up_to, row.layers[-1])
     if row.layer is not None:
-        return do(layering.set_active_layer, row.layer.id)
-    return do(layering.select_layers, *row.layers)
+        return do(set_active_layer, row.layer.id)
+    return do(select_layers, *row.layers)
 
 
 def _shown(document: Document, row: TreeRow, frame: int) -> Layer:
@@ -205,7 +229,7 @@ def _naming(
     document, layer = project.document, row.layer
     if asks or (layer is not None and session.named_layer == layer.id):
         imgui.open_popup(f"name {row.key}")
-        actions.append(do(layering.ask_layer_name, None))
+        actions.append(do(ask_layer_name, None))
     imgui.set_next_window_pos(low)
     taken: Sequence[str] = ()
     kind = "layer"
@@ -218,11 +242,11 @@ def _naming(
     if name is None:
         return actions
     if layer is not None:
-        return [*actions, do(layering.rename_layer, layer.id, name)]
+        return [*actions, do(rename_layer, layer.id, name)]
     if row.switch_group is not None:
-        return [*actions, do(layering.rename_switch, row.switch_group.name, name)]
+        return [*actions, do(rename_switch, row.switch_group.name, name)]
     if row.group is not None:
-        return [*actions, do(layering.rename_group, row.group.name, name)]
+        return [*actions, do(rename_group, row.group.name, name)]
     return actions
 
 
@@ -261,7 +285,7 @@ def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
     icon = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
     colour = colour_u32(look.palette.text if is_hovered_or_held() else look.palette.dim)
     draw_centred_text(low, low + ImVec2(FOLD * em, ROW * em), icon, colour)
-    return [do(layering.toggle_tree_row, row.toggle)] if clicked else []
+    return [do(toggle_tree_row, row.toggle)] if clicked else []
 
 
 def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Action]:
@@ -275,7 +299,7 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
         hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
-            actions.append(do(layering.key_switch, row.layers[0]))
+            actions.append(do(key_switch, row.layers[0]))
         if not is_on:
             _ring(look)
     elif row.switch_group is not None:
@@ -288,16 +312,16 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
         hint = f"Show {what}" if hidden else f"Hide {what}, also in exports"
         if icon_button(look, eye, f"eye {row.key}", hint, active=hidden):
             actions.append(
-                do(layering.toggle_layers_hidden, *_of_chosen(project, row))
+                do(toggle_layers_hidden, *_of_chosen(project, row))
                 if group is None
-                else do(layering.toggle_group_hidden, group.name)
+                else do(toggle_group_hidden, group.name)
             )
     imgui.same_line(0, 0)
     locked = all(layer.locked for layer in layers)
     key = icons.ICON_FA_LOCK if locked else icons.ICON_FA_LOCK_OPEN
     hint = "Let clicks reach it" if locked else "Let clicks pass through it"
     if icon_button(look, key, f"lock {row.key}", hint, active=locked):
-        actions.append(do(layering.toggle_layers_locked, *_of_chosen(project, row)))
+        actions.append(do(toggle_layers_locked, *_of_chosen(project, row)))
     return actions
 
 

@@ -4,5 +4,3 @@ In: the active layer, and its motion setup.
 Out: actions on these.
 Imports: `app.ui.style`, `app.ui.shortcuts`, `app.ui.viewport`.
 """
-
-from app.ui.panels.motion_preset.tab import draw_motion_panel as draw_motion_panel

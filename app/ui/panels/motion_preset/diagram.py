@@ -6,11 +6,13 @@ from collections.abc import Collection, Mapping
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, do
-from app.editor.actions import joint_placement
-from app.editor.work import MotionSetup
-from app.ui.style import Look, colour_u32, draw_knob, draw_tooltip, is_pressed
-from app.ui.viewport import joint_colour
-from engine.geometry.motions import BodyKind
+from app.editor.actions.posing.motion_presets import joint_placement
+from app.editor.work.motion_setup import MotionSetup
+from app.ui.style.drawing import draw_knob
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import draw_tooltip, is_pressed
+from app.ui.viewport.interaction.joints import joint_colour
+from engine.geometry.motions.kinds import BodyKind
 
 DOT, LIMB, THIN = 0.34, 0.14, 0.09  # em: dot and line of the large diagram, line of the buttons
 MARGIN = 0.6  # em

@@ -4,27 +4,27 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import AppliedMotion, is_motion_unedited
 from app.editor import Action, Project, Session, do
-from app.editor.actions import apply_motion, joint_placement, preset_setup
-from app.editor.work import MotionSetup
+from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
+from app.editor.work.motion_setup import MotionSetup
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
-from app.ui.shortcuts import ALT, BINDINGS, format_modified
-from app.ui.style import (
+from app.ui.shortcuts.keys import ALT, format_modified
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.sliders import Scale, slider
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import (
     FILL,
-    Look,
-    Scale,
-    colour_u32,
     draw_tooltip,
     heading,
     label,
     main_button,
     option_buttons,
     progress_bar,
-    slider,
     small_text,
     split_line,
     text_button,
 )
-from engine.geometry.motions import KINDS, MOTIONS
+from engine.geometry.motions.kinds import KINDS
+from engine.geometry.motions.library.table import MOTIONS
 
 SPEEDS = Scale(left=0.25, right=4.0, logarithmic=True)
 SIZES = Scale(left=0.1, right=2.0)

@@ -4,5 +4,3 @@ In: the bands of the timeline.
 Out: actions.
 Imports: `app.ui.style`, the keys and tracks of `app.ui.timeline`.
 """
-
-from app.ui.timeline.rows.layers import draw_layer_rows as draw_layer_rows

@@ -3,12 +3,13 @@
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import SwitchGroup, switch_group_commands, turn_frame, with_repeats
-from app.editor import Action, KeysByRow, TurnDrag, do, layering
-from app.editor.actions import editing, playback, timeline_drag
-from app.ui.style import (
-    SMALL,
+from app.editor import Action, KeysByRow, TurnDrag, do
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import timeline_drag
+from app.editor.layering.layer_selection import select_layers, set_active_layer, toggle_tree_row
+from app.ui.style.theme import SMALL, colour_u32
+from app.ui.style.widgets import (
     begin_tooltip,
-    colour_u32,
     is_hovered_or_held,
     is_pressed,
     push_text_size,
@@ -34,14 +35,14 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         left = low.x + INDENT * row.depth * em
         imgui.push_id(row.key)
         if bands.button("name", low, high):
-            actions.append(do(layering.select_layers, *row.layers))
+            actions.append(do(select_layers, *row.layers))
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():
             imgui.text_unformatted("Click to choose all layers in it")
             imgui.end_tooltip()
         if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
-            actions.append(do(layering.toggle_tree_row, row.toggle))
+            actions.append(do(toggle_tree_row, row.toggle))
         caret = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
         icon = icons.ICON_FA_FOLDER if row.switch_group is None else icons.ICON_FA_MASKS_THEATER
         text = row.name
@@ -124,7 +125,7 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup
         if imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of turn {start}")
         elif imgui.is_item_clicked():
-            actions.append(do(layering.set_active_layer, seen))
+            actions.append(do(set_active_layer, seen))
         number = choice.count_keys_until(start)
         strength = 0.34 if is_hovered_or_held() else 0.24 - 0.08 * (number % 2)
         draw_list.add_rect_filled(low, high, colour_u32(palette.accent, strength), 0.2 * em)

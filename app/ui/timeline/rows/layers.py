@@ -14,12 +14,11 @@ from app.document import (
     visibility_keys,
 )
 from app.editor import Action, SwitchDrag, do
-from app.editor.actions import editing, playback, timeline_drag
-from app.ui.style import (
-    CHOSEN,
-    SMALL,
+from app.editor.actions import editing, playback
+from app.editor.actions.timing import timeline_drag
+from app.ui.style.theme import CHOSEN, SMALL, colour_u32
+from app.ui.style.widgets import (
     begin_tooltip,
-    colour_u32,
     is_hovered_or_held,
     is_pressed,
     push_text_size,

@@ -5,18 +5,14 @@ from math import degrees, radians
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import CameraKey
-from app.editor import Action, CameraDrag, do, layering
-from app.editor.actions import playback, timeline_drag
-from app.ui.shortcuts import draw_action_item
-from app.ui.style import (
-    Look,
-    begin_tooltip,
-    colour_u32,
-    draw_tooltip,
-    is_hovered_or_held,
-    is_pressed,
-    number_field,
-)
+from app.editor import Action, CameraDrag, do
+from app.editor.actions import playback
+from app.editor.actions.timing import timeline_drag
+from app.editor.layering.layer_channels import change_camera_key, delete_camera_key
+from app.ui.shortcuts.widgets import draw_action_item
+from app.ui.style.sliders import number_field
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import begin_tooltip, draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import TimelineLayout, draw_time_tag, format_seconds
 
 HALF = 0.36  # em: half the width of a key
@@ -100,14 +96,14 @@ def _menu(bands: TimelineLayout, key: CameraKey) -> list[Action]:
         if imgui.menu_item_simple("Go there", "Click"):
             actions.append(do(playback.scrub, key.frame))
         if imgui.menu_item_simple("Delete"):
-            actions.append(do(layering.delete_camera_key, key.frame))
+            actions.append(do(delete_camera_key, key.frame))
         imgui.separator()
         zoom = _field(bands.look, "Zoom", key.zoom, "%.3g")
         if zoom is not None:
-            actions.append(do(layering.change_camera_key, key.frame, zoom=zoom))
+            actions.append(do(change_camera_key, key.frame, zoom=zoom))
         turn = _field(bands.look, "Turn", degrees(key.turn), "%.4g°")
         if turn is not None:
-            actions.append(do(layering.change_camera_key, key.frame, turn=radians(turn)))
+            actions.append(do(change_camera_key, key.frame, turn=radians(turn)))
         draw_tooltip("By how much things are seen turned, counter-clockwise")
         imgui.separator()
         for name in ("key camera", "look through"):

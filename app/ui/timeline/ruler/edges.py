@@ -3,9 +3,10 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Edge, EdgeDrag, do
-from app.editor.actions import keys, timeline_drag
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
+from app.editor.actions.timing import keys, timeline_drag
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.theme import colour_u32
+from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
 
 GRIP = 0.55  # em: half the hit width of an end

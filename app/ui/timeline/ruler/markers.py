@@ -6,12 +6,12 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import Marker
 from app.editor import Action, MarkerDrag, TimeGesture, do
-from app.editor.actions import keys, playback, timeline_drag
-from app.ui.shortcuts import draw_action_item
-from app.ui.style import (
-    SMALL,
+from app.editor.actions import playback
+from app.editor.actions.timing import keys, timeline_drag
+from app.ui.shortcuts.widgets import draw_action_item
+from app.ui.style.theme import SMALL, colour_u32
+from app.ui.style.widgets import (
     begin_tooltip,
-    colour_u32,
     is_hovered_or_held,
     is_pressed,
     name_popup,

@@ -4,15 +4,10 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import Layer, memoized_on
 from app.editor import Action, ScrubDrag, do
-from app.editor.actions import timeline_drag
-from app.ui.style import (
-    SMALL,
-    colour_u32,
-    draw_centred_text,
-    is_hovered_or_held,
-    is_pressed,
-    push_text_size,
-)
+from app.editor.actions.timing import timeline_drag
+from app.ui.style.drawing import draw_centred_text
+from app.ui.style.theme import SMALL, colour_u32
+from app.ui.style.widgets import is_hovered_or_held, is_pressed, push_text_size
 from app.ui.timeline.layout import TimelineLayout, format_seconds
 
 TICK_ROOM = 0.55  # em: smallest distance of small ticks

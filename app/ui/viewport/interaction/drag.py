@@ -18,8 +18,10 @@ from app.editor import (
     StrokeOverlay,
     do,
 )
-from app.editor.tools import ERASE, tool_pointer
-from app.ui.style import Look, colour_u32, draw_tag, outline_strokes, tag_size
+from app.editor.tools import tool_pointer
+from app.editor.tools.numeric_entry import ERASE
+from app.ui.style.drawing import draw_tag, outline_strokes, tag_size
+from app.ui.style.theme import Look, colour_u32
 from app.ui.viewport.cutout_overlay import find_stroke_colour
 from app.ui.viewport.marks import transform_loops
 from app.ui.viewport.screen import ScreenMapping

@@ -7,18 +7,9 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import RotationOverlay, Session
 from app.editor.poses import flipping
-from app.ui.style import (
-    Look,
-    colour_u32,
-    draw_centred_text,
-    draw_knob,
-    draw_tag,
-    draw_tooltip,
-    is_hovered_or_held,
-    is_pressed,
-    outline_strokes,
-    tag_size,
-)
+from app.ui.style.drawing import draw_centred_text, draw_knob, draw_tag, outline_strokes, tag_size
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.viewport.screen import ScreenMapping
 
 RADIUS, BAND, KNOB = 2.2, 0.5, 0.3  # em: of the ring: radius, hit area, its knob's radius

@@ -6,9 +6,13 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Hint, Project, Session
 from app.editor.actions import tutorials
-from app.editor.tools import PointerHit, tools_of
-from app.ui.shortcuts import ALT, BINDINGS, CTRL, SHIFT, ActionSpec, format_modified
-from app.ui.style import Look, colour_u32, draw_tooltip
+from app.editor.tools.table import tools_of
+from app.editor.tools.tool import PointerHit
+from app.ui.shortcuts.action_spec import ActionSpec
+from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import draw_tooltip
 from app.ui.viewport.marks import find_auto_pinned
 from app.ui.viewport.screen import ScreenMapping
 

@@ -3,9 +3,10 @@
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from app.editor import Session
-from app.editor.actions import joint_placement
-from app.editor.tools import find_joint_near
-from app.ui.style import Look, colour_u32, draw_knob, draw_tag, outline_strokes, tag_size
+from app.editor.actions.posing.motion_presets import joint_placement
+from app.editor.tools.edit_tools.joint_tools import find_joint_near
+from app.ui.style.drawing import draw_knob, draw_tag, outline_strokes, tag_size
+from app.ui.style.theme import Look, colour_u32
 from app.ui.viewport.screen import ScreenMapping
 
 DOT, LIMB = 0.42, 0.16  # em: radius of a joint, width of a bone

@@ -3,8 +3,13 @@
 from imgui_bundle import ImVec2, imgui, imgui_ctx
 
 from app.editor import Action, Project, Session, do
-from app.editor.actions import tracking
-from app.ui.style import Look, colour_u32, draw_tooltip, is_hovered_or_held, is_pressed
+from app.editor.actions.tracking.recording import (
+    accept_recording,
+    retry_recording,
+    smooth_recording,
+)
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.viewport.paths import find_path_keys
 from app.ui.viewport.screen import ScreenMapping
 
@@ -62,14 +67,14 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
         )
         draw_tooltip("How far the motion may be beside what was recorded: the more, the fewer keys")
         if changed:
-            actions.append(do(tracking.smooth_recording, min(max(percent, 0), 100) / 100))
+            actions.append(do(smooth_recording, min(max(percent, 0), 100) / 100))
         imgui.same_line()
         if imgui.button("Keep"):
-            actions.append(do(tracking.accept_recording))
+            actions.append(do(accept_recording))
         draw_tooltip("Keep these keys, which can be changed like all others")
         imgui.same_line()
         if imgui.button("Again"):
-            actions.append(do(tracking.retry_recording))
+            actions.append(do(retry_recording))
         draw_tooltip("Take this back, and record the next drag")
     padding = ImVec2(PADDING * em, PADDING * em)
     low, high = imgui.get_item_rect_min() - padding, imgui.get_item_rect_max() + padding

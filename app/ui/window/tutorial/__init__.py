@@ -4,5 +4,3 @@ In: the tutorial state of a session, and the rectangles of items in the frame be
 Out: the actions of the card's buttons.
 Imports: `app.ui.viewport`, `app.ui.shortcuts`.
 """
-
-from app.ui.window.tutorial.card import NAME as NAME, Callout as Callout

@@ -5,9 +5,10 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, TutorialStage, TutorialState, do
 from app.editor.actions import exporting, tutorials
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import SMALL, Look, colour_u32, draw_tooltip, main_button, push_text_size
-from app.ui.viewport import ScreenMapping
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.theme import SMALL, Look, colour_u32
+from app.ui.style.widgets import draw_tooltip, main_button, push_text_size
+from app.ui.viewport.screen import ScreenMapping
 from app.ui.window.tutorial.layout import Rect, find_free_corner
 from app.ui.window.tutorial.steps import RING, Places, TutorialStep, find_tutorial_step
 from engine.arrays import Complexes

@@ -8,9 +8,9 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Project, Session, TutorialState
 from app.editor.actions import exporting, tutorials
 from app.ui.panel import is_in_front
-from app.ui.shortcuts import BINDINGS
-from app.ui.style import Look
-from app.ui.viewport import ScreenMapping
+from app.ui.shortcuts.table import BINDINGS
+from app.ui.style.theme import Look
+from app.ui.viewport.screen import ScreenMapping
 from app.ui.window.tutorial.layout import Rect
 
 Places = Mapping[str, tuple[ImVec2, ImVec2]]

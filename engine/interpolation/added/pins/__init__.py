@@ -5,15 +5,3 @@ Out: h and q (`engine.deform.correction`) as few functions times series in time,
 in-betweens.
 Imports: `engine.deform.correction`, `engine.interpolation.keyframe_blend` and its series.
 """
-
-from engine.interpolation.added.pins.evaluated import (
-    EvaluatedCorrection as EvaluatedCorrection,
-    Mixing as Mixing,
-    SpanBasis as SpanBasis,
-)
-from engine.interpolation.added.pins.pinning import (
-    CorrectionBase as CorrectionBase,
-    CorrectionSeries as CorrectionSeries,
-    fit_pin_corrections as fit_pin_corrections,
-)
-from engine.interpolation.added.pins.targets import SegmentPins as SegmentPins

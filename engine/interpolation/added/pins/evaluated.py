@@ -8,8 +8,8 @@ import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, Indices, freeze
 from engine.interpolation.added.pins.pinning import CorrectionSeries
-from engine.interpolation.keyframe_blend import Derivatives
-from engine.interpolation.series import Residual
+from engine.interpolation.keyframe_blend.derivatives import Derivatives
+from engine.interpolation.series.residual import Residual
 from engine.maps import Span
 
 

@@ -7,17 +7,13 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.deform.correction import (
-    BaseFrame,
-    PointCorrector,
-    PointSolution,
-    extremes,
-    frame_limits,
-    max_feasible_share,
-    solve_correction,
-)
+from engine.deform.correction.barrier import extremes
+from engine.deform.correction.corrector import PointCorrector
+from engine.deform.correction.frame import BaseFrame
+from engine.deform.correction.limits import frame_limits, max_feasible_share
+from engine.deform.correction.solver import PointSolution, solve_correction
 from engine.interpolation.added.pins.targets import SegmentPins
-from engine.interpolation.series import PiecewiseSeries, constant_one, separate_variables
+from engine.interpolation.series.chebyshev import PiecewiseSeries, constant_one, separate_variables
 from engine.maps import Bounds
 
 # Accuracy of the series and of the omitted terms. Unknowns are of the size of |h|, and positions

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.cli.figures import MAKERS
+from app.cli.figures.plots.table import MAKERS
 from app.cli.main import main
 from app.cli.usage.figures import FIGURES
 

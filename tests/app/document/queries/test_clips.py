@@ -8,10 +8,13 @@ from documents import altered, disc_document
 
 from app.document.commands import handle_commands
 from app.document.keyframe import LibraryPose
-from app.document.layers import DrawOrderKey, Group, OpacityKey, VisibilityKey
+from app.document.layers.groups import Group
+from app.document.layers.layer_keys import DrawOrderKey, OpacityKey
+from app.document.layers.visibility import VisibilityKey
 from app.document.queries.clips import UNMOVING, UNMOVING_OF_HANDLES, clip_of, motion_source
-from app.document.rig import Bone, UnreadMotion
-from app.document.timing import Spring
+from app.document.rig.applied_motion import UnreadMotion
+from app.document.rig.stiffness import Bone
+from app.document.timing.springs import Spring
 from app.motion.extents.extent import extent_key
 from engine.maps.bounds import Bounds
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 from documents import disc_document, disc_domain
 
-from app.document.commands import (
+from app.document.commands.layers import (
     group_commands as groups,
     layer_commands as layers,
     switch_group_commands as choices,
 )
-from app.document.queries import layer_tree
+from app.document.queries.layers.layer_tree import layer_tree
 
 
 @pytest.fixture

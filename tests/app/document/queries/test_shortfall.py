@@ -14,7 +14,7 @@ from app.document.queries.target_error import (
     DistortionRange,
     measure_target_errors,
 )
-from app.document.timing import Spring
+from app.document.timing.springs import Spring
 from engine.maps import Bounds
 
 

@@ -27,7 +27,7 @@ from app.document import (
     without_foreign_clips,
 )
 from app.document.commands.scene_commands import KEY_OUTSIDE
-from app.document.layers import Group
+from app.document.layers.groups import Group
 from app.document.model import NO_LAYER
 from app.errors import LissomError
 

@@ -21,7 +21,8 @@ from app.document.queries.timeline import (
     segment_time_at,
 )
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, PRESETS, Spring
+from app.document.timing.easing import HOLD, PRESETS
+from app.document.timing.springs import Spring
 from app.errors import LissomError
 
 EMPTY = disc_document()

@@ -13,7 +13,7 @@ from app.document.queries.clips import clip_of
 from app.document.queries.pose_tangents import pose_segments
 from app.document.queries.timeline import segment_time_at
 from app.document.settings import FrameRange
-from app.document.timing import HOLD, LINEAR, PRESETS, Easing
+from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
 from app.errors import LissomError
 from engine.interpolation import InteriorKnot
 

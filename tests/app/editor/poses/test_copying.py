@@ -12,7 +12,8 @@ from sessions import BLANK, go, session_of, settle
 from app.document import HOLD
 from app.document.commands import handle_commands, key_commands, shape_commands
 from app.document.settings import NATURAL
-from app.editor.actions import editing, posing
+from app.editor.actions import editing
+from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.poses import copying, pasting
 from app.storage import Preferences
 from engine.maps import Boundary, certify
@@ -145,7 +146,7 @@ def test_a_pose_that_no_key_holds_is_copied_and_gives_way_to_a_pasted_one(sessio
     copying.copy_pose_or_keys(session)
     go(session, 0)
     editing.select_handles(session, frozenset({0}))
-    posing.nudge_handles(session, 4j)
+    nudge_handles(session, 4j)
     settle(session)
     unkeyed = project.unkeyed_pose
     assert unkeyed is not None

@@ -5,7 +5,8 @@ from animations import moving_document
 from invariants import check_pose
 from sessions import go, session_of, settle
 
-from app.document.commands import handle_commands, layer_commands
+from app.document.commands import handle_commands
+from app.document.commands.layers import layer_commands
 from app.editor.actions import editing
 from app.editor.poses import library
 from app.storage import Preferences

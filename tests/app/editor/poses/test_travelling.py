@@ -20,9 +20,13 @@ from app.document import (
     stiffness_commands,
     track_commands,
 )
-from app.editor import layering
-from app.editor.actions import editing, playback, posing, stiffness_editing
+from app.editor.actions import editing, playback
+from app.editor.actions.layer_setup import stiffness_editing
+from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.upkeep import maintain
+from app.editor.layering.layer_list import rename_layer
+from app.editor.layering.layer_selection import select_layers, set_active_layer
+from app.editor.layering.pictures import make_still
 from app.editor.poses import copying, library, paste_destinations, pasting
 from app.editor.poses.paste_destinations import NOTHING_COPIED
 from app.editor.poses.pasting import NOT_PASTED
@@ -41,18 +45,18 @@ def walking(folder, document):
         editing.edit_document(session, layer_commands.add_layer(layer))
     settle(session)
     (near,) = (each.id for each in document.layers if each.id == 0)
-    layering.set_active_layer(session, near)
+    set_active_layer(session, near)
     return session
 
 
 def pull(session, name, **ways):
     """Pull handles of a layer, which is chosen then, at the present frame."""
-    layering.set_active_layer(session, identity(session, name))
+    set_active_layer(session, identity(session, name))
     ids = {handle.name: handle.id for handle in session.project.layer.handles}
     settle(session)
     for handle, way in ways.items():
         editing.select_handles(session, frozenset({ids[handle]}))
-        posing.nudge_handles(session, way)
+        nudge_handles(session, way)
         settle(session)
     editing.select_handles(session, frozenset())
 
@@ -98,7 +102,7 @@ def close(one, other):
 def test_a_pose_is_pasted_onto_another_layer_as_one_step(session):
     project = session.project
     copying.copy_pose_or_keys(session)
-    layering.set_active_layer(session, identity(session, "far leg"))
+    set_active_layer(session, identity(session, "far leg"))
     before = project.document
     go(session, 12)
     pasting.paste_copied(session)
@@ -123,7 +127,7 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     editing.edit_document(session, layer_commands.key_depth(near, 0, knee, 0.5))
     editing.select_keys(session, frozenset({0, 8}))
     copying.copy_keys(session)
-    layering.set_active_layer(session, identity(session, "far leg"))
+    set_active_layer(session, identity(session, "far leg"))
     go(session, 12)
     pasting.paste_copied(session)
     settle(session)
@@ -137,7 +141,7 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
 
 def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(session):
     project = session.project
-    layering.set_active_layer(session, identity(session, "body"))
+    set_active_layer(session, identity(session, "body"))
     copying.copy_all_poses(session)
     settle(session)
     before = project.document
@@ -208,7 +212,7 @@ def test_one_layer_gives_its_pose_to_its_partner_where_sides_exchange(session):
 def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
     project = session.project
     for name, to in (("near leg", "Spielbein"), ("far leg", "Standbein")):
-        layering.rename_layer(session, identity(session, name), to)
+        rename_layer(session, identity(session, name), to)
     copying.copy_all_poses(session)
     go(session, 12)
     assert "Nothing changes sides" in pasting.paste_disabled_reason(session, project, SWAPPED)
@@ -243,7 +247,7 @@ def test_why_nothing_can_be_pasted_is_said(session):
     project = session.project
     assert pasting.paste_disabled_reason(session, project, PLAIN) == NOTHING_COPIED
     copying.copy_pose_or_keys(session)
-    layering.set_active_layer(session, identity(session, "body"))
+    set_active_layer(session, identity(session, "body"))
     before = project.document
     assert pasting.paste_disabled_reason(session, project, PLAIN) == (
         "“body” has no handle called hip, knee or foot."
@@ -252,7 +256,7 @@ def test_why_nothing_can_be_pasted_is_said(session):
         pasting.paste_copied(session, way)
     settle(session)
     assert project.document is before
-    layering.make_still(session, identity(session, "body"))
+    make_still(session, identity(session, "body"))
     settle(session)
     assert "still picture" in pasting.paste_disabled_reason(session, project, PLAIN)
 
@@ -282,10 +286,10 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
     settle(session)
     go(session, 24)
     pull(session, "far leg", shin=10 + 6j)
-    layering.set_active_layer(session, identity(session, "near leg"))
+    set_active_layer(session, identity(session, "near leg"))
     go(session, 0)
     copying.copy_pose_or_keys(session)
-    layering.set_active_layer(session, far)
+    set_active_layer(session, far)
     go(session, 12)
     shown = session.project.layer_runtime.shown
     names = [handle.name for handle in shown.clip.layer.handles]
@@ -303,7 +307,7 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
 
 def test_selected_handles_alone_take_over_from_another_layer(session):
     copying.copy_pose_or_keys(session)
-    layering.set_active_layer(session, identity(session, "far leg"))
+    set_active_layer(session, identity(session, "far leg"))
     go(session, 0)
     foot = next(each.id for each in session.project.layer.handles if each.name == "foot")
     editing.select_handles(session, frozenset({foot}))
@@ -316,7 +320,7 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
 
 def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     editing.select_handles(session, frozenset({2}))
-    posing.nudge_handles(session, 13 + 3j)
+    nudge_handles(session, 13 + 3j)
     (promised,) = session.project.pulls
     while promised.kept is None:
         maintain(session)
@@ -324,7 +328,7 @@ def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
         session.jobs.deliver()
     assert not promised.is_settled
     copying.copy_pose_or_keys(session)
-    layering.set_active_layer(session, identity(session, "far leg"))
+    set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)
     settle(session)
     # What was copied has come to rest in the copy, too.
@@ -333,7 +337,7 @@ def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
 
 def test_a_layer_that_changes_meanwhile_is_told(session):
     copying.copy_pose_or_keys(session)
-    layering.set_active_layer(session, identity(session, "far leg"))
+    set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)
     editing.edit_layer(session, handle_commands.remove_handles, {0})
     before = session.project.document
@@ -347,9 +351,9 @@ def test_poses_of_a_library_are_offered_to_layers_with_the_same_names(session):
     library.save_pose_to_library(session)
     settle(session)
     near = identity(session, "near leg")
-    layering.set_active_layer(session, identity(session, "body"))
+    set_active_layer(session, identity(session, "body"))
     assert library.list_library_poses(project) == []
-    layering.set_active_layer(session, identity(session, "far leg"))
+    set_active_layer(session, identity(session, "far leg"))
     ((owner, kept),) = library.list_library_poses(project)
     assert (owner.id, kept.name) == (near, "Pose 1")
     library.apply_library_pose_at(session, kept.name, 12, near)
@@ -443,14 +447,14 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
 
 def test_the_poses_of_chosen_layers_are_copied_and_one_is_pasted_onto_all_of_them(session):
     near, far, body = (identity(session, name) for name in ("near leg", "far leg", "body"))
-    layering.select_layers(session, near, far)
+    select_layers(session, near, far)
     copying.copy_pose_or_keys(session)
     settle(session)
     assert {each.layer.id for each in session.copied} == {near, far}
-    layering.set_active_layer(session, near)
+    set_active_layer(session, near)
     copying.copy_pose_or_keys(session)
     go(session, 12)
-    layering.select_layers(session, near, far, body)
+    select_layers(session, near, far, body)
     before = session.project.document
     pasting.paste_copied(session)
     settle(session)

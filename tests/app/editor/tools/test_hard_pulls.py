@@ -8,10 +8,12 @@ from sessions import session_of, settle
 
 from app.document import NATURAL, RUBBERY
 from app.document.commands import handle_commands, shape_commands, stiffness_commands
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.actions.posing.reach_limit import STOPPED_AT_LIMIT
 from app.editor.actions.upkeep import maintain
-from app.editor.tools import PointerHit, tool_pointer
+from app.editor.tools import tool_pointer
+from app.editor.tools.tool import PointerHit
 from engine.geometry import diameter
 
 MOVES = 12  # of the pointer, a picture for each
@@ -137,7 +139,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     name = project.layer.handle(hand).name
     assert toast.text == STOPPED_AT_LIMIT.format(who=name, its="its")
     # All of that is one step, and the pose is found again from its own wishes.
-    posing.solve_pose_again(session, {}, gesture=object())
+    solve_pose_again(session, {}, gesture=object())
     settle(session)
     assert per_mille(session, where(project)[1] - rests) < 1
     editing.undo(session)

@@ -8,10 +8,14 @@ from animations import moving_document, round_document
 from sessions import session_of, settle
 
 from app.document.commands import handle_commands, shape_commands
-from app.editor import layering
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.upkeep import maintain
-from app.editor.tools import PointerHit, move_tool, tool_pointer
+from app.editor.layering.layer_list import duplicate_layer, toggle_layers_locked
+from app.editor.layering.layer_selection import set_active_layer
+from app.editor.layering.parenting import attach_layer
+from app.editor.tools import move_tool, tool_pointer
+from app.editor.tools.tool import PointerHit
 from app.storage import Preferences
 from app.ui.viewport.marks import find_off_target
 
@@ -34,7 +38,7 @@ def blob():
 def pulled(blob, tmp_path_factory):
     """A blob with two handles, one of which is pulled beyond its reach, at frame 0."""
     session = session_of(blob, tmp_path_factory.mktemp("pulled"))
-    posing.set_targets(session, {1: replace(target(session, 1), position=RIGHT + 70)})
+    set_targets(session, {1: replace(target(session, 1), position=RIGHT + 70)})
     settle(session)
     return session.project.document
 
@@ -150,9 +154,9 @@ def joined(blob, tmp_path):
     session = session_of(blob, tmp_path)
     session.project.history.do(shape_commands.set_anchor(0, LEFT))
     settle(session)
-    layering.duplicate_layer(session, 0)
-    layering.attach_layer(session, 1, 0)
-    layering.set_active_layer(session, 1)
+    duplicate_layer(session, 0)
+    attach_layer(session, 1, 0)
+    set_active_layer(session, 1)
     settle(session)
     return session
 
@@ -181,7 +185,7 @@ def test_a_layer_moves_what_it_hangs_on(joined):
 
 
 def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
-    layering.toggle_layers_locked(joined, 0)
+    toggle_layers_locked(joined, 0)
     document = joined.project.document
     drag(joined, ctrl=True, shift=True)
     move_tool.nudge_layer(joined, 1)
@@ -191,8 +195,8 @@ def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
 
 def test_the_layer_that_is_pressed_moves_and_no_other(blob, tmp_path):
     session = session_of(blob, tmp_path)
-    layering.duplicate_layer(session, 0)
-    layering.set_active_layer(session, 0)
+    duplicate_layer(session, 0)
+    set_active_layer(session, 0)
     settle(session)
     move_tool.toggle_move_tool(session)
     before = places_of(session, 0)
@@ -248,11 +252,11 @@ def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     """The hand lets a handle go, and moves all of it before the pose has come to rest."""
     session = session_of(blob, tmp_path)
     wished = {1: replace(target(session, 1), position=RIGHT + 12j)}
-    posing.set_targets(session, wished)
+    set_targets(session, wished)
     settle(session)
     rested = pose_of(session)
     editing.undo(session)
-    posing.set_targets(session, wished)
+    set_targets(session, wished)
     maintain(session)
     assert session.jobs.wait_until_idle()
     session.jobs.deliver()
@@ -267,7 +271,7 @@ def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
 
 def test_a_handle_is_pulled_on_after_that(session):
     drag(session, ctrl=True, shift=True)
-    posing.set_targets(session, {0: replace(target(session, 0), position=LEFT + WAY + 5)})
+    set_targets(session, {0: replace(target(session, 0), position=LEFT + WAY + 5)})
     settle(session)
     assert abs(target(session, 0).position - (LEFT + WAY + 5)) < 1e-9
     assert abs(target(session, 1).position - (RIGHT + 70 + WAY)) < 1e-9

@@ -10,9 +10,12 @@ from sessions import session_of, settle
 
 from app.document.commands import handle_commands, scene_commands
 from app.editor import BoxOverlay, RotationOverlay
-from app.editor.actions import editing, playback, posing
+from app.editor.actions import editing, playback
+from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.upkeep import maintain
-from app.editor.tools import TOOLS, PointerHit, tool_pointer
+from app.editor.tools import tool_pointer
+from app.editor.tools.table import TOOLS
+from app.editor.tools.tool import PointerHit
 from app.storage import Preferences
 
 LEFT, RIGHT, FREE = 40 + 45j, 80 + 45j, 60 + 60j
@@ -218,7 +221,7 @@ def test_a_playhead_that_leaves_a_drag_does_not_leave_it_half_taken_back(session
 def test_handles_that_go_while_they_are_dragged_are_let_be(session):
     for spot in (AT_RIGHT, replace(AT_RIGHT, alt=True)):
         drag(session, spot, RIGHT + 15j)
-        posing.remove_handles(session, frozenset({1}))
+        remove_handles(session, frozenset({1}))
         settle(session)
         before = session.project.document
         tool_pointer.move_pointer(session, RIGHT + 20)

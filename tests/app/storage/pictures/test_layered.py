@@ -12,11 +12,11 @@ from PIL import Image
 from psd_tools import PSDImage
 from psd_tools.constants import BlendMode
 
-from app.document.layers import Group
+from app.document.layers.groups import Group
 from app.errors import LissomError
-from app.storage.pictures import UniqueNames, read_openraster, read_photoshop
-from app.storage.pictures.layered import GROUPS_DEEP, LONGEST_NAME, MOST_GROUPS
-from app.storage.pictures.openraster import DAMAGED_STACK
+from app.storage.pictures.layered import GROUPS_DEEP, LONGEST_NAME, MOST_GROUPS, UniqueNames
+from app.storage.pictures.openraster import DAMAGED_STACK, read_openraster
+from app.storage.pictures.photoshop import read_photoshop
 
 HEAD = '<layer name="head" src="data/0.png" x="10" y="20"/>'
 BODY = '<layer name="body" src="data/1.png" x="5" y="40" opacity="0.5" visibility="hidden"/>'

@@ -17,11 +17,10 @@ from photoshop_files import (
     photoshop_file,
 )
 
-from app.document.layers import Group
+from app.document.layers.groups import Group
 from app.errors import ImportLog, LissomError
-from app.storage.pictures import read_photoshop
 from app.storage.pictures.layered import GROUPS_DEEP
-from app.storage.pictures.photoshop import DAMAGED, MOST_RECORDS
+from app.storage.pictures.photoshop import DAMAGED, MOST_RECORDS, read_photoshop
 
 SIZE = (100, 120)
 FULL = np.full((20, 30, 4), 255, np.uint8)

@@ -20,10 +20,13 @@ from profiles import (
 )
 
 from app.errors import LissomError
-from app.storage.files import read_file
-from app.storage.files.reading import FOLDER_READ
-from app.storage.pictures import decode_picture, decode_pictures
-from app.storage.pictures.picture import DAMAGED_PICTURE, NO_PICTURE
+from app.storage.files.reading import FOLDER_READ, read_file
+from app.storage.pictures.picture import (
+    DAMAGED_PICTURE,
+    NO_PICTURE,
+    decode_picture,
+    decode_pictures,
+)
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)

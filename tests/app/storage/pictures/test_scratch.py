@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from app.storage.pictures import Picture, move_to_disk, release_pages
+from app.storage.pictures.mmap_pixels import move_to_disk, release_pages
+from app.storage.pictures.picture import Picture
 
 
 @pytest.fixture

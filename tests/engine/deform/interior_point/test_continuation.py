@@ -9,18 +9,24 @@ from numpy.testing import assert_allclose, assert_array_equal
 from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
-from engine.deform.interior_point import StartingPoint, advance_search, exceed_first_level
 from engine.deform.interior_point.continuation import (
     AT_A_SADDLE,
     CENTRED,
     LOWER,
     LOWER_IN_THE_OPEN,
+    advance_search,
     is_centred,
     lower_weight,
 )
-from engine.deform.interior_point.homotopy import FIRST_LEVEL_WIDTH, are_same_bounds, homotopy_level
+from engine.deform.interior_point.homotopy import (
+    FIRST_LEVEL_WIDTH,
+    are_same_bounds,
+    exceed_first_level,
+    homotopy_level,
+)
 from engine.deform.interior_point.samples import resolve_segments
-from engine.deform.model import BarrierBounds
+from engine.deform.interior_point.search import StartingPoint
+from engine.deform.model.barrier import BarrierBounds
 from engine.geometry import Domain
 from engine.maps import Boundary, Bounds, segment_enclosures
 

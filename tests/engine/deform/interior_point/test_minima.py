@@ -24,8 +24,8 @@ from shapes import regular_polygon
 
 from engine.deform import Deformer, Handles, Objective, Status
 from engine.deform.deformer import UNSETTLED
-from engine.deform.interior_point import OPTIMAL, WORTH_A_JUMP, StartingPoint
-from engine.deform.model import MARGIN
+from engine.deform.interior_point.search import OPTIMAL, WORTH_A_JUMP, StartingPoint
+from engine.deform.model.barrier import MARGIN
 from engine.errors import EngineError
 from engine.geometry import Domain
 from engine.maps import Boundary, Bounds

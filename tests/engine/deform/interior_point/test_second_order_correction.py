@@ -8,7 +8,7 @@ from deform_shapes import search_from_rest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.deform import Objective
-from engine.deform.interior_point import advance_search
+from engine.deform.interior_point.continuation import advance_search
 from engine.deform.interior_point.second_order_correction import (
     KEPT,
     find_corrected_step,

@@ -20,8 +20,8 @@ from engine.domain import (
     require_domain,
 )
 from engine.domain.meshing.mesh import signed_areas
-from engine.domain.outline import Enclosure, enclose_subject
 from engine.domain.outline.cuts import CUT_WIDTH, CUTS_OFF, _drawn_area
+from engine.domain.outline.enclosure import Enclosure, enclose_subject
 from engine.errors import EngineError
 from engine.geometry import as_xy, shapely_region
 

@@ -10,9 +10,9 @@ from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, Complexes
 from engine.domain import build_domain, require_domain
-from engine.domain.outline import Detail, Enclosure, enclose_subject
-from engine.domain.picture import subject_mask
+from engine.domain.outline.enclosure import Detail, Enclosure, enclose_subject
 from engine.domain.picture.cut_out import CutOut
+from engine.domain.picture.mask import subject_mask
 from engine.geometry import Hole, contains, signed_area
 
 DETAILS: tuple[Detail, ...] = ("coarse", "normal", "fine")

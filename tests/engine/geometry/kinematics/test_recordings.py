@@ -6,8 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.interpolate import CubicHermiteSpline
 
 from engine.errors import EngineError
-from engine.geometry.kinematics import fit_keys
-from engine.geometry.kinematics.recordings import TOLERANCE, FittedKeys, evaluate_keys
+from engine.geometry.kinematics.recordings import TOLERANCE, FittedKeys, evaluate_keys, fit_keys
 
 
 def moves(times, targets, seconds=0.9):

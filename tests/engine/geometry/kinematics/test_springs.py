@@ -8,8 +8,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 from engine.errors import EngineError
-from engine.geometry.kinematics import simulate_spring, turn_arm
-from engine.geometry.kinematics.springs import FADE_FRAMES, INVISIBLE, WIDEST, oscillator_flow
+from engine.geometry.kinematics.springs import (
+    FADE_FRAMES,
+    INVISIBLE,
+    WIDEST,
+    oscillator_flow,
+    simulate_spring,
+    turn_arm,
+)
 
 DAMPINGS = [0.0, 1e-9, 0.2, 1 - 1e-9, 1.0, 1 + 1e-9, 1.7, 100.0]
 

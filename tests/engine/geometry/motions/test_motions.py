@@ -9,7 +9,10 @@ from bodies import body
 from numpy.testing import assert_allclose
 
 from engine.errors import EngineError
-from engine.geometry.motions import MOTIONS, Body, Parameters, find_kind
+from engine.geometry.motions.body import Body
+from engine.geometry.motions.kinds import find_kind
+from engine.geometry.motions.library.table import MOTIONS
+from engine.geometry.motions.motion import Parameters
 
 USUAL = Parameters()
 FITTING = [(name, kind) for name, motion in MOTIONS.items() for kind in motion.kinds]

@@ -4,9 +4,3 @@ In: a session with a project.
 Out: a draft of a motion; then the layer with its keys, in one undo step.
 Imports: `app.solving`, `app.editor.pending_changes`, `app.editor.actions.playback` and `editing`.
 """
-
-from app.editor.actions.posing.motion_presets import (
-    apply_motion as apply_motion,
-    joint_placement as joint_placement,
-    preset_setup as preset_setup,
-)

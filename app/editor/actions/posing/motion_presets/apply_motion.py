@@ -12,7 +12,9 @@ from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.work import JobKind, MotionJob, MotionSetup, Promise
+from app.editor.work.jobs import JobKind
+from app.editor.work.motion_setup import MotionJob, MotionSetup
+from app.editor.work.promise import Promise
 from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 
 GIVING = JobKind("Giving the motion", "The motion was not given", "hand")
