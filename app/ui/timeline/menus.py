@@ -81,7 +81,7 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
         actions.append(do(keys.insert_key_in_row_at, frame))
     track = bands.project.track_in(row)
     if track is not None and not track.is_scene_space:
-        if imgui.menu_item_simple(f"Insert key in the pose at frame {frame}###Insert in pose"):
+        if imgui.menu_item_simple("Back to body pose###Insert in pose"):
             actions += [
                 do(playback.scrub, frame),
                 do(tracks.set_handle_value, track.handles[0], 0j, 0.0),

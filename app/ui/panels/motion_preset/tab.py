@@ -142,7 +142,7 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
         if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
             actions.append(binding.action)
     binding = BINDINGS["find joints"]
-    if text_button(f"{binding.icon}  Find again", next(widths), binding.hint):
+    if text_button(f"{binding.icon}  Detect joints", next(widths), binding.hint):
         actions.append(binding.action)
     return actions
 
