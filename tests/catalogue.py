@@ -25,7 +25,7 @@ def source_files() -> list[Path]:
 
 
 def marked_texts(source: str, name: str = "") -> Iterator[str | tuple[str, str]]:
-    """Yield the marked texts of a module; raise a `ValueError` for a mark without a text."""
+    """Yield the marked texts of a module; raise a `SyntaxError` for an f-string."""
     tree = ast.parse(source)
     constants = {
         target.id: node.value
@@ -48,7 +48,7 @@ def marked_texts(source: str, name: str = "") -> Iterator[str | tuple[str, str]]
             if isinstance(value, ast.Constant) and isinstance(value.value, str):
                 texts.append(value.value)
             elif isinstance(value, ast.JoinedStr):
-                raise ValueError(f"{name}:{node.lineno}: a text of the catalogue has no f")
+                raise SyntaxError(f"{name}:{node.lineno}: a text of the catalogue is an f-string")
         if len(texts) == count:
             yield texts[0] if count == 1 else (texts[0], texts[1])
 
