@@ -76,7 +76,7 @@ def _without_cycle(layer: Layer, first: int) -> Layer:
     )
 
 
-@command("Make repeats into keys")
+@command("Bake repeats")
 def bake_cycle(document: Document, identity: int, first: int, end: int) -> Document:
     """Replace the repeats of the cycle that begins at a frame with keys.
 

@@ -14,7 +14,7 @@ from app.document.model import Document
 PoseReplacement = Callable[[Layer, Pose], Pose]
 
 
-@layer_command("Keep pose")
+@layer_command("Save pose")
 def save_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
     """Add a pose to the library, by default under a free name."""
     taken = {kept.name for kept in layer.library}

@@ -13,9 +13,9 @@ class PointerHelp:
 
 POINTER_HELP = (
     PointerHelp("Click the shape", "Add a handle"),
-    PointerHelp("Drag a handle", "Pose, or key it alone where its track is chosen"),
+    PointerHelp("Drag a handle", "Pose, or key its selected track"),
     PointerHelp("Drag a key on a track's path", "Move it in the picture"),
-    PointerHelp(format_modified(ALT, "let go of a handle"), "Want it there, however far"),
+    PointerHelp(format_modified(ALT, "let go of a handle"), "Keep pulling towards there"),
     PointerHelp("Drag the ring around a handle", "Turn the shape there"),
     PointerHelp(format_modified(ALT, "drag a handle"), "Turn the shape there"),
     PointerHelp(format_modified(CTRL, "turn"), "Turn by steps of 15°"),
@@ -23,7 +23,7 @@ POINTER_HELP = (
     PointerHelp("X or Y in a drag", "Keep to an axis"),
     PointerHelp(format_modified(ALT, "click a handle"), "Delete it"),
     PointerHelp(format_modified(CTRL, "click the shape"), "Put the anchor there"),
-    PointerHelp("Drag the anchor onto another layer", "Hang this layer on it"),
+    PointerHelp("Drag the anchor onto another layer", "Attach layer"),
     PointerHelp(format_modified(SHIFT, "click a handle"), "Select several"),
     PointerHelp("Drag beside the shape", "Select by a box"),
     PointerHelp(

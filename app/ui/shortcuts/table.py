@@ -255,7 +255,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             explain_disabled=partial(pasting.paste_on_selected_disabled_reason, way="flipped"),
         ),
         "keep pose": ActionSpec(
-            "Keep pose",
+            "Save pose",
             do(library.save_pose_to_library),
             "Shift+K",
             icon=icons.ICON_FA_PLUS,
@@ -399,7 +399,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
     },
     "Motion": {
         "give motion": ActionSpec(
-            "Give it a motion…",
+            "Apply motion preset…",
             do(preset_setup.begin_motion_setup),
             "A",
             icon=icons.ICON_FA_PERSON_WALKING,
@@ -408,7 +408,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             active=lambda session: session.project is not None and session.project.motion_setup,
         ),
         "mirror joints": ActionSpec(
-            "Mirror the joints",
+            "Mirror joints",
             do(joint_placement.mirror_joints),
             icon=icons.ICON_FA_LEFT_RIGHT,
             hint="Put the joints of one side where those of the other one are, seen in a mirror",
@@ -416,7 +416,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             has_separator=True,
         ),
         "find joints": ActionSpec(
-            "Find the joints again",
+            "Detect joints",
             do(joint_placement.reset_joints),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
             hint="Put all joints back where they were found",
@@ -425,7 +425,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             ),
         ),
         "no motion": ActionSpec(
-            "Stop giving the motion",
+            "Cancel motion preset",
             do(apply_motion.cancel_motion_job),
             "Escape",
             condition=_gives,
@@ -600,7 +600,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             active=lambda session: session.records,
         ),
         "record nothing": ActionSpec(
-            "Give the recording up", do(discard_recording), "Escape", condition=_records
+            "Discard recording", do(discard_recording), "Escape", condition=_records
         ),
         "preview start": ActionSpec(
             "Start preview range here", do(keys.start_preview_at_playhead), "B", has_separator=True
@@ -639,7 +639,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
     },
     "Keys": {
-        "pass": ActionSpec("Pass keys otherwise", do(keys.use_next_tangent_mode), "T"),
+        "pass": ActionSpec("Next tangent mode", do(keys.use_next_tangent_mode), "T"),
         "ease": ActionSpec("Ease in and out", do(keys.ease_selected_keys, PRESETS["in-out"]), "F9"),
         "ease in": ActionSpec("Ease in", do(keys.ease_selected_keys, PRESETS["in"]), "Shift+F9"),
         "ease out": ActionSpec(
@@ -654,7 +654,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             has_separator=True,
         ),
         "repeats into keys": ActionSpec(
-            "Make repeats into keys", do(cycles.bake_cycle), condition=cycles.cycle_at_playhead
+            "Bake repeats", do(cycles.bake_cycle), condition=cycles.cycle_at_playhead
         ),
         "repeat no more": ActionSpec(
             "Stop repeating", do(cycles.end_cycle), condition=cycles.cycle_at_playhead
@@ -677,9 +677,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "report": ActionSpec(
             "Report a problem…", do(error_reports.show_kept_or_new_report), needs_project=False
         ),
-        "import": ActionSpec(
-            "What opening it told", do(files.show_import_log), condition=_has_summary
-        ),
+        "import": ActionSpec("Import log", do(files.show_import_log), condition=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

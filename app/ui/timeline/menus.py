@@ -15,7 +15,7 @@ from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.layout import TimelineLayout
 
 TANGENT_MODES = {
-    TangentMode.SMOOTH: ("Through", "The motion goes on smoothly, between two other keys"),
+    TangentMode.SMOOTH: ("Smooth", "The motion goes on smoothly, between two other keys"),
     TangentMode.CORNER: ("Corner", "The motion comes and goes straight, and turns sharply"),
     TangentMode.STOP: ("Stop", "The motion slows down to rest, and starts again"),
     TangentMode.HOLD: ("Hold", "The pose stays until the next key"),
@@ -43,7 +43,7 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
     imgui.separator()
     if imgui.menu_item_simple("Go to this key", "Click"):
         actions.append(do(playback.scrub, seen))
-    if imgui.begin_menu("Passing"):
+    if imgui.begin_menu("Tangent"):
         for passing, (name, hint) in TANGENT_MODES.items():
             chosen = key.shown_tangent_mode is passing
             if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
@@ -84,7 +84,7 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
         actions.append(do(keys.insert_key_in_row_at, frame))
     track = bands.project.track_in(row)
     if track is not None and not track.is_scene_space:
-        if imgui.menu_item_simple(f"Insert key in the pose at frame {frame}###Insert in pose"):
+        if imgui.menu_item_simple("Back to body pose###Insert in pose"):
             actions += [
                 do(playback.scrub, frame),
                 do(tracks.set_handle_value, track.handles[0], 0j, 0.0),
@@ -120,7 +120,7 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     if cycle is None or isinstance(bands.project.row, TrackRow):
         return actions
     imgui.separator()
-    if imgui.menu_item_simple("Make repeats into keys"):
+    if imgui.menu_item_simple("Bake repeats"):
         actions.append(do(cycles.bake_cycle, frame))
     draw_tooltip(
         f"{cycle.description.capitalize()} are edited in one place; then each repeat is by itself"

@@ -163,7 +163,7 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
         "Delete pose",
         "Use pose",
         "Rename pose",
-        "Keep pose",
+        "Save pose",
     ]
     assert project.document is before
 

@@ -513,7 +513,7 @@ def test_the_panel_sets_what_a_track_has(window, bent, press):
     window.act(editing.select_handles, frozenset({RIGHT}))
     press("on##track")
     assert not bent.layer.track_of(RIGHT).enabled
-    press("Keys turn it, too")
+    press("Key rotation")
     assert bent.layer.track_of(RIGHT).keys_rotation
 
     def enter(name, value):
@@ -578,7 +578,7 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
     window.settle()
     before, frames = bent.document, range(0, 49, 4)
     swung = np.array(places_of(bent, RIGHT, frames))
-    press("Make keys of it")
+    press("Bake to keys")
     track = bent.layer.track_of(RIGHT)
     assert bent.layer.spring_of(RIGHT) is None
     assert bent.selected_track == RIGHT
@@ -727,5 +727,5 @@ def test_a_track_of_several_handles_is_set_with_all_of_them_selected(window, ben
         window.act(editing.select_handles, frozenset(chosen))
         window.settle()
         was = bent.layer.track_of(LEFT).keys_rotation
-        press("Keys turn it, too")
+        press("Key rotation")
         assert bent.layer.track_of(LEFT).keys_rotation != was

@@ -90,7 +90,7 @@ def add_to_switch_group(document: Document, name: str, layers: Sequence[int]) ->
     return _replace_switch_group(document, choice, replace(choice, layers=(*choice.layers, *new)))
 
 
-@command("Take out of the choice")
+@command("Remove from switch")
 def remove_from_switch_group(document: Document, identity: int) -> Document:
     """Remove a layer from its switch group; it keeps its visibility as keys of its own.
 

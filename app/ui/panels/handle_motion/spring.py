@@ -83,7 +83,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
         if not spring.enabled
         else "Its track comes before the spring: delete the track first"
     )
-    if text_button("Make keys of it", FILL, hint, enabled=can):
+    if text_button("Bake to keys", FILL, hint, enabled=can):
         actions.append(do(springs.bake_spring, handle.id))
     return actions
 

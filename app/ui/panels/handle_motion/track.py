@@ -109,7 +109,7 @@ def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Ac
         command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
         actions.append(do(editing.edit_document, command))
     imgui.same_line()
-    changed, turns = imgui.checkbox("Keys turn it, too", track.keys_rotation)
+    changed, turns = imgui.checkbox("Key rotation", track.keys_rotation)
     draw_tooltip("Let its keys turn the shape at the handle; else it turns as the shape likes")
     if changed:
         command = track_commands.set_turning(project.active, handle.id, turns=turns)

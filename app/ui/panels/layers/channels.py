@@ -43,7 +43,7 @@ def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: in
         actions.append(do(fade, layer.id, min(max(faded.value / 100, 0.0), 1.0)))
     keyed = keyed_frame(layer, layer.opacity_keys, frame)
     is_keyed = any(key.frame == keyed for key in layer.opacity_keys)
-    changed, _ = imgui.checkbox("Opacity keyed here", is_keyed)
+    changed, _ = imgui.checkbox("Key opacity", is_keyed)
     draw_tooltip("It fades evenly from key to key")
     if changed and is_keyed:
         actions.append(do(delete_opacity_key, layer.id))
@@ -63,7 +63,7 @@ def draw_transform_channel(
     turn = math.degrees(math.atan2(moved.factor.imag, moved.factor.real))
     shift = moved.shift - (1 - moved.factor) * layer.pivot
     entered: dict[str, float] = {}
-    label(look, "Moved by")
+    label(look, "Transform")
     each = (imgui.get_content_region_avail().x - 2 * imgui.get_style().item_inner_spacing.x) / 3
     values = {
         "right": (shift.real, "%.1f px"),
@@ -86,7 +86,7 @@ def draw_transform_channel(
         actions.append(do(key_transform, layer.id, complex(right, up), radians))
     keyed = keyed_frame(layer, layer.transform_keys, frame)
     if any(key.frame == keyed for key in layer.transform_keys) and text_button(
-        f"No movement key at frame {keyed}", FILL, "It goes on between the keys around"
+        "Delete transform key", FILL, "It goes on between the keys around"
     ):
         actions.append(do(delete_transform_key, layer.id))
     if layer.has_parent and layer.transform_keys:
@@ -102,12 +102,12 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     actions: list[Action] = []
     now = draw_order_key_at(document, layer, frame)
     beside = None if now is None or now.beside is None else document.layer(now.beside)
-    words = "where it lies"
+    words = "as in the list"
     if now is not None and beside is not None:
         words = f"{'in front of' if now.in_front else 'behind'} {beside.name}"
-    label(look, "Painted")
+    label(look, "Draw order")
     if imgui.begin_combo("##painted", words):
-        if imgui.selectable("where it lies", beside is None)[0] and beside is not None:
+        if imgui.selectable("as in the list", beside is None)[0] and beside is not None:
             actions.append(do(key_draw_order, layer.id, None))
         for in_front, word in ((True, "in front of"), (False, "behind")):
             imgui.separator()
@@ -123,7 +123,7 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     draw_tooltip(f"From frame {frame} on, until it is said otherwise")
     keyed = change_frame(layer.draw_order_keys, layer.cycles, frame)
     if any(each.frame == keyed for each in layer.draw_order_keys) and text_button(
-        f"No change of order at frame {frame}", FILL, "What was said before it holds on"
+        "Delete order key", FILL, "What was said before it holds on"
     ):
         actions.append(do(delete_draw_order_key, layer.id))
     return actions

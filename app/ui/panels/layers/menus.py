@@ -73,25 +73,25 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     if item(("Unlock" if layer.locked else "Lock") + many, icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *whom))
     alone = project.solo == set(whom)
-    if item("Look at all again" if alone else f"Look at{many or ' it'} alone", SOLO):
+    if item("End solo" if alone else f"Look at{many or ' it'} alone", SOLO):
         actions.append(do(solo_layers, *whom))
     if not is_many:
         actions += _kind(layer)
     imgui.separator()
     if item(
-        "Put in a group",
+        "Group layers",
         icons.ICON_FA_FOLDER_PLUS,
         enabled=is_many or not project.other_selected_layers,
     ):
         actions.append(do(select_layers, *whom))
         actions.append(do(group_layers))
-    if layer.group and item("Take out of the group", icons.ICON_FA_FOLDER_MINUS):
+    if layer.group and item("Ungroup layer", icons.ICON_FA_FOLDER_MINUS):
         actions.append(do(put_layers_in_group, layer.group.rpartition("/")[0], *whom))
     free = is_many and all(project.document.switch_group_of(each) is None for each in chosen)
-    if item("Let them take turns", icons.ICON_FA_MASKS_THEATER, enabled=free):
+    if item("Create switch", icons.ICON_FA_MASKS_THEATER, enabled=free):
         actions.append(do(create_switch, *chosen))
     if project.document.switch_group_of(identity) and item(
-        "Take out of the choice", icons.ICON_FA_XMARK
+        "Remove from switch", icons.ICON_FA_XMARK
     ):
         actions.append(do(remove_from_switch, identity))
     imgui.separator()
@@ -105,7 +105,7 @@ def _kind(layer: Layer) -> list[Action]:
     actions: list[Action] = []
     if item("Take into exports" if layer.reference else "Reference only", icons.ICON_FA_BAN):
         actions.append(do(toggle_reference, layer.id))
-    if item("Let it be posed" if layer.still else "Make it a still picture", icons.ICON_FA_IMAGE):
+    if item("Make posable" if layer.still else "Make still picture", icons.ICON_FA_IMAGE):
         turn = make_posable if layer.still else make_still
         actions.append(do(turn, layer.id))
     return actions
@@ -119,7 +119,7 @@ def _draw_switch_items(project: Project, choice: SwitchGroup) -> list[Action]:
         if item(f"Show {project.document.layer(identity).name}", icons.ICON_FA_CIRCLE_DOT)
     ]
     imgui.separator()
-    if item("Let them take turns no more", icons.ICON_FA_XMARK):
+    if item("Delete switch", icons.ICON_FA_XMARK):
         actions.append(do(delete_switch, choice.name))
     return actions
 
@@ -135,13 +135,13 @@ def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     if item("Unlock" if locked else "Lock", icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *row.layers))
     alone = project.solo == set(row.layers)
-    if item("Look at all again" if alone else "Look at it alone", SOLO):
+    if item("End solo" if alone else "Solo", SOLO):
         actions.append(do(solo_layers, *row.layers))
     whole = subgroups_with_layers(project.document, group.name)
     free = len(row.layers) > 1 and all(
         project.document.switch_group_of(each) is None for each in row.layers
     )
-    if item("Let its layers take turns", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
+    if item("Create switch", icons.ICON_FA_MASKS_THEATER, enabled=free and not whole):
         actions.append(do(create_switch, *row.layers, name=row.name))
     if whole:
         draw_tooltip(explain_unswitchable_groups(whole))

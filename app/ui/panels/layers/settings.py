@@ -91,9 +91,9 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     actions += draw_order_channel(project.document, look, layer, frame)
     if layer.still:
         small_text(look, "A still picture: it is shown as it was drawn.")
-        if imgui.button("Let it be posed", ImVec2(FILL, 0)):
+        if imgui.button("Make posable", ImVec2(FILL, 0)):
             actions.append(do(make_posable, identity))
-    elif imgui.button("Make it a still picture", ImVec2(FILL, 0)):
+    elif imgui.button("Make still picture", ImVec2(FILL, 0)):
         actions.append(do(make_still, identity))
     return actions
 
@@ -132,7 +132,7 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
         actions.append(do(toggle_visibility_key, layer.id))
     keyed = change_frame(layer.visibility_keys, layer.cycles, frame)
     is_switched = any(switch.frame == keyed for switch in layer.visibility_keys)
-    if is_switched and imgui.button(f"No change at frame {frame}", ImVec2(FILL, 0)):
+    if is_switched and imgui.button("Delete visibility key", ImVec2(FILL, 0)):
         actions.append(do(delete_visibility_key, layer.id))
     if layer.visibility_keys:
         told = (
@@ -157,7 +157,7 @@ def _draw_switch_keys(
         ]
         imgui.end_combo()
     draw_tooltip(f"Which of these layers is seen from frame {frame} on")
-    if text_button("Take it out of the choice", FILL, "It is seen when it was, by itself"):
+    if text_button("Remove from switch", FILL, "It is seen when it was, by itself"):
         actions.append(do(remove_from_switch, layer.id))
     return actions
 
@@ -186,7 +186,7 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
         imgui.end_combo()
     draw_tooltip("The layer moves with the place of the other one that is under its anchor now")
     if joint is not None and parent is not None:
-        changed, turns = imgui.checkbox("Turns with it", joint.inherits_rotation)
+        changed, turns = imgui.checkbox("Inherit rotation", joint.inherits_rotation)
         if changed:
             actions.append(do(set_inherits_rotation, layer.id, turns))
     if frame > document.frames.first:
@@ -199,10 +199,10 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
     actions: list[Action] = []
     document, joint = project.document, layer.attachment_key_at(frame)
     now = None if joint is None else joint.parent
-    if text_button(f"Hand over from frame {frame} on…", FILL, "Nothing jumps at that frame"):
+    if text_button(f"Reparent from frame {frame}…", FILL, "Nothing jumps at that frame"):
         imgui.open_popup("hand over")
     if imgui.begin_popup("hand over"):
-        if imgui.menu_item_simple("Let it go", enabled=now is not None):
+        if imgui.menu_item_simple("Detach", enabled=now is not None):
             actions.append(do(reparent_layer, layer.id, None))
         for other in reversed([each for each in document.layers if each is not layer]):
             is_circle = any(each is layer for each in document.parent_chain(other.id, frame))
@@ -217,7 +217,7 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
     keyed = layer.joint_frame(frame)
     if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:
         hint = "What held it before goes on holding it"
-        if text_button(f"No change at frame {keyed}###joint", FILL, hint):
+        if text_button(f"Delete parent key###joint", FILL, hint):
             actions.append(do(delete_parent_key, layer.id, keyed))
     if len(layer.attachments) > 1:
         told = (

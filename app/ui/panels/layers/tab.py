@@ -45,7 +45,7 @@ def _summary(look: Look, project: Project) -> list[Action]:
     if not summary:
         return []
     count = len(summary.warnings)
-    title = "Nothing looks different here" if not count else f"What looks different here: {count}"
+    title = "Imported as drawn" if not count else f"What looks different here: {count}"
     imgui.set_next_item_open(project.is_import_log_open)
     is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
     actions = [do(files.toggle_import_log)] if imgui.is_item_toggled_open() else []
@@ -72,7 +72,7 @@ def _offers(look: Look, project: Project) -> list[Action]:
         whole = subgroups_with_layers(project.document, path)
         if whole:
             small_text(look, f"{explain_unswitchable_groups(whole)}.")
-        if imgui.button("Let them take turns"):
+        if imgui.button("Create switch"):
             actions.append(do(create_switch, *layers, name=name))
         imgui.same_line()
         if imgui.button("No"):

@@ -33,7 +33,7 @@ SHARES = Scale(left=0.0, right=0.99)
 REPEATS = Scale(left=1.0, right=20.0)
 KIND_HEIGHT, DIAGRAM_HEIGHT = 3.2, 9.5  # em
 IN_A_ROW = 5  # largest number of motions
-LOOKS = {None: "As it seems", -1: "Left", 1: "Right"}
+LOOKS = {None: "Automatic", -1: "Left", 1: "Right"}
 
 
 def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Action]:
@@ -66,7 +66,7 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
     """Draw the layer's applied motions, and the button that sets up another one."""
     actions: list[Action] = []
     binding, layer = BINDINGS["give motion"], project.layer
-    heading(look, f"Motions of {layer.name}" if layer.motions else "Ready motions")
+    heading(look, f"Motions of {layer.name}" if layer.motions else "Motion presets")
     if not layer.motions:
         small_text(
             look, "Let the drawing walk, wave, slither or breathe: say where its joints are."
@@ -93,7 +93,7 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
     if text_button("Change…", next(widths), "Give it once more, in another way"):
         actions.append(do(preset_setup.edit_applied_motion, given))
     hint = f"Let another motion follow from frame {given.last} on"
-    if text_button("Follow it by…", next(widths), hint):
+    if text_button("Add motion…", next(widths), hint):
         actions.append(do(preset_setup.append_motion, given))
     return actions
 
@@ -101,7 +101,7 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
 def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw a button with a diagram for each kind of body."""
     actions: list[Action] = []
-    heading(look, "What it is")
+    heading(look, "Body")
     palette = look.palette
     widths = split_line(len(KINDS), 0.3 * look.em)
     for (name, kind), width in zip(KINDS.items(), widths, strict=True):
@@ -142,13 +142,13 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
         if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
             actions.append(binding.action)
     binding = BINDINGS["find joints"]
-    if text_button(f"{binding.icon}  Find again", next(widths), binding.hint):
+    if text_button(f"{binding.icon}  Detect joints", next(widths), binding.hint):
         actions.append(binding.action)
     return actions
 
 
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
-    heading(look, "What it does")
+    heading(look, "Preset")
     actions: list[Action] = []
     fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.templates]
     rows = -(-len(fitting) // IN_A_ROW)
@@ -178,14 +178,14 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
             actions.append(
                 do(preset_setup.set_motion_parameters, **{name: scale.clamp(entered.value)})
             )
-    label(look, "Times")
+    label(look, "Repeats")
     hint = "How often it is there, one after the other"
     entered = slider(look, "rounds", draft.rounds, REPEATS, text="%.0f", hint=hint)
     if entered is not None:
         rounds = min(max(round(entered.value), 1), preset_setup.MOST_ROUNDS)
         actions.append(do(preset_setup.set_motion_options, rounds=rounds))
     if draft.kind in {"biped-side", "four-legs"}:
-        label(look, "Looks")
+        label(look, "Facing")
         options = [(str(way), text) for way, text in LOOKS.items()]
         chosen = option_buttons(look, "facing", options, str(draft.facing))
         if chosen is not None:
@@ -230,7 +230,7 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     if reason:
         small_text(look, reason, look.palette.warning)
     widths = split_line(2)
-    if main_button(look, "Give it###give", next(widths), enabled=not reason):
+    if main_button(look, "Apply###give", next(widths), enabled=not reason):
         actions.append(do(apply_motion.apply_motion_preset))
     draw_tooltip(reason or "Solve it key after key, and play it; it is one step of undo")
     if text_button("Cancel###no motion", next(widths), "", BINDINGS["pose"].shown_keys):

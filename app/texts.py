@@ -1,0 +1,38 @@
+"""Texts for the person, which all come from one catalogue: `_("Undo")`.
+
+In: English texts, which are the catalogue's keys (`app/locale/lissom.pot`).
+Out: the texts in the person's language, if a translation is installed, else in English.
+
+The language is chosen when the program starts, so tables may hold translated texts. A text that is
+also a name in files, or that the engine wrote, is marked by `N_` or by its class, and translated
+where it is shown.
+"""
+
+import gettext
+from pathlib import Path
+
+from engine.errors import EngineError, Message
+
+DOMAIN, LOCALE = "lissom", Path(__file__).parent / "locale"
+# Also for `argparse`, which takes its own texts from the usual catalogue.
+gettext.bindtextdomain(DOMAIN, str(LOCALE))
+gettext.textdomain(DOMAIN)
+_ = gettext.gettext
+ngettext = gettext.ngettext
+
+
+def N_(text: str) -> str:  # noqa: N802 - gettext's own name
+    """Mark a text that is translated where it is shown."""
+    return text
+
+
+def message_of(said: Exception | Message | str) -> str:
+    """Return the message of an error or notice in the person's language."""
+    if not isinstance(said, (EngineError, Message)) or not said.template:
+        return str(said)
+    # Words among the values, such as "outline", are in the catalogue too.
+    values = {
+        name: _(value) if isinstance(value, str) and value else value
+        for name, value in said.values.items()
+    }
+    return _(said.template).format(**values) if values else _(said.template)

@@ -1,0 +1,69 @@
+"""The catalogue of texts: `python -m tests.catalogue` writes it anew."""
+
+import argparse
+import ast
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+
+from babel.messages.catalog import Catalog
+from babel.messages.pofile import write_po
+
+from app.texts import DOMAIN, LOCALE
+
+ROOT = Path(__file__).parents[1]
+TEMPLATE = LOCALE / f"{DOMAIN}.pot"
+# What takes a text as its first argument, and a text and its plural as the first two.
+MARKS, PLURALS = {"_", "N_", "EngineError", "Message", "gettext"}, {"ngettext"}
+
+
+def source_files() -> list[Path]:
+    """Return the modules of the program and of argparse, whose texts the command line shows."""
+    files = [path for room in ("app", "engine") for path in sorted((ROOT / room).rglob("*.py"))]
+    examples = ROOT / "engine" / "examples"
+    return [*(each for each in files if examples not in each.parents), Path(argparse.__file__)]
+
+
+def marked_texts(source: str, name: str = "") -> Iterator[str | tuple[str, str]]:
+    """Yield the marked texts of a module, none of which may be an f-string."""
+    tree = ast.parse(source)
+    constants = {
+        target.id: node.value
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None
+        for target in (node.targets if isinstance(node, ast.Assign) else [node.target])
+        if isinstance(target, ast.Name)
+    }
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call):
+            continue
+        function = node.func.attr if isinstance(node.func, ast.Attribute) else None
+        function = node.func.id if isinstance(node.func, ast.Name) else function
+        if function not in MARKS | PLURALS:
+            continue
+        count = 2 if function in PLURALS else 1
+        texts = []
+        for argument in node.args[:count]:
+            value = constants.get(argument.id) if isinstance(argument, ast.Name) else argument
+            assert not isinstance(value, ast.JoinedStr), f"{name}:{node.lineno}: has fields"
+            if isinstance(value, ast.Constant) and isinstance(value.value, str):
+                texts.append(value.value)
+        if len(texts) == count:
+            yield texts[0] if count == 1 else (texts[0], texts[1])
+
+
+def make_catalogue() -> bytes:
+    """Return the catalogue of all marked texts as a gettext template."""
+    catalogue = Catalog(project="Lissom", fuzzy=False)
+    for path in source_files():
+        at = path.relative_to(ROOT).as_posix() if ROOT in path.parents else path.name
+        for text in marked_texts(path.read_text(encoding="utf-8"), at):
+            catalogue.add(text, locations=[(at, 0)])
+    written = BytesIO()
+    write_po(written, catalogue, omit_header=True, sort_output=True, include_lineno=False, width=98)
+    return written.getvalue()
+
+
+if __name__ == "__main__":
+    TEMPLATE.parent.mkdir(exist_ok=True)
+    TEMPLATE.write_bytes(make_catalogue())
