@@ -217,7 +217,7 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
     keyed = layer.joint_frame(frame)
     if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:
         hint = "What held it before goes on holding it"
-        if text_button(f"Delete parent key###joint", FILL, hint):
+        if text_button("Delete parent key###joint", FILL, hint):
             actions.append(do(delete_parent_key, layer.id, keyed))
     if len(layer.attachments) > 1:
         told = (
