@@ -128,11 +128,12 @@ def test_layers_are_chosen_at_once_and_both_drags_come_to_rest(window, loose):
     window.settle()
     (other,) = loose.layer_runtimes.keys() - {0}
     goals = {}
-    for identity in (0, other):
-        set_active_layer(window.session, identity)
-        goals[identity] = drag_bar(window, loose)
-    assert loose.active == other
-    assert len(loose.pulls) == 2
+    with window.session.jobs.held(POSING):
+        for identity in (0, other):
+            set_active_layer(window.session, identity)
+            goals[identity] = drag_bar(window, loose)
+        assert loose.active == other
+        assert len(loose.pulls) == 2
     window.settle()
     for identity, goal in goals.items():
         check_at_rest(loose.document, goal, layer=identity)
