@@ -1,15 +1,10 @@
 """From pixels or a polygon to a meshed domain (Section 7; Chen and Weber 2015).
 
 In: a picture, uint8 (h, w, 4), and settings of the cut-out; or polygons.
-Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels, y up; its texture,
-suggested handles, and suggested joints of a body.
+Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels, y up; its texture.
 Imports: `engine.geometry`.
 """
 
-from engine.domain.anatomy.handle_places import suggest_handles as suggest_handles
-from engine.domain.anatomy.joints import suggest_joints as suggest_joints
-from engine.domain.anatomy.kind_guess import guess_kind as guess_kind
-from engine.domain.anatomy.names import SuggestedHandle as SuggestedHandle
 from engine.domain.build import (
     MOST_TRIANGLES as MOST_TRIANGLES,
     MeshedDomain as MeshedDomain,

@@ -46,6 +46,7 @@ from app.document import (
 )
 from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
 from app.export_formats import FormatOptions, FormatSettings
+from app.rigging import Parameters
 from app.storage.json_values import (
     ANYTHING,
     FLAG,
@@ -70,7 +71,6 @@ from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
 from engine.domain import CutLine, CutOut, Domain, Stroke
-from engine.geometry.motions.motion import Parameters
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 3
