@@ -7,8 +7,9 @@ from meshed_shapes import k_of, meshed_bar, rigid, s_to_u, stretched_pair
 from messages import says
 from numpy.testing import assert_allclose
 
-from engine.baselines import Baseline, prepare_baseline
-from engine.baselines.mesh_keyframes import WINDS
+from app.document import Baseline
+from app.motion import prepare_baseline
+from app.motion.rival_methods.mesh_keyframes import WINDS
 from engine.domain.meshing.triangulation import triangulate
 from engine.errors import EngineError
 from engine.geometry.polygon import OUTSIDE_OUTLINE

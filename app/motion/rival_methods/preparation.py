@@ -6,17 +6,25 @@ from itertools import pairwise
 
 import numpy.typing as npt
 
+from app.motion.rival_methods.arap import ArapInbetweens
+from app.motion.rival_methods.blended_metric import FlatInbetweens
+from app.motion.rival_methods.ffmp import FfmpInbetweens
+from app.motion.rival_methods.flattening import Flattening
+from app.motion.rival_methods.harmonic import (
+    ConformalInbetweens,
+    HandleInbetweens,
+    require_holomorphic,
+)
+from app.motion.rival_methods.mesh_eta import MeshEtaInbetweens
+from app.motion.rival_methods.mesh_keyframes import (
+    MeshFrame,
+    MeshInbetweens,
+    MeshKeyframe,
+    mesh_keyframes,
+)
+from app.motion.rival_methods.poisson import PoissonStep
+from app.motion.rival_methods.triangulated_domain import TriangulatedDomain
 from engine.arrays import Complexes, as_points
-from engine.baselines.arap import ArapInbetweens
-from engine.baselines.blended_metric import FlatInbetweens
-from engine.baselines.ffmp import FfmpInbetweens
-from engine.baselines.flattening import Flattening
-from engine.baselines.frames import MeshFrame, MeshInbetweens
-from engine.baselines.harmonic import ConformalInbetweens, HandleInbetweens, require_holomorphic
-from engine.baselines.mesh_eta import MeshEtaInbetweens
-from engine.baselines.mesh_keyframes import MeshKeyframe, mesh_keyframes
-from engine.baselines.poisson import PoissonStep
-from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, Handles
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Domain, diameter, require_inside

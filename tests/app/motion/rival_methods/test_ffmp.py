@@ -5,7 +5,7 @@ from hypothesis import given, settings, strategies as st
 from meshed_shapes import meshed_bar, stretched_pair
 from numpy.testing import assert_allclose
 
-from engine.baselines import prepare_baseline
+from app.motion import prepare_baseline
 
 MESH = meshed_bar()
 

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Complexes, as_points
-from engine.baselines.triangulated_domain import (
+from app.motion.rival_methods.triangulated_domain import (
     TriangulatedDomain,
     factorise_symmetric,
     solve_complex,
 )
+from engine.arrays import Complexes, as_points
 from engine.errors import EngineError
 from engine.geometry import SIZES, diameter, edge_vectors, require_around, require_simple
 from engine.maps import HarmonicMap, cauchy_coordinates

@@ -3,8 +3,10 @@
 import numpy as np
 
 from app.document import Clip, keyed_pose_at, segment_keys, segment_time_at
-from engine.baselines import Baseline, MeshFrame, MeshInbetweens, prepare_baseline
+from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshInbetweens
+from app.motion.rival_methods.preparation import prepare_baseline
 from engine.domain import MeshedDomain
+from engine.variant import Baseline
 
 
 class MemoizedFrames:

@@ -6,15 +6,14 @@ from typing import Self
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
-from engine.arrays import Complexes, Floats, Indices, freeze
-from engine.baselines.frames import MeshFrame
-from engine.baselines.mesh_keyframes import MeshKeyframe
-from engine.baselines.poisson import PoissonStep
-from engine.baselines.triangulated_domain import (
+from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshKeyframe
+from app.motion.rival_methods.poisson import PoissonStep
+from app.motion.rival_methods.triangulated_domain import (
     TriangulatedDomain,
     factorise_symmetric,
     solve_complex,
 )
+from engine.arrays import Complexes, Floats, Indices, freeze
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

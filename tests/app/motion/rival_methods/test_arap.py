@@ -5,7 +5,7 @@ from interpolation_shapes import bar, bent
 from meshed_shapes import meshed_bar, rigid
 from numpy.testing import assert_allclose
 
-from engine.baselines import prepare_baseline
+from app.motion import prepare_baseline
 
 MESH = meshed_bar()
 

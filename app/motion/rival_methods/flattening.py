@@ -12,8 +12,8 @@ from typing import Self
 import numpy as np
 from scipy.sparse import csc_array
 
+from app.motion.rival_methods.triangulated_domain import TriangulatedDomain, factorise_symmetric
 from engine.arrays import Booleans, Complexes, Floats, Indices, freeze
-from engine.baselines.triangulated_domain import TriangulatedDomain, factorise_symmetric
 from engine.errors import EngineError
 
 MOST_STEPS = 40

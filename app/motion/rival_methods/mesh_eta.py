@@ -5,10 +5,9 @@ from typing import Self
 
 import numpy as np
 
+from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshKeyframe
+from app.motion.rival_methods.poisson import PoissonStep
 from engine.arrays import Complexes, freeze
-from engine.baselines.frames import MeshFrame
-from engine.baselines.mesh_keyframes import MeshKeyframe
-from engine.baselines.poisson import PoissonStep
 from engine.interpolation import KeyframeExtremes, PointSamples, blend_in_outline_bounds
 from engine.maps import distortion
 

@@ -8,7 +8,7 @@ from interpolation_shapes import bar, boundary_of, inner_points, letter_l, scatt
 from meshed_shapes import meshed_bar, s_to_u
 from numpy.testing import assert_allclose
 
-from engine.baselines import (
+from app.motion import (
     TriangulatedDomain,
     discrete_harmonic,
     harmonic_coordinate_maps,

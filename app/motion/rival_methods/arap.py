@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from engine.baselines.frames import MeshFrame
-from engine.baselines.mesh_keyframes import MeshKeyframe
-from engine.baselines.poisson import PoissonStep
+from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshKeyframe
+from app.motion.rival_methods.poisson import PoissonStep
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -6,7 +6,7 @@ from interpolation_shapes import bar
 from meshed_shapes import k_of, meshed_bar
 from numpy.testing import assert_allclose
 
-from engine.baselines import prepare_baseline
+from app.motion import prepare_baseline
 from engine.maps import HarmonicMap
 
 MESH = meshed_bar()

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.motion.rival_methods.mesh_keyframes import MeshFrame
+from app.motion.rival_methods.triangulated_domain import TriangulatedDomain
 from engine.arrays import Complexes
-from engine.baselines.frames import MeshFrame
-from engine.baselines.triangulated_domain import TriangulatedDomain
 from engine.deform import Deformer, StartingPoint
 from engine.errors import EngineError
 from engine.interpolation import Prepared

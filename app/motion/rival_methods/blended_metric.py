@@ -5,10 +5,9 @@ from typing import Self
 
 import numpy as np
 
+from app.motion.rival_methods.flattening import Flattening, edge_lengths
+from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshKeyframe
 from engine.arrays import Floats, freeze
-from engine.baselines.flattening import Flattening, edge_lengths
-from engine.baselines.frames import MeshFrame
-from engine.baselines.mesh_keyframes import MeshKeyframe
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

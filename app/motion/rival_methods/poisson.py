@@ -6,13 +6,13 @@ from typing import Self
 import numpy as np
 from scipy.sparse.linalg import SuperLU
 
-from engine.arrays import Complexes, Indices
-from engine.baselines.frames import MeshFrame
-from engine.baselines.triangulated_domain import (
+from app.motion.rival_methods.mesh_keyframes import MeshFrame
+from app.motion.rival_methods.triangulated_domain import (
     TriangulatedDomain,
     factorise_symmetric,
     solve_complex,
 )
+from engine.arrays import Complexes, Indices
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

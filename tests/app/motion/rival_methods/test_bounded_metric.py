@@ -7,8 +7,8 @@ from interpolation_shapes import bar, boundary_of, letter_l, random_map
 from meshed_shapes import k_of, meshed_bar, s_to_u, stretched_pair
 from numpy.testing import assert_allclose
 
-from engine.baselines import prepare_baseline
-from engine.baselines.flattening import Flattening, _angles, edge_lengths
+from app.motion import prepare_baseline
+from app.motion.rival_methods.flattening import Flattening, _angles, edge_lengths
 from engine.domain.meshing.triangulation import triangulate
 from engine.interpolation import prepare
 from engine.maps import distortion
