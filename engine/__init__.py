@@ -2,7 +2,7 @@
 
 The one exception: it limits BLAS to one thread (`engine.arrays`), in a script as in the program.
 
-In: pictures, polygons, handles, harmonic maps, as arrays.
+In: masks, polygons, handles, harmonic maps, as arrays.
 Out: domains, certified maps, in-betweens, series in time, as arrays.
 Imports: NumPy, SciPy, contourpy, Shapely; never `app`.
 

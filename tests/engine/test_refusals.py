@@ -8,7 +8,7 @@ from shapes import regular_polygon
 
 from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles
 from engine.dirichlet import HilbertTransform
-from engine.domain import CutOut, build_domain, find_holes, mesh_inside, rectangle_domain
+from engine.domain import build_domain, find_holes, mesh_inside, rectangle_domain
 from engine.domain.material.brush import brush_weights
 from engine.domain.material.limb import limb_weights
 from engine.domain.material.transfer import copy_nearest_stiffness
@@ -24,9 +24,8 @@ NAN = float("nan")
 OUTLINE, CAGE = regular_polygon(8), regular_polygon(8, 1.2)
 DOMAIN = Domain(OUTLINE, CAGE)
 MAP = HarmonicMap.identity(CAGE)
-PICTURE = np.zeros((60, 60, 4), np.uint8)
-PICTURE[10:50, 10:50] = 255
-MASK = PICTURE[..., 3] > 0
+MASK = np.zeros((60, 60), np.bool_)
+MASK[10:50, 10:50] = True
 
 
 @cache
@@ -45,7 +44,7 @@ def transform():
 
 
 def built(**changes):
-    return build_domain(**{"rgba": PICTURE, "triangles": 2000, "detail": "fine"} | changes)
+    return build_domain(**{"mask": MASK, "triangles": 2000, "detail": "fine"} | changes)
 
 
 def in_between(time):
@@ -60,9 +59,8 @@ REFUSED = {
     "detail": lambda: built(detail="fineish"),
     "triangles as text": lambda: built(triangles="2000"),
     "half a triangle": lambda: built(triangles=2000.5),
-    "picture as a list": lambda: built(rgba=PICTURE.tolist()),
-    "background as a list": lambda: CutOut(background=[255, 0, 0]),
-    "swapped nowhere": lambda: CutOut(toggled_holes=(complex(NAN, NAN),)),
+    "mask of numbers": lambda: built(mask=MASK.astype(int)),
+    "toggled holes nowhere": lambda: built(toggled_holes=[complex(NAN, NAN)]),
     "holes maybe": lambda: enclose_subject(MASK, detail="fine", holes="maybe"),
     "an empty mask": lambda: enclose_subject(~MASK & MASK, detail="fine"),
     "holes of an empty mask": lambda: find_holes(~MASK & MASK),

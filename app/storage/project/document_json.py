@@ -8,6 +8,7 @@ from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, Literal
 
+from app.cut_out import CutLine, CutOut, Stroke
 from app.document import (
     FRAME_NAMES,
     PAIRS,
@@ -70,7 +71,7 @@ from app.storage.json_values import (
 from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
-from engine.domain import CutLine, CutOut, Domain, Stroke
+from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 3

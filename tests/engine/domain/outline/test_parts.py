@@ -5,7 +5,7 @@ from numpy.testing import assert_array_equal
 from scipy import ndimage
 
 from engine.arrays import Booleans
-from engine.domain.picture.parts import FRAGMENTED, join_parts
+from engine.domain.outline.parts import FRAGMENTED, join_parts
 from engine.errors import EngineError
 
 

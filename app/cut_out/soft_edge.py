@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
+from app.cut_out.mixture import HUES, SURE, Mixture, Tile, fit_alpha
 from engine.arrays import Booleans, Bytes, Floats, Indices
-from engine.domain.picture.mixture import HUES, SURE, Mixture, Tile, fit_alpha
 
 Part = tuple[slice, slice]  # of a picture: rows and columns
 

@@ -8,8 +8,9 @@ import pytest
 from messages import says
 from numpy.testing import assert_array_equal
 
-from engine.domain.picture.cut_out import CutOut, Mask, Stroke, paint
-from engine.domain.picture.mask import ALL_REMOVED, subject_mask
+from app.cut_out import CutLine, CutOut, Mask, Stroke, subject_mask
+from app.cut_out.cut_out import paint
+from app.cut_out.mask import ALL_REMOVED
 from engine.errors import EngineError
 
 SIZE = (90, 60)  # width, height
@@ -68,7 +69,7 @@ def test_strokes_beside_the_picture_change_nothing():
 def test_long_strokes_are_drawn_in_parts(monkeypatch):
     way = [5 + 5j, 85 + 55j, 5 + 55j]
     whole = drawn(way, 6.0)
-    monkeypatch.setattr("engine.domain.picture.cut_out.AT_ONCE", 20)
+    monkeypatch.setattr("app.cut_out.cut_out.AT_ONCE", 20)
     assert_array_equal(drawn(way, 6.0), whole)
 
 
@@ -125,6 +126,8 @@ def test_a_mask_keeps_every_pixel(size):
         (lambda: CutOut(background=(0, 0, 256)), "levels"),
         (lambda: CutOut(background=(0, 0)), "levels"),
         (lambda: CutOut(background="red"), "background"),
+        (lambda: CutOut(background=[255, 0, 0]), "background"),
+        (lambda: CutOut(toggled_holes=(complex(np.nan, 0),)), "holes"),
         (lambda: CutOut(holes="open"), "holes"),
         (
             lambda: CutOut(
@@ -137,3 +140,16 @@ def test_a_mask_keeps_every_pixel(size):
 def test_a_cut_out_that_is_none_is_refused(make, told):
     with pytest.raises(EngineError, match=told):
         make()
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        ([1j], "at least 2"),
+        ([0, np.nan], "finite"),
+        ([0, 1e7], "farther from the picture"),
+    ],
+)
+def test_lines_that_are_none_are_refused(points, message: str) -> None:
+    with pytest.raises(EngineError, match=message):
+        CutLine(points=np.array(points, dtype=np.complex128))

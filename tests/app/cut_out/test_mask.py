@@ -8,9 +8,10 @@ from numpy.testing import assert_array_equal
 from PIL import Image
 from scipy import ndimage
 
+from app.cut_out import CutOut, Mask, Stroke, subject_mask
+from app.cut_out.cut_out import BackgroundColour, Enclosed
+from app.cut_out.mask import PICTURE_TYPE, SMALL_SUBJECT, TRANSPARENT
 from engine.arrays import Booleans, Bytes
-from engine.domain.picture.cut_out import BackgroundColour, CutOut, Enclosed, Mask, Stroke
-from engine.domain.picture.mask import PICTURE_TYPE, SMALL_SUBJECT, TRANSPARENT, subject_mask
 from engine.errors import EngineError
 
 WHITE = (255, 255, 255)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
+from app.cut_out.cut_out import BackgroundColour
 from engine.arrays import Booleans, Bytes, Indices, Integers
-from engine.domain.picture.cut_out import BackgroundColour
-from engine.domain.picture.grid import block_factor, reduce_blocks, repeat_blocks
-from engine.domain.picture.parts import WITH_CORNERS, keep_touching
+from engine.domain.outline.grid import block_factor, reduce_blocks, repeat_blocks
+from engine.domain.outline.parts import WITH_CORNERS
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: width of the colour bins in which the border's pixels are counted
@@ -154,9 +154,9 @@ def _flood(alike: Booleans) -> Booleans:
     wide = _opened(alike, radius)
     frame = np.ones_like(wide)
     frame[1:-1, 1:-1] = False
-    flooded = keep_touching(wide, frame)
+    flooded = _keep_touching(wide, frame)
     thin = alike & ~wide
-    return flooded | keep_touching(thin | flooded, flooded) & thin
+    return flooded | _keep_touching(thin | flooded, flooded) & thin
 
 
 def _pockets(
@@ -177,7 +177,7 @@ def _pockets(
     factor = block_factor(pockets.shape, WORKING_SIDE)
     blocks = reduce_blocks(pockets, factor, np.logical_and)
     width = max(1, round(SEEN_WIDTH * float(np.hypot(*blocks.shape))))
-    seen = keep_touching(blocks, ndimage.minimum_filter(blocks, width, mode="constant"))
+    seen = _keep_touching(blocks, ndimage.minimum_filter(blocks, width, mode="constant"))
     return _refined(seen, factor, pockets) if factor > 1 else seen
 
 
@@ -207,3 +207,12 @@ def _opened(area: Booleans, radius: float) -> Booleans:
     opened = ndimage.distance_transform_edt(~core) <= radius
     inner = slice(padding, -padding)
     return area & opened[inner, inner]
+
+
+def _keep_touching(area: Booleans, seeds: Booleans) -> Booleans:
+    """Return the components of `area`, connected by edges, that have a seed."""
+    labels, count = ndimage.label(area)
+    chosen = np.zeros(count + 1, dtype=np.bool_)
+    chosen[labels[seeds]] = True
+    chosen[0] = False
+    return np.asarray(chosen[labels])

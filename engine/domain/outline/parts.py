@@ -101,23 +101,6 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     return WholePiece(mask=filled, holes=holes, hole_areas=hole_areas, notices=tuple(notices))
 
 
-def keep_touching(area: Booleans, seeds: Booleans) -> Booleans:
-    """Return the components of `area`, connected by edges, that have a seed."""
-    labels, count = ndimage.label(area)
-    chosen = np.zeros(count + 1, dtype=np.bool_)
-    chosen[labels[seeds]] = True
-    chosen[0] = False
-    return np.asarray(chosen[labels])
-
-
-def remove_specks(mask: Booleans) -> Booleans:
-    labels, count = ndimage.label(mask, WITH_CORNERS)
-    areas = np.bincount(labels.ravel(), minlength=count + 1)
-    kept = areas >= SPECK * areas[1:].sum()
-    kept[0] = False
-    return np.asarray(kept[labels])
-
-
 def _counted(number: int, noun: str) -> str:
     """Return a number with its noun, in the plural if needed."""
     return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"

@@ -11,11 +11,10 @@ F replaces C, so that nothing of B remains.
 from collections.abc import Iterator
 
 import numpy as np
+from scipy import ndimage
 
-from engine.arrays import Booleans, Bytes, Floats, readonly
-from engine.domain.picture.mixture import NEARBY, Mixture, Tile, colours_of, fit_alpha
-from engine.domain.picture.parts import remove_specks
-from engine.domain.picture.soft_edge import (
+from app.cut_out.mixture import NEARBY, Mixture, Tile, colours_of, fit_alpha
+from app.cut_out.soft_edge import (
     WIDEST_EDGE,
     Part,
     SoftEdge,
@@ -23,6 +22,8 @@ from engine.domain.picture.soft_edge import (
     mix_hues,
     weigh_hues,
 )
+from engine.arrays import Booleans, Bytes, Floats, readonly
+from engine.domain.outline.parts import SPECK, WITH_CORNERS
 
 TILE = 256  # pixels: side of the square tiles
 ROOM = WIDEST_EDGE + NEARBY + 4  # pixels of context around a tile
@@ -65,7 +66,7 @@ def matte_picture(rgba: Bytes, subject: Booleans) -> Bytes:
     """
     if subject.all() or not subject.any():
         return readonly(rgba)
-    subject = remove_specks(subject)
+    subject = _remove_specks(subject)
     result = rgba.copy()
     result[..., 3][~subject] = 0
     windows = list(_parts(subject))
@@ -154,3 +155,11 @@ def _without_noise(alpha: Floats, least: Floats) -> Floats:
     alpha = np.where(alpha < 2 * least, 2 * (alpha - least), alpha)
     alpha = np.where(alpha > 1 - 2 * least, 1 - 2 * (1 - alpha - least), alpha)
     return np.clip(alpha, 0, 1)
+
+
+def _remove_specks(mask: Booleans) -> Booleans:
+    labels, count = ndimage.label(mask, WITH_CORNERS)
+    areas = np.bincount(labels.ravel(), minlength=count + 1)
+    kept = areas >= SPECK * areas[1:].sum()
+    kept[0] = False
+    return np.asarray(kept[labels])

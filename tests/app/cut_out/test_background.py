@@ -7,9 +7,9 @@ from numpy.testing import assert_array_equal
 from PIL import Image
 from scipy import ndimage
 
+from app.cut_out import background
+from app.cut_out.background import flood_background
 from engine.arrays import Booleans, Bytes
-from engine.domain.picture import background
-from engine.domain.picture.background import flood_background
 
 PAPER = (240, 235, 220)
 

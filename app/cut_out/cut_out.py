@@ -2,16 +2,15 @@
 
 from dataclasses import dataclass, field
 from math import sqrt
-from typing import Literal, Self, get_args
+from typing import Literal, Self
 
 import numpy as np
 
 from engine.arrays import Booleans, Bytes, Complexes, as_points, readonly, require_word
+from engine.domain.outline.enclosure import HOLES, Holes
 from engine.errors import EngineError
 
 BackgroundColour = tuple[int, int, int]  # red, green, blue, each 0 to 255
-Holes = Literal["keep", "fill"]
-HOLES: tuple[Holes, ...] = get_args(Holes)
 Enclosed = Literal["auto", "keep", "remove"]
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 0.5, 4096.0  # pixels of a stroke

@@ -9,10 +9,9 @@ from numpy.testing import assert_array_equal
 from PIL import Image
 from scipy import ndimage
 
+from app.cut_out import subject_mask, texture as painted_texture
+from app.cut_out.matte import matte_picture
 from engine.arrays import Bytes, Floats
-from engine.domain.build import texture as painted_texture
-from engine.domain.picture.mask import subject_mask
-from engine.domain.picture.matte import matte_picture
 
 INK = (40, 90, 160)
 # Subject and background: dark on white, light on black, and two that differ in hue above all.

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
 
+from app.cut_out.background import Background, flood_background
+from app.cut_out.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
 from engine.arrays import Booleans, Bytes, freeze
-from engine.domain.picture.background import Background, flood_background
-from engine.domain.picture.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
 from engine.errors import EngineError
 
 VISIBLE_ALPHA = 8  # of 255: pixels with less may be left out, others are kept
