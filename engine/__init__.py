@@ -2,7 +2,7 @@
 
 The one exception: it limits BLAS to one thread (`engine.arrays`), in a script as in the program.
 
-In: pictures, polygons, handles, harmonic maps, as arrays.
+In: masks, polygons, handles, harmonic maps, as arrays.
 Out: domains, certified maps, in-betweens, series in time, as arrays.
 Imports: NumPy, SciPy, contourpy, Shapely; never `app`.
 
@@ -40,11 +40,11 @@ Equation map of *Bounded Distortion Harmonic Shape Interpolation* (Chien, Chen, 
     Section 7.4     Hilbert transform              engine.dirichlet.hilbert.HilbertTransform
     Section 7       spanning tree from the anchor  engine.paths.spanning_tree.SpanningTree
     Section 7       quadrature along its edges     engine.paths.integration_paths.IntegrationPaths
-    Figure 7        harmonic coordinates           engine.baselines.harmonic_coordinate_maps
-    Section 8       ARAP (Alexa et al. 2000)       engine.baselines.arap.ArapInbetweens
-    Section 8       FFMP (Kircher, Garland 2008)   engine.baselines.ffmp.FfmpInbetweens
-    Section 8       Chen et al. 2013               engine.baselines.blended_metric.FlatInbetweens
-    Section 9.1     scaled η on meshes             engine.baselines.mesh_eta.MeshEtaInbetweens
+    Figure 7        harmonic coordinates           app.motion.rival_methods.boundary_keyframes.harmonic_coordinate_maps
+    Section 8       ARAP (Alexa et al. 2000)       app.motion.rival_methods.arap.ArapInbetweens
+    Section 8       FFMP (Kircher, Garland 2008)   app.motion.rival_methods.ffmp.FfmpInbetweens
+    Section 8       Chen et al. 2013               app.motion.rival_methods.blended_metric.FlatInbetweens
+    Section 9.1     scaled η on meshes             app.motion.rival_methods.mesh_eta.MeshEtaInbetweens
 
 The deformer follows Chen and Weber, *Bounded Distortion Harmonic Mappings in the Plane* (2015) and
 *GPU-Accelerated Locally Injective Shape Deformation* (2017):

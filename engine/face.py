@@ -7,7 +7,6 @@ from engine.deform import (
     Status as Status,
 )
 from engine.domain import (
-    CutOut as CutOut,
     Domain as Domain,
     MeshedDomain as MeshedDomain,
     build_domain as build_domain,

@@ -29,7 +29,7 @@ class Variant(StrEnum):
 class Baseline(StrEnum):
     """Methods that the paper compares its variants with (Section 8); the names in files.
 
-    `engine.baselines.prepare_baseline` builds them.
+    `app.motion.rival_methods.preparation.prepare_baseline` builds them.
     """
 
     ARAP = "arap"

@@ -23,19 +23,6 @@ PUTTING_OFF = {"__getattr__", "__dir__"}
 # Calls that say what a thing is, and compute nothing.
 # That BLAS keeps to one thread is said once for all that the engine does.
 DECLARATIONS = {"RigidMotion", "TypeVar", "field", "get_args", "threadpool_limits"}
-# Ready motions are data, of these kinds of values.
-DECLARATIONS |= {
-    "BodyKind",
-    "Curve",
-    "Gait",
-    "Leap",
-    "LimbMotion",
-    "Motion",
-    "SquashStretch",
-    "Wave",
-}
-DECLARATIONS |= {"even_curve"}
-DECLARATIONS |= {"MappingProxyType"}
 
 
 def module_files() -> dict[str, Path]:

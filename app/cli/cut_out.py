@@ -2,8 +2,8 @@
 
 import argparse
 
+from app.cut_out import CutOut
 from app.storage import decode_mask, read_file
-from engine.domain import CutOut
 
 
 def parse_cut_out(arguments: argparse.Namespace) -> CutOut:

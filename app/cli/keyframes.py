@@ -12,9 +12,9 @@ from app.cli.console import print_notice
 from app.cli.hole_arrays import HOLE_ARRAYS, read_holes
 from app.cli.meshes import read_mesh_keyframes
 from app.errors import LissomError
+from app.motion import harmonic_coordinate_maps
 from app.storage import read_arrays
 from engine.arrays import Complexes
-from engine.baselines import harmonic_coordinate_maps
 from engine.maps import HarmonicMap
 
 OPTIONAL = ("anchor", "triangles", "turns", "handles")

@@ -2,7 +2,8 @@
 
 In: commands.
 Out: frozen, valid documents, and the playhead.
-Imports: `engine`, `app.errors`, `app.export_formats`; no pictures, graphics, window or clock.
+Imports: `engine`, `app.rigging`, `app.cut_out`, `app.errors`, `app.export_formats`; no pictures,
+graphics, window or clock.
 """
 
 from app.document.checks import LAST_FRAME as LAST_FRAME

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from app.cut_out import CutOut
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -39,7 +40,7 @@ from app.document.timing.tracks import Track
 from app.errors import LissomError
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
-from engine.domain import CutOut, MeshedDomain
+from engine.domain import MeshedDomain
 from engine.geometry import ON_OUTLINE, contains, diameter
 from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant

@@ -206,7 +206,7 @@ class ExportSettings(FormatSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Meshing:
-    """Parameters of `engine.domain.build.build_domain`."""
+    """Parameters of `app.cut_out.build_picture_domain`."""
 
     detail: Detail = "normal"
     triangles: int = 100_000

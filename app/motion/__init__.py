@@ -52,6 +52,19 @@ from app.motion.parenting.parent_transforms import (
     layer_animation as layer_animation,
     parenting_key as parenting_key,
 )
+from app.motion.rival_methods.boundary_keyframes import (
+    discrete_harmonic as discrete_harmonic,
+    harmonic_coordinate_maps as harmonic_coordinate_maps,
+)
+from app.motion.rival_methods.mesh_keyframes import (
+    MeshFrame as MeshFrame,
+    MeshInbetweens as MeshInbetweens,
+)
+from app.motion.rival_methods.preparation import (
+    PreparedBaseline as PreparedBaseline,
+    prepare_baseline as prepare_baseline,
+)
+from app.motion.rival_methods.triangulated_domain import TriangulatedDomain as TriangulatedDomain
 from app.motion.tracing.motion_paths import MotionPaths as MotionPaths, trace_paths as trace_paths
 from app.motion.triangle_order import TriangleOrder as TriangleOrder
 from app.motion.vertices import (

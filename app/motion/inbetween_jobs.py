@@ -4,12 +4,12 @@ from collections.abc import Generator, Mapping, Sequence
 from typing import NamedTuple
 
 from app.document import Clip, Pose, pose_segments, segment_time_at
-from app.motion.baselines import MemoizedFrames, compute_baseline
 from app.motion.deform_mesh import DeformMesh
 from app.motion.inbetweens.auto_pins import AutoPins
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.segment_keys import SegmentKey, segment_key, segment_poses
+from app.motion.rival_methods.comparison import MemoizedFrames, compute_baseline
 from engine.arrays import Complexes
 from engine.interpolation import Inbetweens, SampledDomain
 from engine.streaming import Distortions, MotionComponents, Positions, Series, build_series

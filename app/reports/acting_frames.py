@@ -3,8 +3,8 @@
 import numpy as np
 
 from app.document import Clip, Track, segment_layout, track_cycle
+from app.rigging import FADE_FRAMES, frames_to_settle
 from engine.arrays import Floats, Indices
-from engine.geometry.kinematics.springs import FADE_FRAMES, frames_to_settle
 
 
 def acting_frames(clip: Clip, *, is_carried: bool = False) -> tuple[Indices, Indices]:

@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from app.document import Clip, DistortionRange, clip_segments, pose_segments
-from app.motion import AnyInbetweens, CorrectedFrames
+from app.motion import AnyInbetweens, CorrectedFrames, MeshFrame
 from app.storage import write_atomically
 from engine.arrays import Floats
-from engine.baselines import MeshFrame
 from engine.interpolation import Frame, Inbetweens, SpanBasis
 from engine.maps import distortion
 

@@ -5,6 +5,7 @@ from functools import reduce
 
 import numpy as np
 
+from app.cut_out import build_picture_domain
 from app.document import (
     Command,
     Document,
@@ -18,7 +19,6 @@ from app.document import (
 )
 from app.solving.drag_solver import Rig, fit_map, pins_of
 from engine.arrays import Bytes
-from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Bounds, HarmonicMap, certify
 
@@ -104,7 +104,7 @@ def _in_words(layer: Layer, index: int) -> str:
 
 
 def _with_domain(renewal: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyResolver:
-    domain, notices = build_domain(
+    domain, notices = build_picture_domain(
         picture,
         triangles=meshing.triangles,
         detail=meshing.detail,

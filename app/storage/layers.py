@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageChops
 
+from app.cut_out import CutOut, build_picture_domain
 from app.document import (
     CompositeGroup,
     Document,
@@ -28,7 +29,7 @@ from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
 from engine.arrays import Bytes, readonly
-from engine.domain import CutOut, build_domain, rectangle_domain
+from engine.domain import rectangle_domain
 from engine.errors import EngineError
 
 READERS = {".ora": read_openraster, ".psd": read_photoshop}
@@ -181,7 +182,7 @@ def make_posable_layer(
     notices: tuple[str, ...] = ("opaque all over, so that it stands still",)
     if not (is_cut_out and picture.is_opaque):
         try:
-            domain, notices = build_domain(
+            domain, notices = build_picture_domain(
                 picture.rgba,
                 triangles=meshing.triangles,
                 detail=meshing.detail,

@@ -6,12 +6,13 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple, Self
 
+from app.cut_out import CutOut, Mask, build_picture_domain, subject_mask, texture
 from app.document import Document, Meshing, PictureFile, new_layer
 from app.errors import display_name
 from app.storage.files.reading import read_file
 from app.storage.pictures.picture import Picture, decode_picture
 from engine.arrays import Booleans, Bytes, freeze
-from engine.domain import CutOut, HoleMap, Mask, build_domain, find_holes, subject_mask, texture
+from engine.domain import HoleMap, find_holes
 from engine.errors import EngineError
 
 
@@ -81,7 +82,7 @@ def open_picture(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
 def build_scene(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> OpenedScene:
     """Return the scene of one picture from the bytes of its file."""
     picture = decode_picture(data, str(path))
-    domain, remedies = build_domain(
+    domain, remedies = build_picture_domain(
         picture.rgba, triangles=meshing.triangles, detail=meshing.detail, cut_out=cut_out
     )
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)

@@ -1,15 +1,10 @@
-"""From pixels or a polygon to a meshed domain (Section 7; Chen and Weber 2015).
+"""From a mask or a polygon to a meshed domain (Section 7; Chen and Weber 2015).
 
-In: a picture, uint8 (h, w, 4), and settings of the cut-out; or polygons.
-Out: a `MeshedDomain`: outlines, cages and triangulation in the picture's pixels, y up; its texture,
-suggested handles, and suggested joints of a body.
+In: the mask of a subject, bool (h, w), or polygons.
+Out: a `MeshedDomain`: outlines, cages and triangulation in the mask's pixels, y up.
 Imports: `engine.geometry`.
 """
 
-from engine.domain.anatomy.handle_places import suggest_handles as suggest_handles
-from engine.domain.anatomy.joints import suggest_joints as suggest_joints
-from engine.domain.anatomy.kind_guess import guess_kind as guess_kind
-from engine.domain.anatomy.names import SuggestedHandle as SuggestedHandle
 from engine.domain.build import (
     MOST_TRIANGLES as MOST_TRIANGLES,
     MeshedDomain as MeshedDomain,
@@ -17,20 +12,11 @@ from engine.domain.build import (
     domain_of_polygon as domain_of_polygon,
     mesh_inside as mesh_inside,
     rectangle_domain as rectangle_domain,
-    texture as texture,
     texture_coordinates as texture_coordinates,
 )
 from engine.domain.closed_cuts import ClosedCuts as ClosedCuts, find_closed_cuts as find_closed_cuts
 from engine.domain.outline.cuts import CUT_WIDTH as CUT_WIDTH
 from engine.domain.outline.holes import HoleMap as HoleMap, find_holes as find_holes
-from engine.domain.picture.cut_out import (
-    MOST_STROKE_POINTS as MOST_STROKE_POINTS,
-    CutLine as CutLine,
-    CutOut as CutOut,
-    Mask as Mask,
-    Stroke as Stroke,
-)
-from engine.domain.picture.mask import Subject as Subject, subject_mask as subject_mask
 from engine.domain.validity import (
     MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
     require_domain as require_domain,

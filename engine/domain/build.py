@@ -1,4 +1,4 @@
-"""From pixels or a polygon to a meshed domain (Section 7; Chen and Weber 2015)."""
+"""From a mask or a polygon to a meshed domain (Section 7; Chen and Weber 2015)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,16 +7,13 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from engine.arrays import Bytes, Complexes, Floats, as_count, as_number, as_points, as_tuple
+from engine.arrays import Booleans, Complexes, Floats, as_count, as_number, as_points, as_tuple
 from engine.domain.meshing.draw_order import order_branches_on_top
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
 from engine.domain.outline.cage import offset_cage
-from engine.domain.outline.enclosure import MARGINS, Detail, enclose_subject
+from engine.domain.outline.enclosure import MARGINS, Detail, Holes, enclose_subject
 from engine.domain.outline.holes import make_hole
-from engine.domain.picture.cut_out import CutOut
-from engine.domain.picture.mask import Subject, subject_mask
-from engine.domain.picture.matte import matte_picture
 from engine.errors import EngineError
 from engine.geometry import (
     Domain,
@@ -38,7 +35,7 @@ LONGEST_EDGE, FEWEST_EDGES = 0.05, 16
 # Size of the cage around a rectangle; any cage serves a picture that is never deformed.
 FRAME = 1.1
 NO_DETAIL = "There is no detail {detail!r}; there are {details}."
-NO_PICTURE = "A picture is an array of uint8 of shape (h, w, 4), not {dtype} of shape {shape}."
+NO_MASK = "A mask is an array of bool of shape (h, w), not {dtype} of shape {shape}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -88,24 +85,30 @@ class MeshedDomain(Domain):
 
 
 def build_domain(
-    rgba: Bytes,
+    mask: Booleans,
     *,
     triangles: int,
     detail: Detail,
-    cut_out: CutOut | None = None,
+    holes: Holes = "keep",
+    toggled_holes: Sequence[complex] = (),
+    cut_lines: Sequence[npt.ArrayLike] = (),
 ) -> tuple[MeshedDomain, tuple[str, ...]]:
-    """Find the subject of a picture and build its domain.
+    """Outline a subject, and build its domain.
 
     Parameters
     ----------
-    rgba : uint8, shape (h, w, 4)
-        Straight alpha, first row on top.
+    mask : bool, shape (h, w)
+        True on the subject's pixels, first row on top.
     triangles : int
         Approximate number of triangles, 1,000 to 2,000,000.
     detail : Detail
         How closely the outline follows the subject.
-    cut_out : CutOut, optional
-        How the subject is separated from the background; None is `CutOut()`.
+    holes : Holes
+        Whether large holes stay holes.
+    toggled_holes : sequence of complex
+        Points in holes that are treated the other way, in pixels, y up.
+    cut_lines : sequence of complex, each of shape (n,)
+        Lines along which touching parts are separated, in pixels, y up.
 
     Returns
     -------
@@ -116,26 +119,25 @@ def build_domain(
     Raises
     ------
     EngineError
-        If `triangles` is out of range, or the picture has no subject that can be outlined.
+        If `triangles` is out of range, or the mask has no subject that can be outlined.
     """
     _require_triangles(triangles)
     if detail not in tuple(MARGINS):
         raise EngineError(NO_DETAIL.format(detail=detail, details=", ".join(MARGINS)))
-    rgba = np.asarray(rgba)
-    if rgba.dtype != np.uint8 or rgba.ndim != 3 or rgba.shape[2] != 4 or not rgba.size:
-        raise EngineError(NO_PICTURE.format(dtype=rgba.dtype, shape=rgba.shape))
-    cut_out = cut_out or CutOut()
-    subject = subject_mask(rgba, cut_out)
+    mask = np.asarray(mask)
+    if mask.dtype != np.bool_ or mask.ndim != 2:
+        raise EngineError(NO_MASK.format(dtype=mask.dtype, shape=mask.shape))
     enclosure = enclose_subject(
-        subject.mask,
+        mask,
         detail=detail,
-        holes=cut_out.holes,
-        swapped=subject.toggled_holes,
-        slits=[slit.points for slit in cut_out.cut_lines],
+        holes=holes,
+        swapped=as_points(toggled_holes, "toggled holes"),
+        slits=[
+            as_points(line, "cut line", at_least=2) for line in as_tuple(cut_lines, "cut lines")
+        ],
     )
     domain = Domain(enclosure.outline, enclosure.cage, enclosure.holes)
-    meshed = MeshedDomain.of(domain, triangles, enclosure.closed)
-    return meshed, subject.notices + enclosure.notices
+    return MeshedDomain.of(domain, triangles, enclosure.closed), enclosure.notices
 
 
 def domain_of_polygon(
@@ -211,15 +213,6 @@ def mesh_inside(domain: Domain, *, triangles: int) -> Mesh:
     holes = domain.loops[1:]
     mesh = triangulate(domain.outline, triangles, holes=holes)
     return order_branches_on_top(mesh, deepest_point(domain.outline, holes))
-
-
-def texture(rgba: Bytes, subject: Subject) -> Bytes:
-    """Return the picture (h, w, 4) of a subject as its domain's mesh shows it.
-
-    The picture keeps its own transparency. The removed background is transparent, and edges are
-    free of its colour.
-    """
-    return matte_picture(rgba, subject.mask) if subject.cut else rgba
 
 
 def texture_coordinates(points: Complexes, image_size: tuple[int, int]) -> Floats:

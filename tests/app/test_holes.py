@@ -10,6 +10,7 @@ from holed_shapes import Holed, boundary_of, random_map, ring
 from numpy.testing import assert_allclose, assert_array_equal
 
 from app.cli.main import main
+from app.cut_out import CutOut, build_picture_domain
 from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_layer
 from app.errors import LissomError
 from app.motion import Animation
@@ -17,7 +18,7 @@ from app.motion.deform_mesh import DeformMesh
 from app.reports import certify_clip
 from app.solving.drag_solver import fit_map
 from app.storage import load_project, save_project
-from engine.domain import CutOut, MeshedDomain, build_domain, require_domain
+from engine.domain import MeshedDomain, require_domain
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, HarmonicMap, certify
@@ -144,7 +145,7 @@ def ring_picture() -> np.ndarray:
 
 
 def test_arrays_of_holes_are_handed_from_command_to_command(tmp_path):
-    domain, _ = build_domain(
+    domain, _ = build_picture_domain(
         ring_picture(), triangles=1000, detail="coarse", cut_out=CutOut(holes="keep")
     )
     (hole,) = domain.holes

@@ -6,12 +6,11 @@ from functools import partial
 
 import numpy as np
 
+from app.cut_out import build_picture_domain, subject_mask
+from app.cut_out.matte import matte_picture
 from app.storage import decode_picture, sample_images
-from engine.domain import build_domain
 from engine.domain.meshing.triangulation import triangulate
 from engine.domain.outline.enclosure import enclose_subject
-from engine.domain.picture.mask import subject_mask
-from engine.domain.picture.matte import matte_picture
 from engine.maps import cauchy_coordinates, cauchy_derivatives, evaluate
 from tests.bench.memory import most_held
 from tests.bench.table import Row, Table, measure
@@ -42,9 +41,13 @@ def _samples(pictures: dict[str, bytes], triangles: int) -> Table:
     for name, data in pictures.items():
 
         def build(data: bytes = data) -> None:
-            build_domain(decode_picture(data, "").rgba, triangles=triangles, detail="normal")
+            build_picture_domain(
+                decode_picture(data, "").rgba, triangles=triangles, detail="normal"
+            )
 
-        domain, _ = build_domain(decode_picture(data, "").rgba, triangles=1000, detail="normal")
+        domain, _ = build_picture_domain(
+            decode_picture(data, "").rgba, triangles=1000, detail="normal"
+        )
         rows.append(
             Row(
                 name=name,

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from app.cut_out import build_picture_domain
 from app.document import (
     Document,
     ExportSettings,
@@ -34,7 +35,6 @@ from app.render.gpu.context import create_context
 from app.render.gpu.target import RenderTarget
 from app.storage import decode_picture, load_project, sample_images, save_project
 from engine.arrays import Complexes
-from engine.domain import build_domain
 from tests.bench.memory import Run, run_measured
 from tests.bench.table import Row, Table, measure
 
@@ -197,7 +197,7 @@ def _bending_giraffe(size: tuple[int, int], triangles: int, *, frames: int = 1) 
     stream = io.BytesIO()
     canvas.save(stream, "PNG", compress_level=1)
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=size)
-    domain, _ = build_domain(np.asarray(canvas), triangles=triangles, detail="normal")
+    domain, _ = build_picture_domain(np.asarray(canvas), triangles=triangles, detail="normal")
     layer = new_layer(file, domain, Meshing())
     first = layer.keys[0]
     z = domain.cage - complex(*size) / 2

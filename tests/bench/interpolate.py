@@ -7,10 +7,11 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from app.cut_out import CutOut, build_picture_domain
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes, Integers
 from engine.dirichlet import Extension, HilbertTransform
-from engine.domain import CutOut, MeshedDomain, build_domain
+from engine.domain import MeshedDomain
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.meshing.triangulation import triangulate
 from engine.interpolation import (
@@ -101,7 +102,7 @@ def sites_of(domain: MeshedDomain, mesh: Mesh) -> SampledDomain:
 def tables(extent: Extent) -> Iterator[Table]:
     """Measure frames and preparation, and how both grow with the number of vertices."""
     picture = decode_picture((sample_images() / "giraffe.png").read_bytes(), "")
-    domain, _ = build_domain(picture.rgba, triangles=1000, detail="normal")
+    domain, _ = build_picture_domain(picture.rgba, triangles=1000, detail="normal")
     transform = HilbertTransform.on(domain)
     pair = KeyframePair.of(domain, extent.vertices, transform)
     yield _frames(pair)
@@ -184,9 +185,9 @@ def _around_a_hole(triangles: int) -> Table:
     """Measure one motion of the sample's ring, with its hole filled and with its hole kept."""
     picture = decode_picture((sample_images() / "ring.png").read_bytes(), "")
     rings = [
-        build_domain(picture.rgba, triangles=triangles, detail="normal", cut_out=CutOut(holes=way))[
-            0
-        ]
+        build_picture_domain(
+            picture.rgba, triangles=triangles, detail="normal", cut_out=CutOut(holes=way)
+        )[0]
         for way in ("fill", "keep")
     ]
     rows = []

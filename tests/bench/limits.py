@@ -8,10 +8,10 @@ from itertools import chain, cycle, islice, pairwise
 
 import numpy as np
 
+from app.cut_out import build_picture_domain
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes
 from engine.deform import Deformer, Handles, State, Status
-from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, certify
 from tests.bench.deform import DRAG_STEPS, star
@@ -200,7 +200,7 @@ def _requests(count: int) -> Iterator[_Request]:
 
 def _drawn(name: str) -> Boundary:
     picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
-    domain, _ = build_domain(picture.rgba, triangles=1000, detail="coarse")
+    domain, _ = build_picture_domain(picture.rgba, triangles=1000, detail="coarse")
     return Boundary.sample(domain)
 
 

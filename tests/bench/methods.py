@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Layer, Variant
-from engine.baselines import (
-    Baseline,
+from app.document import Baseline, Layer, Variant
+from app.motion import (
     MeshFrame,
     PreparedBaseline,
     TriangulatedDomain,

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw
 
+from app.cut_out import build_picture_domain
 from app.storage import decode_picture, sample_images
 from engine.arrays import Complexes
 from engine.deform import Deformer, Handles, Objective, Status
@@ -18,7 +19,6 @@ from engine.deform.interior_point.continuation import advance_search, begin_sear
 from engine.deform.interior_point.search import StartingPoint
 from engine.deform.model.barrier import MARGIN
 from engine.deform.trust_region import align_rigidly
-from engine.domain import build_domain
 from engine.geometry import contains
 from engine.maps import Boundary, Bounds, certify
 from tests.campaigns.slowest import timed
@@ -231,5 +231,5 @@ def hook() -> Image.Image:
 
 
 def _boundary(rgba: np.ndarray) -> Boundary:
-    domain, _ = build_domain(rgba, triangles=1000, detail="coarse")
+    domain, _ = build_picture_domain(rgba, triangles=1000, detail="coarse")
     return Boundary.sample(domain)

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw
 
+from app.cut_out import build_picture_domain
 from engine.arrays import Complexes, Integers
 from engine.deform import Deformer, Handles
-from engine.domain import build_domain, mesh_inside
+from engine.domain import mesh_inside
 from engine.errors import EngineError
 from engine.geometry import Domain
 from engine.interpolation import prepare
@@ -214,7 +215,7 @@ def pictured(grey: np.ndarray, detail: str) -> Shape:
     """Return the domain of a mask."""
     rgba = np.zeros((*grey.shape, 4), dtype=np.uint8)
     rgba[..., 3] = grey
-    domain, _ = build_domain(rgba, triangles=TRIANGLES, detail=detail)
+    domain, _ = build_picture_domain(rgba, triangles=TRIANGLES, detail=detail)
     return Shape(domain.outline, domain.cage, domain.mesh.vertices, domain.mesh.triangles)
 
 

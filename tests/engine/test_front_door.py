@@ -17,6 +17,7 @@ README = ROOT / "engine" / "README.md"
 # What each example shows, by the names that it leaves.
 SHOWN = {
     "own_polygon": lambda left: left["proof"].is_locally_injective and left["frame"].k.max() < 0.6,
+    "drawing": lambda left: left["bent"].status.is_final and 0 < left["bent"].certificate.k < 0.6,
     "hole": lambda left: 0 < left["correction"] < 0.1 and left["frame"].sigma_b.min() > 0,
     "limits": lambda left: (
         left["state"].status is engine.Status.AT_LIMITS and not left["unfinished"].status.is_final

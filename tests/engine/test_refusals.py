@@ -8,7 +8,7 @@ from shapes import regular_polygon
 
 from engine.deform import BoundedPull, Deformer, DistanceConstraint, Handles
 from engine.dirichlet import HilbertTransform
-from engine.domain import CutOut, build_domain, find_holes, mesh_inside, rectangle_domain
+from engine.domain import build_domain, find_holes, mesh_inside, rectangle_domain
 from engine.domain.material.brush import brush_weights
 from engine.domain.material.limb import limb_weights
 from engine.domain.material.transfer import copy_nearest_stiffness
@@ -16,13 +16,6 @@ from engine.domain.meshing.triangulation import triangulate
 from engine.domain.outline.enclosure import enclose_subject
 from engine.errors import EngineError
 from engine.geometry import Domain, constrained_delaunay, fit_rigid
-from engine.geometry.kinematics.recordings import MOST_FRAMES, fit_keys
-from engine.geometry.kinematics.springs import simulate_spring
-from engine.geometry.motions.body import Body
-from engine.geometry.motions.facing import guess_facing
-from engine.geometry.motions.kinds import find_kind
-from engine.geometry.motions.library.table import MOTIONS
-from engine.geometry.motions.motion import Parameters
 from engine.interpolation import InteriorKnot, TimeWeights, prepare, sample_domain, sample_keyframes
 from engine.maps import Boundary, Bounds, HarmonicMap, derivatives_of
 from engine.streaming import build_morph_targets
@@ -31,16 +24,8 @@ NAN = float("nan")
 OUTLINE, CAGE = regular_polygon(8), regular_polygon(8, 1.2)
 DOMAIN = Domain(OUTLINE, CAGE)
 MAP = HarmonicMap.identity(CAGE)
-PICTURE = np.zeros((60, 60, 4), np.uint8)
-PICTURE[10:50, 10:50] = 255
-MASK = PICTURE[..., 3] > 0
-STANDING = {
-    "hips": 50 + 100j,
-    "chest": 50 + 150j,
-    "head": 50 + 190j,
-    "knee.L": 55 + 50j,
-    "foot.L": 50 + 0j,
-}
+MASK = np.zeros((60, 60), np.bool_)
+MASK[10:50, 10:50] = True
 
 
 @cache
@@ -59,15 +44,11 @@ def transform():
 
 
 def built(**changes):
-    return build_domain(**{"rgba": PICTURE, "triangles": 2000, "detail": "fine"} | changes)
+    return build_domain(**{"mask": MASK, "triangles": 2000, "detail": "fine"} | changes)
 
 
 def in_between(time):
     return prepare([MAP, MAP], boundary(), [0j], variant="nu").frame(time)
-
-
-def body(box=(0j, 100 + 200j), **joints):
-    return Body(kind=find_kind("biped-side"), joints=STANDING | joints, box=box)
 
 
 def targets(times, tolerance=0.1):
@@ -78,9 +59,8 @@ REFUSED = {
     "detail": lambda: built(detail="fineish"),
     "triangles as text": lambda: built(triangles="2000"),
     "half a triangle": lambda: built(triangles=2000.5),
-    "picture as a list": lambda: built(rgba=PICTURE.tolist()),
-    "background as a list": lambda: CutOut(background=[255, 0, 0]),
-    "swapped nowhere": lambda: CutOut(toggled_holes=(complex(NAN, NAN),)),
+    "mask of numbers": lambda: built(mask=MASK.astype(int)),
+    "toggled holes nowhere": lambda: built(toggled_holes=[complex(NAN, NAN)]),
     "holes maybe": lambda: enclose_subject(MASK, detail="fine", holes="maybe"),
     "an empty mask": lambda: enclose_subject(~MASK & MASK, detail="fine"),
     "holes of an empty mask": lambda: find_holes(~MASK & MASK),
@@ -122,23 +102,6 @@ REFUSED = {
         np.array([0j, 1]), np.array([1, 0j]), np.array([1.0, -1.0])
     ),
     "a polygon that crosses itself": lambda: constrained_delaunay(np.array([0, 1 + 1j, 1, 1j])),
-    "a knee on the hips": lambda: body(**{"knee.L": STANDING["hips"]}),
-    "a foot nowhere": lambda: body(**{"foot.L": complex(NAN, NAN)}),
-    "a flat box": lambda: Body(kind=find_kind("anything"), joints={}, box=(0j, 100 + 0j)),
-    "a limb that is not there": lambda: body().limb_joints("hand.L"),
-    "a length that is not there": lambda: body().path_length(["hips", "nose"]),
-    "a share that is no number": lambda: MOTIONS["walk"].poses_at(body(), Parameters(), [NAN]),
-    "no frames a second": lambda: MOTIONS["walk"].frames(Parameters(), NAN),
-    "no outline": lambda: guess_facing(find_kind("biped-side"), STANDING, np.empty(0, complex)),
-    "places too far for a spring": lambda: simulate_spring(
-        [0j, 1e308, 0], 24, frequency=2, damping=0.2
-    ),
-    "a speed as text": lambda: simulate_spring([0j, 1], "x", frequency=2, damping=0.2),
-    "places too far to record": lambda: fit_keys([0, 1, 2], [0j, 1e308, 0], 1),
-    "a recording that is too long": lambda: fit_keys([0, MOST_FRAMES + 1], [0j, 1], 1),
-    "a recording that is too late": lambda: fit_keys([1e18, 1e18 + 1000], [0j, 1], 1),
-    "a recording as text": lambda: fit_keys(["a"], [0j], 1),
-    "half a frame with a key": lambda: fit_keys([0, 4], [0j, 1], 1, required=[1.5]),
 }
 
 

@@ -10,14 +10,14 @@ from drawings import soft_blob
 from interpolation_shapes import around, subdivided
 from PIL import Image
 
+from app.cut_out import CutLine, CutOut, build_picture_domain
 from app.document.keyframe import Keyframe
 from app.document.layer import PictureFile, new_layer
 from app.document.model import Document
 from app.document.settings import FrameRange, Meshing
 from engine.arrays import Bytes, Complexes
-from engine.domain.build import MeshedDomain, build_domain
+from engine.domain.build import MeshedDomain
 from engine.domain.meshing.triangulation import triangulate
-from engine.domain.picture.cut_out import CutLine, CutOut
 
 BLOB = soft_blob()  # 120 × 90 pixels, soft edges, bright colours hidden where it is transparent
 LONGEST, OFFSET = 30.0, 4.0  # of edges of simple outlines, and of the cages around them
@@ -42,7 +42,7 @@ def _still_document(
     stream = io.BytesIO()
     Image.fromarray(picture).save(stream, "PNG")
     file = PictureFile(data=stream.getvalue(), suffix=".png", size=(width, height))
-    domain, _ = build_domain(picture, triangles=triangles, detail="normal", cut_out=cut_out)
+    domain, _ = build_picture_domain(picture, triangles=triangles, detail="normal", cut_out=cut_out)
     layer = new_layer(file, domain, Meshing(triangles=triangles), cut_out)
     return Document(layers=(layer,))
 

@@ -5,9 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from PIL import Image, ImageDraw
 
-from engine.geometry.motions.body import Body
-from engine.geometry.motions.facing import guess_facing
-from engine.geometry.motions.kinds import find_kind
+from app.rigging import Body, find_kind, guess_facing
 
 # Places in a picture of this size, y up.
 SIZE = 320, 320

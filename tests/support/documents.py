@@ -10,6 +10,7 @@ import numpy as np
 from pictures import blank_png
 from shapes import regular_polygon
 
+from app.cut_out import CutOut, Mask, Stroke
 from app.document.commands import (
     handle_commands,
     key_commands,
@@ -37,7 +38,6 @@ from app.errors import ImportLog
 from app.export_formats import EXPORT_FORMATS, MeshOptions, SpriteSheetOptions
 from engine.domain.build import MeshedDomain
 from engine.domain.meshing.mesh import Mesh
-from engine.domain.picture.cut_out import CutOut, Mask, Stroke
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate
 

@@ -36,6 +36,11 @@ def painted(mask: Booleans, colour: tuple[int, int, int] = INK) -> Bytes:
     return rgba
 
 
+def seen(rgba: Bytes) -> Booleans:
+    """The mask of the pixels that are not nearly transparent."""
+    return np.asarray(rgba[..., 3] > 8)
+
+
 def drawn(width: int, height: int, drawing: Drawing, *, smooth: int = 4) -> Bytes:
     """What `drawing` fills with 255 on a canvas of `smooth` times the size, antialiased."""
     canvas = Image.new("L", (width * smooth, height * smooth))

@@ -35,8 +35,8 @@ from app.editor import Session
 from app.editor.project import Project
 from app.editor.timeline_view import TrackRow, frames_in
 from app.errors import LissomError
+from app.rigging import Parameters
 from app.storage.layers import make_still_layer
-from engine.geometry.motions.motion import Parameters
 from engine.maps.certificate import Certificate
 
 LAST = 40  # frame

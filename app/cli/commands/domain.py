@@ -9,6 +9,7 @@ import numpy as np
 from app.cli.console import print_line, print_notices
 from app.cli.cut_out import parse_cut_out
 from app.cli.hole_arrays import hole_arrays
+from app.cut_out import CutLine, build_picture_domain
 from app.errors import LissomError, join_names
 from app.reports import draw_preview
 from app.storage import (
@@ -21,7 +22,7 @@ from app.storage import (
     write_arrays,
     write_atomically,
 )
-from engine.domain import CutLine, build_domain, texture_coordinates
+from engine.domain import texture_coordinates
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -35,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     height = picture.size[1]
     slits = (np.array([complex(z.real, height - z.imag) for z in line]) for line in arguments.knife)
     cut_out = replace(cut_out, cut_lines=tuple(CutLine(points=points) for points in slits))
-    domain, remedies = build_domain(
+    domain, remedies = build_picture_domain(
         picture.rgba, triangles=arguments.triangles, detail=arguments.detail, cut_out=cut_out
     )
     print_notices((*picture.notices, *remedies))

@@ -8,10 +8,10 @@ import numpy.typing as npt
 
 from app.cli.console import print_notice
 from app.cli.keyframes import Keyframes, read_keyframes
-from app.document import NATURAL
+from app.document import NATURAL, Baseline
 from app.errors import LissomError, report_progress
+from app.motion import prepare_baseline
 from app.storage import check_writable, write_arrays
-from engine.baselines import Baseline, prepare_baseline
 from engine.geometry import Domain
 from engine.interpolation import Variant, prepare
 from engine.maps import Boundary, Bounds

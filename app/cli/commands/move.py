@@ -7,6 +7,15 @@ from app.cli.console import StatusLine, print_line, print_notices
 from app.cli.cut_out import parse_cut_out
 from app.document import Document, Layer, Meshing
 from app.errors import LissomError
+from app.rigging import (
+    MOTIONS,
+    Motion,
+    Parameters,
+    find_kind,
+    find_motion,
+    guess_kind,
+    suggest_joints,
+)
 from app.solving import (
     JointsFile,
     MotionRequest,
@@ -25,11 +34,6 @@ from app.storage import (
     open_picture,
     save_project,
 )
-from engine.domain import guess_kind, suggest_joints
-from engine.geometry.motions.catalogue import find_motion
-from engine.geometry.motions.kinds import find_kind
-from engine.geometry.motions.library.table import MOTIONS
-from engine.geometry.motions.motion import Motion, Parameters
 
 WHOLE = "anything"  # motions of the whole drawing suit any kind
 NO_JOINTS = JointsFile(kind=None, joints={})

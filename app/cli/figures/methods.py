@@ -4,7 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.cli.figures.shapes import ShapePair
-from engine.baselines import Baseline, MeshFrame, prepare_baseline
+from app.document import Baseline
+from app.motion import MeshFrame, prepare_baseline
 from engine.interpolation import Frame, Prepared, Variant, prepare
 from engine.maps import Boundary
 

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from app.cut_out import build_picture_domain
 from app.storage import cut_picture, decode_picture, load_project, sample_images
 from engine.arrays import Bytes, Complexes, Floats
 from engine.deform import Deformer, Handles
-from engine.domain import Domain, MeshedDomain, build_domain
+from engine.domain import Domain, MeshedDomain
 from engine.geometry import edge_vectors
 from engine.maps import Boundary, Bounds, HarmonicMap
 
@@ -204,7 +205,7 @@ def _subdivided(polygon: Complexes, longest: float) -> Complexes:
 
 def _sample_picture(name: str, triangles: int) -> Shape:
     picture = decode_picture((sample_images() / f"{name}.png").read_bytes(), "")
-    domain, _ = build_domain(picture.rgba, triangles=triangles, detail="normal")
+    domain, _ = build_picture_domain(picture.rgba, triangles=triangles, detail="normal")
     return Shape(picture=picture.rgba, domain=domain)
 
 

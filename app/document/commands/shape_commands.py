@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from app.cut_out import CutLine, CutOut, Stroke
 from app.document.commands.command import layer_command
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.rig.stiffness import transfer_painted_stiffness
 from app.document.settings import Meshing
-from engine.domain import CutLine, CutOut, MeshedDomain, Stroke
+from engine.domain import MeshedDomain
 from engine.maps import Bounds
 from engine.variant import Variant
 

@@ -7,9 +7,7 @@ from types import MappingProxyType
 from typing import Self
 
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
-from engine.geometry.motions.catalogue import find_motion
-from engine.geometry.motions.kinds import find_kind
-from engine.geometry.motions.motion import Parameters
+from app.rigging import Parameters, find_kind, find_motion
 
 MAX_REPEATS = 1000
 
@@ -22,7 +20,7 @@ class AppliedMotion:
     still as the preset made them.
     """
 
-    motion: str  # name of an entry of `engine.geometry.motions.library.MOTIONS`
+    motion: str  # name of an entry of `app.rigging.MOTIONS`
     kind: str  # name of one of its `KINDS`
     joints: Mapping[str, int]  # joint name to handle id
     facing: int  # 1 if the drawing looks to the right, -1 to the left

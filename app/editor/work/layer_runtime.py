@@ -3,13 +3,13 @@
 from dataclasses import dataclass, field, replace
 from typing import Self
 
+from app.cut_out import CutOut
 from app.document import Baseline, Clip, Document, Layer, PictureFile, Variant, clip_of
 from app.editor.work.derived import Derived
 from app.motion import CorrectedFrames, DeformMesh, DisplayedFrame, InbetweenCache, needs_correction
 from app.solving import Rig
 from app.storage import CutOutResult, Picture, cut_picture
 from engine.arrays import Bytes
-from engine.domain import CutOut
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

@@ -5,12 +5,9 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from app.document import AppliedMotion, Document, Layer
+from app.rigging import MOTIONS, BodyKind, Motion, Parameters, find_kind, other_side
 from app.solving import MotionSolve
 from engine.domain import MeshedDomain
-from engine.geometry.motions.body import other_side
-from engine.geometry.motions.kinds import BodyKind, find_kind
-from engine.geometry.motions.library.table import MOTIONS
-from engine.geometry.motions.motion import Motion, Parameters
 
 JointPlaces = Mapping[str, complex]  # of joints by their names, at rest
 MOST_UNDONE = 100

@@ -7,15 +7,9 @@ from typing import Final, NamedTuple, TypeVar
 import numpy as np
 
 from app.document import Clip, Spring, segment_time_at, spring_root
+from app.rigging import FADE_FRAMES, SpringResponse, frames_to_settle, simulate_spring, turn_arm
 from engine.arrays import Complexes
 from engine.geometry import IDENTITY_MOTION, RigidMotion, diameter
-from engine.geometry.kinematics.springs import (
-    FADE_FRAMES,
-    SpringResponse,
-    frames_to_settle,
-    simulate_spring,
-    turn_arm,
-)
 
 MAX_SPRING_OFFSET: Final = 0.3  # fraction of the layer's diameter
 PIECE: Final = 64  # smallest number of frames of a piece

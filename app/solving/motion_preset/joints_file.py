@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.errors import LissomError
+from app.rigging import find_kind
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
-from engine.geometry.motions.kinds import find_kind
 
 SCHEMA = 1
 LARGEST = 1024 * 1024  # bytes

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from app.document import AppliedMotion, Layer, Spring, Target
+from app.rigging import Body
 from app.solving.motion_preset.motion_request import MotionRequest
-from engine.geometry.motions.body import Body
 from engine.maps import Bounds
 
 # Weight of standing feet, so that they do not slide: target errors are below 1 % of a step.

@@ -16,15 +16,11 @@ from app.document import (
     with_number,
 )
 from app.errors import LissomError
+from app.rigging import Body, Motion, Parameters, find_kind, find_motion, guess_facing
 from app.solving.motion_preset.rigid_points import find_rigid_points
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import diameter
-from engine.geometry.motions.body import Body
-from engine.geometry.motions.catalogue import find_motion
-from engine.geometry.motions.facing import guess_facing
-from engine.geometry.motions.kinds import find_kind
-from engine.geometry.motions.motion import Motion, Parameters
 from engine.maps import Bounds
 
 # Fractions of the drawing's diameter: a handle this close to a joint is its handle; a joint this

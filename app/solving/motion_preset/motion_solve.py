@@ -17,6 +17,7 @@ from app.document import (
     scene_commands,
 )
 from app.errors import LissomError
+from app.rigging import Body
 from app.solving.drag_solver import DragSolver, Rig, fit_shown_pose
 from app.solving.motion_preset.key_poses import JointKeyPose, find_key_poses, with_joint_weights
 from app.solving.motion_preset.motion_request import (
@@ -26,7 +27,6 @@ from app.solving.motion_preset.motion_request import (
     with_limits,
 )
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
-from engine.geometry.motions.body import Body
 
 # Largest number of steps; a pose that needs more moves slowly along a limit.
 MOST_STEPS = 150

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 
+from app.cut_out import Mask
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
 from app.storage.pictures.parallel import require_memory, run_parallel
 from engine.arrays import Booleans, Bytes, Floats, freeze
-from engine.domain import Mask
 
 # PostScript and PDF are excluded on purpose: Pillow would run an interpreter for them.
 FORMATS = {

@@ -8,6 +8,7 @@ from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, Literal
 
+from app.cut_out import CutLine, CutOut, Stroke
 from app.document import (
     FRAME_NAMES,
     PAIRS,
@@ -46,6 +47,7 @@ from app.document import (
 )
 from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
 from app.export_formats import FormatOptions, FormatSettings
+from app.rigging import Parameters
 from app.storage.json_values import (
     ANYTHING,
     FLAG,
@@ -69,8 +71,7 @@ from app.storage.json_values import (
 from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
-from engine.domain import CutLine, CutOut, Domain, Stroke
-from engine.geometry.motions.motion import Parameters
+from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 3

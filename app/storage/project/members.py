@@ -17,18 +17,13 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from app.cut_out import MOST_STROKE_POINTS, Mask
 from app.document import Layer, PictureFile
 from app.errors import LissomError
 from app.storage.pictures.picture import stored_size
 from app.storage.project.archive import Archive, array_member
 from engine.arrays import Complexes, Floats, as_points
-from engine.domain import (
-    MOST_MESH_TRIANGLES,
-    MOST_STROKE_POINTS,
-    Mask,
-    MeshedDomain,
-    require_domain,
-)
+from engine.domain import MOST_MESH_TRIANGLES, MeshedDomain, require_domain
 from engine.domain.meshing.mesh import Mesh
 from engine.domain.outline.enclosure import LARGEST_OUTLINE
 from engine.geometry import Hole

@@ -2,23 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
+import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Indices, readonly, require_word
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.cuts import cut_region
 from engine.domain.outline.fitting import Candidates, fit_polygon
+from engine.domain.outline.grid import working_grid
 from engine.domain.outline.holes import SMALLEST_HOLE, find_visible_holes, make_hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.picture.cut_out import HOLES, Holes
-from engine.domain.picture.grid import working_grid
-from engine.domain.picture.parts import WholePiece, join_parts
+from engine.domain.outline.parts import WholePiece, join_parts
 from engine.errors import EngineError
 from engine.geometry import Hole, require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
+Holes = Literal["keep", "fill"]
+HOLES: tuple[Holes, ...] = get_args(Holes)
 MARGINS: dict[Detail, float] = {"coarse": 0.012, "normal": 0.006, "fine": 0.003}  # of the diagonal
 LEAST_MARGIN = 0.8  # pixels of an enlarged subject: enough to straighten staircases
 # Of the diagonal: a closer cage causes spikes at the boundary, a farther one bad conditioning.
@@ -89,7 +91,7 @@ def enclose_subject(
     *,
     detail: Detail,
     holes: Holes = "keep",
-    swapped: Sequence[complex] = (),
+    swapped: npt.ArrayLike = (),
     slits: Sequence[Complexes] = (),
 ) -> Enclosure:
     """Find the outline of a subject, and its cage.
@@ -104,7 +106,7 @@ def enclose_subject(
     holes : {"keep", "fill"}
         Whether large holes stay holes. A disc of 2.4 % of the diagonal must fit into them. The
         largest come first, as long as all loops together have few vertices.
-    swapped : sequence of complex
+    swapped : array_like of complex
         Points in holes that are treated the other way, in pixels of the picture, y up.
     slits : sequence of complex128, each of shape (n,)
         Lines along which the subject is cut, in pixels of the picture, y up.
@@ -127,7 +129,7 @@ def enclose_subject(
     piece = join_parts(grid.mask, grid.diagonal)
     margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
     fit = _best_fit(distance_field(piece.mask), margin, grid.diagonal)
-    others = piece.numbers_at(grid.to_cells(np.array(swapped, dtype=np.complex128)))
+    others = piece.numbers_at(grid.to_cells(np.asarray(swapped, dtype=np.complex128)))
     every = np.arange(1, len(piece.hole_areas) + 1)
     wanted = np.setdiff1d(every, others) if holes == "keep" else np.intersect1d(every, others)
     kept, crowded = _kept_holes(piece, wanted, fit, margin, grid.diagonal)

@@ -13,13 +13,14 @@ from app.cli import commands, options, usage
 from app.cli.commands import window
 from app.cli.main import COMMANDS, EXIT_PIPE_CLOSED, main
 from app.cli.usage import pose
+from app.cut_out import CutOut
+from app.cut_out.cut_out import Holes
 from app.document import FRAMINGS, SPRING_PRESETS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.work.jobs import Job
 from app.storage import SourceInfo
 from app.storage.assets import sample_images
 from engine.domain.outline.enclosure import Detail
-from engine.domain.picture.cut_out import CutOut, Holes
 
 SAMPLE = sample_images() / "giraffe.lissom"
 

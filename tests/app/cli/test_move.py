@@ -8,8 +8,8 @@ from layered import openraster
 
 from app.cli.main import main
 from app.document import FrameRange
+from app.rigging import MOTIONS
 from app.storage import load_project
-from engine.geometry.motions.library.table import MOTIONS
 
 FEW = ["--triangles", "1000", "--detail", "coarse"]
 # Of each kind what is quickly solved; that motions are what they are is proven where they are made.

@@ -11,7 +11,7 @@ from app.document.queries.applied_motion import digest_keys, is_motion_unedited
 from app.document.rig.applied_motion import AppliedMotion
 from app.document.settings import FrameRange
 from app.document.timing.cycles import Cycle
-from engine.geometry.motions.motion import Parameters
+from app.rigging import Parameters
 
 POSE = disc_document().layers[0].keys[0].pose
 BREATHE = AppliedMotion(

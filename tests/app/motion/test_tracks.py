@@ -43,8 +43,8 @@ from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.spring_offsets import MAX_SPRING_OFFSET, PIECE, SpringOffsets
 from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
+from app.rigging import simulate_spring, turn_arm
 from engine.geometry import IDENTITY_MOTION, diameter
-from engine.geometry.kinematics.springs import simulate_spring, turn_arm
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and

@@ -12,10 +12,10 @@ from shapes import regular_polygon
 from app.document import Document, FrameRange, Meshing, clip_of, is_motion_unedited, key_commands
 from app.errors import LissomError
 from app.motion import trace_paths
+from app.rigging import Parameters
 from app.solving import MotionRequest, start_motion_solve, step_motion_solve
 from app.storage import load_project, open_picture, save_project
 from engine.errors import EngineError
-from engine.geometry.motions.motion import Parameters
 
 CHAIN = MotionRequest(motion="wag", kind="chain", joints=JOINTS["chain"])
 FEW = Meshing(triangles=1000, detail="coarse")

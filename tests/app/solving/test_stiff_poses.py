@@ -8,6 +8,7 @@ import pytest
 from animations import bar_picture, still_document
 from messages import says
 
+from app.cut_out import CutLine, CutOut
 from app.document import (
     Meshing,
     Target,
@@ -24,7 +25,6 @@ from app.solving.resolve_keys import KeyResolver, step_resolver
 from app.solving.script.pose_script import parse_pose_script
 from app.storage.json_values import LACKS_FIELD, NOT_LIST, NOT_NUMBER, NOT_OBJECT, NOT_POINT
 from engine.deform import BoundedPull
-from engine.domain import CutLine, CutOut
 
 BAR = bar_picture(480)
 PLACES = (30 + 40j, 240 + 40j, 450 + 40j)

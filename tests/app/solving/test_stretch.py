@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
+from app.cut_out import build_picture_domain
 from app.document import LIMIT_PRESETS, NATURAL, RUBBERY, STIFF, find_limit_preset, relax_limits
 from engine.deform import Deformer, Handles
-from engine.domain import build_domain
 from engine.maps import Boundary, Bounds
 
 SKIN = (230, 180, 150, 255)
@@ -18,7 +18,7 @@ def drawn(width, height, *shapes):
     draw = ImageDraw.Draw(picture)
     for name, *arguments in shapes:
         getattr(draw, name)(*arguments, fill=SKIN)
-    return build_domain(np.asarray(picture), triangles=1500, detail="coarse")[0]
+    return build_picture_domain(np.asarray(picture), triangles=1500, detail="coarse")[0]
 
 
 @pytest.fixture(scope="module")

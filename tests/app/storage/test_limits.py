@@ -56,12 +56,12 @@ from app.document.model import MAX_CHANGES
 from app.document.rig.mirror_names import MAX_PAIRS
 from app.document.timing.cycles import MAX_CYCLES
 from app.errors import LissomError
+from app.rigging import Parameters
 from app.storage import project_file
 from app.storage.autosave import Autosave, SourceInfo, load_recoverable_file
 from app.storage.project import archive
 from app.storage.project_file import load_project, save_project
 from engine.domain import MeshedDomain
-from engine.geometry.motions.motion import Parameters
 from engine.maps import Bounds
 from tests.bench.opening import FILLINGS
 

@@ -21,6 +21,7 @@ from documents import (
 from hypothesis import given, settings, strategies as st
 from messages import says
 
+from app.cut_out import CutLine, CutOut
 from app.document.commands import handle_commands, key_commands, track_commands
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import TangentMode
@@ -50,7 +51,6 @@ from app.storage.project.archive import (
 from app.storage.project.members import OTHER_CHECKSUM
 from app.storage.project_file import NEWER_LISSOM, load_project, load_thumbnail, save_project
 from engine.arrays import FEW_ENTRIES, NOT_FINITE
-from engine.domain.picture.cut_out import CutLine, CutOut
 from engine.domain.validity import (
     MESH_CORNERS,
     MESH_FLAT,

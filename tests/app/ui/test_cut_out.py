@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from messages import says
 from PIL import Image
 
+from app.cut_out.mask import ALL_REMOVED
 from app.document import Target
 from app.editor.actions import editing
 from app.editor.actions.layer_setup import cut_out_editing, resolving
@@ -21,7 +22,6 @@ from app.storage.project_file import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.style.widgets import TOAST
 from engine.domain.outline.cuts import CUTS_OFF
-from engine.domain.picture.mask import ALL_REMOVED
 
 SIZE = 120
 PAPER = (214, 205, 190)

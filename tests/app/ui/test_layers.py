@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2
 from layered import blob, openraster
 from PIL import Image, ImageDraw
 
+from app.cut_out import Stroke
 from app.document import (
     PRESETS,
     Attachment,
@@ -52,7 +53,6 @@ from app.storage import load_project, save_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.window import memory
-from engine.domain import Stroke
 
 WIDTH, HEIGHT = 240, 200
 

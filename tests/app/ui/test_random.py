@@ -14,6 +14,7 @@ from layered import openraster
 from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
+from app.cut_out import Stroke
 from app.document import Document, Layer
 from app.document.commands import handle_commands, key_commands, shape_commands, track_commands
 from app.document.commands.layers import layer_commands
@@ -75,7 +76,6 @@ from app.ui.shortcuts.key_input import ARROWS
 from app.ui.shortcuts.keys import MODIFIERS
 from app.ui.shortcuts.table import BINDINGS
 from engine.domain.outline import enclosure, fitting
-from engine.domain.picture.cut_out import Stroke
 from engine.interpolation.added.pins import pinning
 from engine.maps import boundary
 from engine.maps.bounds import Bounds

@@ -454,7 +454,7 @@ FAILURES = {
         resolving.solve_keys_again,
     ),
     "Rebuilding": (
-        "app.solving.resolve_keys.build_domain",
+        "app.solving.resolve_keys.build_picture_domain",
         lambda session: (
             viewing.preview_meshing(session, Meshing(triangles=1_500, detail="normal")),
             resolving.rebuild_mesh(session),

@@ -21,7 +21,7 @@ from hypothesis import given, settings, strategies as st
 from interpolation_shapes import subdivided
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
-from pictures import stick_figure
+from pictures import seen, stick_figure
 
 from engine.deform import Deformer, Handles, Status, require_held, tracking
 from engine.deform.certified_step import FARTHEST, add_samples
@@ -471,7 +471,7 @@ def test_handles_at_one_point_with_one_target_work():
 
 
 def test_a_drawing_is_dragged():
-    domain, _ = build_domain(stick_figure(300, 14), triangles=1000, detail="coarse")
+    domain, _ = build_domain(seen(stick_figure(300, 14)), triangles=1000, detail="coarse")
     boundary = Boundary.sample(domain)
     top, left = (
         boundary.outline[np.argmax(v)] for v in (boundary.outline.imag, -boundary.outline.real)

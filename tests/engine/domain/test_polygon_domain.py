@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 
 from engine.arrays import FEW_ENTRIES, NOT_FINITE, NOT_WHOLE, OTHER_KIND
 from engine.domain import Domain, build_domain, domain_of_polygon, require_domain
-from engine.domain.build import LONGEST_EDGE, NO_DETAIL, NO_PICTURE
+from engine.domain.build import LONGEST_EDGE, NO_DETAIL, NO_MASK
+from engine.domain.outline.grid import EMPTY_MASK
 from engine.errors import EngineError
 from engine.geometry import diameter, edge_vectors, signed_area
 from engine.geometry.polygon import HOLE_LEAVES
@@ -15,7 +16,7 @@ from engine.maps import Boundary, Bounds, HarmonicMap, certify
 
 SQUARE = [0, 4, 4 + 3j, 3j]
 HOLE = [1 + 1j, 2 + 1j, 2 + 2j, 1 + 2j]
-PICTURE = np.full((40, 40, 4), 255, dtype=np.uint8)
+MASK = np.ones((40, 40), dtype=np.bool_)
 
 
 @pytest.mark.parametrize("step", [1, -1])
@@ -48,17 +49,20 @@ def test_domain_of_polygon_refuses_in_words(outline, holes, triangles, message):
 
 
 @pytest.mark.parametrize(
-    ("picture", "detail", "message"),
+    ("mask", "given", "message"),
     [
-        (PICTURE, "fineish", says(NO_DETAIL, detail="fineish")),
-        (PICTURE.tolist(), "normal", says(NO_PICTURE, shape=(40, 40, 4))),
-        (PICTURE[:, :, 0], "normal", says(NO_PICTURE, shape=(40, 40))),
-        (PICTURE[:0], "normal", says(NO_PICTURE, shape=(0, 40, 4))),
+        (MASK, {"detail": "fineish"}, says(NO_DETAIL, detail="fineish")),
+        (MASK.astype(np.uint8), {}, says(NO_MASK, dtype="uint8", shape=(40, 40))),
+        (MASK[..., None], {}, says(NO_MASK, shape=(40, 40, 1))),
+        (MASK[:0], {}, says(EMPTY_MASK)),
+        (MASK, {"holes": "open"}, "holes"),
+        (MASK, {"toggled_holes": [np.nan]}, says(NOT_FINITE, name="toggled holes", index=0)),
+        (MASK, {"cut_lines": [[1j]]}, says(FEW_ENTRIES, name="cut line", at_least=2, count=1)),
     ],
 )
-def test_build_domain_refuses_in_words(picture, detail, message):
+def test_build_domain_refuses_in_words(mask, given, message):
     with pytest.raises(EngineError, match=message):
-        build_domain(picture, triangles=1_000, detail=detail)
+        build_domain(mask, **{"triangles": 1_000, "detail": "normal"} | given)
 
 
 def test_domain_refuses_holes_that_are_polygons():

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from messages import says
-from pictures import blob, limbs, ring, star
+from pictures import blob, limbs, ring, seen, star
 from shapes import regular_polygon
 
 from engine.domain import MeshedDomain, build_domain, require_domain
 from engine.domain.meshing.mesh import Mesh
-from engine.domain.picture.cut_out import CutOut
 from engine.domain.validity import (
     MESH_CORNERS,
     MESH_FLAT,
@@ -45,7 +44,7 @@ def test_a_domain_made_by_hand_is_one():
 
 @pytest.mark.parametrize("picture", [blob(), star(7), limbs(6)])
 def test_every_domain_that_is_built_is_one(picture):
-    built, _ = build_domain(picture, triangles=3_000, detail="normal")
+    built, _ = build_domain(seen(picture), triangles=3_000, detail="normal")
     require_domain(built)
 
 
@@ -94,7 +93,7 @@ def test_a_mesh_that_goes_twice_around_fills_nothing():
 
 @pytest.fixture(scope="module")
 def holed() -> MeshedDomain:
-    built, _ = build_domain(ring(), triangles=1_000, detail="coarse", cut_out=CutOut(holes="keep"))
+    built, _ = build_domain(seen(ring()), triangles=1_000, detail="coarse", holes="keep")
     assert len(built.holes) == 1
     return built
 
@@ -110,9 +109,7 @@ def altered(domain: MeshedDomain, **changes) -> MeshedDomain:
 def test_what_is_wrong_with_a_hole_is_told(holed):
     (hole,) = holed.holes
     middle = hole.centre
-    filled = build_domain(ring(), triangles=1_000, detail="coarse", cut_out=CutOut(holes="fill"))[
-        0
-    ].mesh
+    filled = build_domain(seen(ring()), triangles=1_000, detail="coarse", holes="fill")[0].mesh
     for broken, message in (
         (altered(holed, outline=hole.outline[::-1]), "outline of hole 0 runs counter-clockwise"),
         (altered(holed, outline=hole.outline + 100), "Hole 0 leaves the outline"),

@@ -8,7 +8,7 @@ from app.cli.figures.methods import ARAP, FFMP, METRIC, NU, SCALED_ETA, Compared
 from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
 from app.cli.figures.shapes import ShapePair, bar_to_ring, beam, bend_points, letter_s
 from app.cli.figures.sheet import draw_strip, new_sheet, plot_shares
-from engine.baselines import harmonic_coordinate_maps
+from app.motion import harmonic_coordinate_maps
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 HORN_TURN, HORN_GROWTH = 2.4, 0.7  # of the bar in Figure 7, over its length

@@ -9,8 +9,9 @@ from app.cli.figures.methods import MESH_ETA, ComparedMethod
 from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
 from app.cli.figures.shapes import Shape, ShapePair, beam, bend_points, make_sample_pair
 from app.cli.figures.sheet import as_png, draw_panels
+from app.document import Baseline
+from app.motion import PreparedBaseline, discrete_harmonic, prepare_baseline
 from engine.arrays import Complexes
-from engine.baselines import Baseline, PreparedBaseline, discrete_harmonic, prepare_baseline
 from engine.maps import HarmonicMap
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)

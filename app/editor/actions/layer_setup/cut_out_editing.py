@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from app.cut_out import CutLine, Mask, Stroke
 from app.document import shape_commands
 from app.editor.action import do
 from app.editor.actions import editing
@@ -21,7 +22,7 @@ from app.storage import (
     read_file,
     write_atomically,
 )
-from engine.domain import CUT_WIDTH, CutLine, Mask, Stroke
+from engine.domain import CUT_WIDTH
 from engine.geometry import box_diagonal, distance_to_segments
 
 WRITING = JobKind("Saving the mask", "The mask was not saved")

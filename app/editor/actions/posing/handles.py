@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from app import rigging
 from app.document import (
     Handle,
     handle_commands,
@@ -17,7 +18,6 @@ from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import DisplayedFrame
-from engine import domain as domains
 from engine.domain import MeshedDomain
 from engine.geometry import contains, diameter
 
@@ -58,7 +58,7 @@ def remove_handles(
 def suggest_handles(session: Session, project: Project) -> None:
     """Add handles on the body, at tips and joints of limbs that have none."""
     layer = project.layer
-    suggested = domains.suggest_handles(layer.domain.loops)
+    suggested = rigging.suggest_handles(layer.domain.loops)
     near = NEAR * diameter(layer.domain.outline)
     taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]

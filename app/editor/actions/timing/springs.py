@@ -13,9 +13,9 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
+from app.rigging import fit_keys
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
-from engine.geometry.kinematics.recordings import fit_keys
 
 KEYING = JobKind("Making keys of a spring", "The swing could not be made into keys")
 NEAR = 4e-4  # of the layer's diameter: largest distance of the keys' motion from the swing

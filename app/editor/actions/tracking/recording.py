@@ -14,8 +14,8 @@ from app.editor.timeline_view import source_frame
 from app.editor.work.track_drag import RecordedSample, Recording, TrackDrag
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
+from app.rigging import fit_keys
 from engine.geometry import RigidMotion
-from engine.geometry.kinematics.recordings import fit_keys
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # Largest distance of the fitted motion from the recorded one, in pixels of the screen, since

@@ -5,11 +5,11 @@ from typing import Self
 
 import numpy as np
 
+from app.cut_out import CutLine, Stroke
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.project import Project
 from app.editor.session import Hint, KnifeOverlay, Mark, Session, StrokeOverlay
 from app.editor.tools.tool import PointerHit, Tool
-from engine.domain import CutLine, Stroke
 
 STEP = 0.12  # of the brush's radius: least distance of a stroke's points
 REACH = 8.0  # screen pixels: a click within this distance of a line is on the line

@@ -2,6 +2,7 @@
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
+from app.cut_out import CutOut
 from app.editor import Action, CutTool, Project, Session, do
 from app.editor.actions.layer_setup import cut_out_editing, resolving
 from app.ui.shortcuts.table import BINDINGS
@@ -20,7 +21,6 @@ from app.ui.style.widgets import (
     split_line,
     text_button,
 )
-from engine.domain import CutOut
 
 TOLERANCES = Scale(left=0, right=120)
 BRUSHES = Scale(

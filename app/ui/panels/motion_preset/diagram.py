@@ -8,11 +8,11 @@ from imgui_bundle import ImVec2, imgui
 from app.editor import Action, do
 from app.editor.actions.posing.motion_presets import joint_placement
 from app.editor.work.motion_setup import MotionSetup
+from app.rigging import BodyKind
 from app.ui.style.drawing import draw_knob
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, is_pressed
 from app.ui.viewport.interaction.joints import joint_colour
-from engine.geometry.motions.kinds import BodyKind
 
 DOT, LIMB, THIN = 0.34, 0.14, 0.09  # em: dot and line of the large diagram, line of the buttons
 MARGIN = 0.6  # em

@@ -6,6 +6,7 @@ from app.document import AppliedMotion, is_motion_unedited
 from app.editor import Action, Project, Session, do
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.work.motion_setup import MotionSetup
+from app.rigging import KINDS, MOTIONS
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
 from app.ui.shortcuts.keys import ALT, format_modified
 from app.ui.shortcuts.table import BINDINGS
@@ -23,8 +24,6 @@ from app.ui.style.widgets import (
     split_line,
     text_button,
 )
-from engine.geometry.motions.kinds import KINDS
-from engine.geometry.motions.library.table import MOTIONS
 
 SPEEDS = Scale(left=0.25, right=4.0, logarithmic=True)
 SIZES = Scale(left=0.1, right=2.0)

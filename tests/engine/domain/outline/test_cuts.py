@@ -11,14 +11,7 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from engine.arrays import Booleans, Complexes
-from engine.domain import (
-    CutLine,
-    CutOut,
-    MeshedDomain,
-    build_domain,
-    find_closed_cuts,
-    require_domain,
-)
+from engine.domain import MeshedDomain, build_domain, find_closed_cuts, require_domain
 from engine.domain.meshing.mesh import signed_areas
 from engine.domain.outline.cuts import CUT_WIDTH, CUTS_OFF, _drawn_area
 from engine.domain.outline.enclosure import Enclosure, enclose_subject
@@ -93,13 +86,7 @@ def test_the_sides_meet_where_they_are_painted() -> None:
 
 
 def parted_domain(mask: Booleans, *lines: list[complex], triangles: int = 4000) -> MeshedDomain:
-    slits = tuple(CutLine(points=np.array(line)) for line in lines)
-    domain, _ = build_domain(
-        pictures.painted(mask),
-        triangles=triangles,
-        detail="normal",
-        cut_out=CutOut(cut_lines=slits),
-    )
+    domain, _ = build_domain(mask, triangles=triangles, detail="normal", cut_lines=lines)
     require_domain(domain)
     return domain
 
@@ -203,19 +190,6 @@ def test_lines_that_part_nothing_or_too_much_are_refused(lines, message: str) ->
 def test_a_line_beside_the_drawing_may_cut_off_some_of_the_margin(beside) -> None:
     parted = cut(beside, [200 - 5j, 200 + 250j])
     assert opening(parted, 150 + 100j, 250 + 100j) > 0
-
-
-@pytest.mark.parametrize(
-    ("points", "message"),
-    [
-        ([1j], "at least 2"),
-        ([0, np.nan], "finite"),
-        ([0, 1e7], "farther from the picture"),
-    ],
-)
-def test_lines_that_are_none_are_refused(points, message: str) -> None:
-    with pytest.raises(EngineError, match=message):
-        CutLine(points=np.array(points, dtype=np.complex128))
 
 
 def test_slivers_that_are_long_take_neither_memory_nor_sense() -> None:

@@ -11,8 +11,6 @@ from scipy import ndimage
 from engine.arrays import Booleans, Bytes, Complexes
 from engine.domain import build_domain, require_domain
 from engine.domain.outline.enclosure import Detail, Enclosure, enclose_subject
-from engine.domain.picture.cut_out import CutOut
-from engine.domain.picture.mask import subject_mask
 from engine.geometry import Hole, contains, signed_area
 
 DETAILS: tuple[Detail, ...] = ("coarse", "normal", "fine")
@@ -172,9 +170,7 @@ def test_random_holes(places: list[tuple[float, float, float]], detail: Detail) 
 
 @pytest.mark.parametrize("picture", [pictures.ring(), pictures.painted(keyhole())])
 def test_a_built_domain_with_holes_is_one(picture: Bytes) -> None:
-    domain, _ = build_domain(
-        picture, triangles=3_000, detail="normal", cut_out=CutOut(holes="keep")
-    )
+    domain, _ = build_domain(pictures.seen(picture), triangles=3_000, detail="normal", holes="keep")
     require_domain(domain)
     assert len(domain.loops) == len(domain.cages) == 2
     loops: Complexes = np.concatenate(domain.loops)
@@ -183,14 +179,13 @@ def test_a_built_domain_with_holes_is_one(picture: Bytes) -> None:
         len(domain.mesh.vertices) - len(domain.mesh.edges()) + len(domain.mesh.triangles)
     )
     without, _ = build_domain(
-        picture, triangles=3_000, detail="normal", cut_out=CutOut(holes="fill")
+        pictures.seen(picture), triangles=3_000, detail="normal", holes="fill"
     )
     assert without.holes == ()
 
 
 def test_a_hole_holds_frozen_arrays() -> None:
-    subject = subject_mask(pictures.ring())
-    for hole in kept(subject.mask).holes:
+    for hole in kept(pictures.seen(pictures.ring())).holes:
         assert isinstance(hole, Hole)
         assert not hole.outline.flags.writeable
         assert not hole.cage.flags.writeable

@@ -9,10 +9,8 @@ from app.document import Layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
-from engine.domain import suggest_joints
+from app.rigging import find_kind, other_side, suggest_joints
 from engine.geometry import diameter
-from engine.geometry.motions.body import other_side
-from engine.geometry.motions.kinds import find_kind
 
 NEAR = 0.035  # of the diameter: a handle within this distance of a joint is the joint
 # Offset of a joint that was not found from its parent joint, in heights of the body.

@@ -10,9 +10,7 @@ from app.editor.actions.posing.motion_presets.joint_placement import find_joints
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
-from engine.domain import guess_kind
-from engine.geometry.motions.library.table import MOTIONS
-from engine.geometry.motions.motion import Parameters
+from app.rigging import MOTIONS, Parameters, guess_kind
 
 MOST_ROUNDS = 50
 PANEL = "Motion"

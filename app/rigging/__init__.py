@@ -1,0 +1,25 @@
+"""Bodies and how they move: joints of a drawing, motion presets, springs and recordings.
+
+In: the outlines of a drawing, its joints by name, or places of a point at frames.
+Out: suggested handles and joints; places of joints at each moment; a spring's offsets from a place;
+few keys for a recording.
+Imports: `engine`.
+"""
+
+from app.rigging.anatomy.handle_places import suggest_handles as suggest_handles
+from app.rigging.anatomy.joints import suggest_joints as suggest_joints
+from app.rigging.anatomy.kind_guess import guess_kind as guess_kind
+from app.rigging.kinematics.recordings import fit_keys as fit_keys
+from app.rigging.kinematics.springs import (
+    FADE_FRAMES as FADE_FRAMES,
+    SpringResponse as SpringResponse,
+    frames_to_settle as frames_to_settle,
+    simulate_spring as simulate_spring,
+    turn_arm as turn_arm,
+)
+from app.rigging.motions.body import Body as Body, other_side as other_side
+from app.rigging.motions.catalogue import find_motion as find_motion
+from app.rigging.motions.facing import guess_facing as guess_facing
+from app.rigging.motions.kinds import KINDS as KINDS, BodyKind as BodyKind, find_kind as find_kind
+from app.rigging.motions.library.table import MOTIONS as MOTIONS
+from app.rigging.motions.motion import Motion as Motion, Parameters as Parameters

@@ -1,0 +1,96 @@
+"""Recognition of chains, and their joints along the longest path."""
+
+import numpy as np
+
+from app.rigging.anatomy.body_plan import BodyPlan
+from engine.arrays import Complexes, Floats, Indices
+
+# Length over width of a chain, and of a fish with a fin at its end.
+LONG, LONG_FISH = 3.4, 1.7
+FIN = 0.4  # largest share of a fish's length taken by its fin
+ALIKE = 2.0  # largest ratio of the lengths of a fin's two tips
+# Share of a shape's area along one path.
+ALONG = 0.75
+# Distance between joints over the thickness of the shape, if that gives enough joints.
+SPACING = 0.9
+FEWEST, USUAL, MOST = 4, 7, 16
+TURN = 0.8  # largest angle in radians from joint to joint, if that many joints suffice
+# The head is the end that is this many times as thick as the other.
+THICKER = 1.15
+ENDS = 0.15  # share of the length at each end
+WINDOW = 8  # nodes over which a direction is measured
+
+
+def suggest_chain_joints(plan: BodyPlan) -> dict[str, complex]:
+    """Return the joints of a chain, from its leading or fixed end to the other."""
+    way = plan.longest()
+    nodes = way.tolist()
+    first, last = (
+        nodes.index(tip) for tip in (plan.handle_node(nodes[0]), plan.handle_node(nodes[-1]))
+    )
+    fin = find_fin(plan, way)
+    if fin is not None:
+        # A fin has two tips; the chain ends where the fin begins.
+        at = nodes.index(fin)
+        first, last = (at, last) if at < len(nodes) / 2 else (first, at)
+    places, radii = plan.places[way[first : last + 1]], plan.radii[way[first : last + 1]]
+    lengths = np.append(0.0, np.cumsum(np.abs(np.diff(places))))
+    shares = np.linspace(0, 1, _count(places, radii, lengths))
+    is_reversed = _ends_with_its_head(places, radii, lengths)
+    if fin is not None:
+        is_reversed = fin == nodes[first]
+    if is_reversed:
+        shares = shares[::-1]
+    at_joints = np.interp(shares * lengths[-1], lengths, np.arange(len(places)))
+    return {
+        f"joint.{number}": complex(places[round(at)])
+        for number, at in enumerate(at_joints.tolist(), 1)
+    }
+
+
+def _count(places: Complexes, radii: Floats, lengths: Floats) -> int:
+    """Return the number of joints: more for a long, thin or strongly curved chain."""
+    usual = 1 + round(float(lengths[-1]) / (SPACING * 2 * float(np.median(radii))))
+    steps = places[WINDOW:] - places[:-WINDOW]
+    turning = float(np.abs(np.diff(np.unwrap(np.angle(steps)))).sum())
+    return min(MOST, max(min(max(usual, FEWEST), USUAL), 2 + round(turning / TURN)))
+
+
+def _ends_with_its_head(places: Complexes, radii: Floats, lengths: Floats) -> bool:
+    """Whether the last end is the thicker one; of equal ends, the upper or the right one."""
+    starts = float(radii[lengths <= ENDS * lengths[-1]].mean())
+    ends = float(radii[lengths >= (1 - ENDS) * lengths[-1]].mean())
+    if max(starts, ends) >= THICKER * min(starts, ends):
+        return ends > starts
+    along = complex(places[-1] - places[0])
+    return (along.imag if abs(along.imag) > abs(along.real) else along.real) > 0
+
+
+def is_chain(plan: BodyPlan) -> bool:
+    """Whether the whole shape lies along one path that is long, or has the stalk of a fish."""
+    if len(plan.anatomy.branches) < 2 or plan.anatomy.holes:
+        return False
+    way = plan.longest()
+    steps = np.abs(np.diff(plan.places[way]))
+    radii = plan.radii[way]
+    along = float((steps * (radii[1:] + radii[:-1])).sum())
+    outline = plan.loops[0]
+    area = float((outline.conj() * np.roll(outline, -1)).imag.sum()) / 2
+    if along < ALONG * area:
+        return False
+    length = float(steps.sum()) / (2 * float(radii.max()))
+    is_fish = plan.wide > plan.tall and length >= LONG_FISH and find_fin(plan, way) is not None
+    return length >= LONG or is_fish
+
+
+def find_fin(plan: BodyPlan, way: Indices) -> int | None:
+    """Return the node of a path at which a fin of two tips begins, None without one."""
+    on_way, whole = way.tolist(), plan.length(way)
+    for end in set(plan.anatomy.branches) - {on_way[0], on_way[-1]}:
+        fork = plan.meeting(on_way[0], on_way[-1], end)
+        at = on_way.index(fork)
+        own = plan.length(plan.between(fork, end))
+        rest = min(plan.length(way[: at + 1]), plan.length(way[at:]))
+        if rest <= FIN * whole and 1 / ALIKE <= own / max(rest, 1e-9) <= ALIKE:
+            return fork
+    return None

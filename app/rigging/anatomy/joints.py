@@ -1,0 +1,289 @@
+"""Joints of a kind of body, found in a shape."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from app.rigging.anatomy.anatomy import bend_share, joint_share, neck_along
+from app.rigging.anatomy.body_plan import BodyPlan, PlannedLeg
+from app.rigging.anatomy.chain import suggest_chain_joints
+from app.rigging.motions.kinds import BodyKind
+from engine.arrays import Complexes, Floats, Indices
+from engine.geometry import contains
+
+CROWN = 0.65  # radii above the middle of a head, off the face
+# A head without a neck is the first node whose disc comes this near to the top, in heights.
+BELOW_TOP = 0.08
+# Distance of a limb's root from the node it leaves, in radii of the node.
+ROOT = 0.8
+# The chest is the last place where the trunk has this part of the hips' thickness, at most at this
+# share of it.
+THICK_HEAD = 0.5  # of a lying trunk: thickness of the head over the chest's
+THICK_CHEST, HIGHEST_CHEST = 0.6, 0.75
+LOWEST_ARM = 0.35  # share from hips to neck below which a limb is a tail
+LEAST_NECK = 0.2  # share from chest to head: least distance of a neck from the chest
+LEAST_TAIL = 0.12  # heights of the shape
+APART = 0.5  # radii of the hips: least distance of the chest
+CROTCH = 1.3  # radii of a leg from the crotch up to the hips
+
+
+def suggest_joints(loops: Sequence[Complexes], kind: BodyKind) -> Mapping[str, complex]:
+    """Suggest the joints of a kind of body in a shape.
+
+    Parameters
+    ----------
+    loops : sequence of complex128
+        The outline, counter-clockwise, and the outlines of the holes; y up.
+
+    Returns
+    -------
+    mapping of str to complex
+        Places inside the shape by the names of joints, in the kind's order, without limbs that were
+        not found. From the front `.L` is the side on the right of the picture. From the side it
+        means the legs ahead, or of four legs the outer ones.
+    """
+    plan = BodyPlan(loops)
+    if not kind.parents:
+        return {}
+    if "joint.1" in kind.parents:
+        found = suggest_chain_joints(plan)
+    elif kind.name == "four-legs":
+        found = _lying(plan)
+    else:
+        found = _standing(plan, is_frontal=kind.name == "biped-front")
+    places = np.array(list(found.values()), dtype=np.complex128)
+    inside = contains(loops[0], places, holes=loops[1:])
+    nodes = plan.places[plan.anatomy.kept]
+    for at in np.flatnonzero(~inside):
+        places[at] = nodes[np.abs(nodes - places[at]).argmin()]
+    by_name = dict(zip(found, places.tolist(), strict=True))
+    return {name: by_name[name] for name in kind.parents if name in by_name}
+
+
+class _JointPath:
+    """Nodes in order, and their distances along the path."""
+
+    def __init__(self, plan: BodyPlan, nodes: Indices) -> None:
+        self.nodes = nodes
+        self.places, self.radii = plan.places[nodes], plan.radii[nodes]
+        self.lengths = np.append(0.0, np.cumsum(np.abs(np.diff(self.places))))
+
+    def leaving(self, radii: float) -> int:
+        """Return the index of the node at which the path leaves the disc around its first one."""
+        inside = np.abs(self.places - self.places[0]) <= radii * self.radii[0]
+        return min(int(np.flatnonzero(inside)[-1]) + 1, len(self.nodes) - 1)
+
+    def part(self, first: int, last: int) -> tuple[Complexes, Floats, Floats]:
+        """Return places, radii and lengths from one node to another."""
+        last = max(last, first + 1)
+        lengths = self.lengths[first : last + 1]
+        return self.places[first : last + 1], self.radii[first : last + 1], lengths - lengths[0]
+
+    def bent(self, first: int, last: int) -> complex:
+        """Return the joint of a limb between two nodes."""
+        places, radii, lengths = self.part(first, last)
+        if len(places) < 3:
+            return complex(places[0])
+        share = joint_share(places, radii, lengths)
+        return complex(places[np.abs(lengths - share * lengths[-1]).argmin()])
+
+
+def _limb(plan: BodyPlan, start: int, end: int, tip: int) -> tuple[complex, complex, complex]:
+    """Return the root, the joint and the tip of a limb that leaves the body at a node."""
+    way = _JointPath(plan, plan.between(start, end))
+    root = way.leaving(ROOT)
+    nodes = way.nodes.tolist()
+    last = nodes.index(tip) if tip in nodes else len(nodes) - 1
+    root = min(root, max(last - 2, 0))
+    return complex(way.places[root]), way.bent(root, last), complex(way.places[last])
+
+
+def _leg(plan: BodyPlan, start: int, leg: PlannedLeg) -> tuple[complex, complex, complex]:
+    return _limb(plan, start, int(leg.path[-1]), leg.ankle)
+
+
+def _head(plan: BodyPlan, way: _JointPath, *, is_frontal: bool) -> tuple[dict[str, complex], int]:
+    """Return the joints of head and neck, and the index of the node at which the trunk ends."""
+    radii = way.radii
+    at = neck_along(radii)
+    if at is not None:
+        blob = at + int(radii[at:].argmax())
+        middle, radius = way.places[blob], radii[blob]
+        outside = np.flatnonzero(np.abs(way.places[:blob] - middle) >= radius)
+        neck = int(outside[-1]) if outside.size else at
+        up = (middle - way.places[neck]) / abs(middle - way.places[neck])
+        joints = {"neck": complex(way.places[neck]), "head": complex(middle + CROWN * radius * up)}
+        return joints, neck
+    tip = plan.handle_node(int(way.nodes[-1]))
+    last = way.nodes.tolist().index(tip) if tip in way.nodes else len(way.nodes) - 1
+    first = way.leaving(ROOT)
+    if not is_frontal and last > first + 3:
+        places, _, lengths = way.part(first, last)
+        share = bend_share(places, lengths)
+        if share is not None:
+            neck = first + int(np.abs(lengths - share * lengths[-1]).argmin())
+            joints = {"neck": complex(way.places[neck]), "head": complex(way.places[last])}
+            return joints, neck
+    if plan.is_lying:
+        thick = np.flatnonzero(radii >= THICK_HEAD * radii[0])
+        at = int(thick[-1]) if thick[-1] > first else last
+        return {"head": complex(way.places[at])}, at
+    tops = way.places.imag + radii
+    at = int(np.flatnonzero(tops >= tops.max() - BELOW_TOP * plan.tall)[0])
+    return {"head": complex(way.places[at] + 0.4j * radii[at])}, at
+
+
+def _standing(plan: BodyPlan, *, is_frontal: bool) -> dict[str, complex]:
+    """Return the joints of a body that stands on two legs."""
+    hips, end = plan.hips, plan.head_end
+    way = _JointPath(plan, plan.between(hips, end) if end is not None else np.array([hips]))
+    found, top = _head(plan, way, is_frontal=is_frontal)
+    legs = plan.legs if len(plan.legs) < 2 else [plan.legs[0], plan.legs[-1]]
+    limbs = [(hips, _leg(plan, hips, leg)) for leg in legs]
+    found |= _sides(plan, limbs, ("hip", "knee", "foot"), is_frontal=is_frontal)
+    arms, tail = _arms_and_tail(plan, way, top, is_frontal=is_frontal)
+    arms += [(hips, _leg(plan, hips, leg)) for leg in plan.legs[1:-1]]
+    found |= _sides(plan, arms, ("shoulder", "elbow", "hand"), is_frontal=is_frontal)
+    if tail is not None:
+        found["tail"] = tail
+    found["hips"] = _hips(plan, hips, legs)
+    roots = [limb[0] for _, limb in arms]
+    found["chest"] = _chest(way, top, found["hips"], roots)
+    return _with_neck_apart(found)
+
+
+def _sides(
+    plan: BodyPlan,
+    limbs: list[tuple[int, tuple[complex, complex, complex]]],
+    names: tuple[str, str, str],
+    *,
+    is_frontal: bool,
+) -> dict[str, complex]:
+    """Return the joints of one pair of limbs, the longest found.
+
+    From the front each side has its own limb. From the side the leg ahead goes with the arm behind.
+    """
+
+    def reach(limb: tuple[int, tuple[complex, complex, complex]]) -> float:
+        _, (root, joint, tip) = limb
+        return abs(joint - root) + abs(tip - joint)
+
+    by_side: dict[str, tuple[complex, complex, complex]] = {}
+    if is_frontal:
+        for start, limb in sorted(limbs, key=reach):
+            by_side["L" if limb[2].real >= plan.places[start].real else "R"] = limb
+        used = names
+    else:
+        longest = sorted(limbs, key=reach)[-2:]
+        ahead = sorted(longest, key=lambda limb: -plan.facing * limb[1][2].real)
+        order = "LR" if names[0] == "hip" else "RL"
+        by_side = {side: limb for side, (_, limb) in zip(order, ahead, strict=False)}
+        used = ("", *names[1:])
+    return {
+        f"{name}.{side}": place
+        for side, limb in by_side.items()
+        for name, place in zip(used, limb, strict=True)
+        if name
+    }
+
+
+def _arms_and_tail(
+    plan: BodyPlan, way: _JointPath, top: int, *, is_frontal: bool
+) -> tuple[list[tuple[int, tuple[complex, complex, complex]]], complex | None]:
+    """Return the limbs that leave the trunk above, and the tip of the longest one below."""
+    nodes, arms, tails = way.nodes.tolist(), [], []
+    for end in plan.others:
+        if end == plan.head_end:
+            continue
+        fork = plan.meeting(nodes[0], nodes[-1], end)
+        at = nodes.index(fork)
+        if at > top:
+            continue
+        limb = _limb(plan, fork, end, plan.handle_node(end))
+        share = way.lengths[at] / max(way.lengths[top], 1e-9)
+        root, _, tip = limb
+        # On a short trunk all limbs leave at one place.
+        is_level = (root - plan.places[fork]).imag >= -0.5 * plan.radii[fork]
+        is_behind = (tip.real - plan.places[nodes[0]].real) * plan.facing < 0
+        if share >= LOWEST_ARM or (is_level and (is_frontal or not is_behind)):
+            arms.append((fork, limb))
+        elif abs(tip - root) >= LEAST_TAIL * plan.tall:
+            tails.append((abs(tip - root), tip))
+    return arms, max(tails, key=lambda tail: tail[0])[1] if tails else None
+
+
+def _hips(plan: BodyPlan, node: int, legs: list[PlannedLeg]) -> complex:
+    """Return the place of the hips, above the crotch."""
+    place, radius = complex(plan.places[node]), float(plan.radii[node])
+    if len(legs) < 2:
+        return place
+    roots = np.array([_leg(plan, node, leg)[0] for leg in legs])
+    down = roots.mean() - place
+    if abs(down) < 1e-9:
+        return place
+    thick = max(float(np.median(plan.radii[leg.path])) for leg in legs)
+    above = min(radius, max(CROTCH * thick, APART * radius))
+    return place + (radius - above) * complex(down / abs(down))
+
+
+def _chest(way: _JointPath, top: int, hips: complex, roots: list[complex]) -> complex:
+    """Return the place of the chest: between the arms, or where the trunk is last thick."""
+    trunk = slice(0, top + 1)
+    places, radii, lengths = way.places[trunk], way.radii[trunk], way.lengths[trunk]
+    if roots:
+        at = int(np.abs(places - sum(roots) / len(roots)).argmin())
+    else:
+        thick = (radii >= THICK_CHEST * radii[0]) & (lengths <= HIGHEST_CHEST * lengths[-1])
+        at = int(np.flatnonzero(thick)[-1])
+    highest = int(np.flatnonzero(lengths <= HIGHEST_CHEST * lengths[-1])[-1])
+    at = min(at, highest)
+    while at < highest and abs(places[at] - hips) < APART * radii[0]:
+        at += 1
+    return complex(places[at])
+
+
+def _with_neck_apart(found: dict[str, complex]) -> dict[str, complex]:
+    """Return joints without a neck that is at the chest, or beyond the head."""
+    if "neck" not in found:
+        return found
+    chest, neck, head = (found[name] for name in ("chest", "neck", "head"))
+    if abs(neck - chest) >= LEAST_NECK * abs(head - chest):
+        return found
+    return {name: place for name, place in found.items() if name != "neck"}
+
+
+def _thickest(plan: BodyPlan, fork: int, ends: list[int]) -> complex:
+    """Return the thickest place around a fork, on the paths to its ends."""
+    nodes = np.unique(
+        np.concatenate([plan.between(fork, end) for end in ends] + [np.array([fork])])
+    )
+    near = nodes[np.abs(plan.places[nodes] - plan.places[fork]) <= plan.radii[fork]]
+    return complex(plan.places[near[plan.radii[near].argmax()]])
+
+
+def _lying(plan: BodyPlan) -> dict[str, complex]:
+    """Return the joints of a body with legs below both ends of a lying trunk."""
+    if len(plan.legs) < 2:
+        return _standing(plan, is_frontal=False)
+    found: dict[str, complex] = {}
+    hind, front = (0, -1) if plan.facing > 0 else (-1, 0)
+    hips, chest = int(plan.trunk[hind]), int(plan.trunk[front])
+    for start, pair, names in (
+        (hips, plan.pairs[hind], ("knee", "foot")),
+        (chest, plan.pairs[front], ("elbow", "hand")),
+    ):
+        # The outer legs are usually those on the near side.
+        outer = pair if (start == hips) == (plan.facing > 0) else pair[::-1]
+        for side, leg in zip("LR", (outer[0], outer[-1])[: len(outer)], strict=False):
+            limb = _leg(plan, start, leg)
+            found |= {f"{names[0]}.{side}": limb[1], f"{names[1]}.{side}": limb[2]}
+    ahead = [end for end in plan.others if plan.ahead(end)]
+    behind = [end for end in plan.others if not plan.ahead(end)]
+    found["hips"], found["chest"] = _thickest(plan, hips, behind), _thickest(plan, chest, ahead)
+    if ahead:
+        tip = max(ahead, key=lambda end: plan.facing * plan.places[end].real)
+        found |= _head(plan, _JointPath(plan, plan.between(chest, tip)), is_frontal=False)[0]
+    if behind:
+        tails = [_limb(plan, hips, end, plan.handle_node(end)) for end in behind]
+        found["tail"] = max(tails, key=lambda limb: abs(limb[2] - limb[0]))[2]
+    return _with_neck_apart(found)

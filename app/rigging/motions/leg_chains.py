@@ -1,0 +1,141 @@
+"""Motions of bodies with limbs: rotating joints and stepping feet."""
+
+import cmath
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.rigging.motions.body import Body, other_side, without_side
+from app.rigging.motions.curves import STEADY, Periodic, covering_curve
+from app.rigging.motions.motion import JointPose, MotionInstance, MotionTemplate, Parameters
+from app.rigging.motions.stepping import FootSteps
+from app.rigging.motions.steps import Gait, required_drop, solve_leg_ik
+
+FEET = (("foot.L", 0.0), ("foot.R", 0.0))
+STANDING = Gait(stance=1.0, stride=0.0, lift=0.0, landings=FEET, gathered=0.0, straight=0.998)
+SAMPLES = 96  # of a cycle, at which the lowest position of the hips is searched
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimbMotion(MotionTemplate):
+    """Angles of bones over a cycle, and steps of the feet.
+
+    Angles are in degrees, relative to the drawing's own pose: the rotation of the bone that ends at
+    a joint against its parent bone. On the trunk, and on limbs from the side, positive is forwards:
+    legs and arms swing ahead, heads and chests lean back. From the front limbs go up and out.
+    Angles of the left side apply to both sides; the right side is later by `lag` cycles.
+    """
+
+    turns: Mapping[str, Periodic] = field(default_factory=dict)
+    # Rotations ahead or back, which are invisible from the front.
+    leans: Mapping[str, Periodic] = field(default_factory=dict)
+    # Replace the angles above for joints of one side only, such as a waving hand.
+    single: Mapping[str, Periodic] = field(default_factory=dict)
+    lag: float = 0.5
+    rise: Periodic = STEADY  # of the hips, in lengths of a leg
+    shift: Periodic = STEADY  # of the hips, forwards, in lengths of a leg
+    gait: Gait | None = None
+    needed: tuple[str, ...] = ()
+    either: tuple[str, ...] = ()
+
+    @property
+    def can_travel(self) -> bool:
+        """Whether its steps move the body forward."""
+        return self.gait is not None and self.gait.stride > 0
+
+    def instantiate(self, body: Body, parameters: Parameters) -> MotionInstance:
+        return _LimbInstance(self, body, parameters)
+
+
+class _LimbInstance(MotionInstance):
+    """Rotating joints and stepping feet of one body."""
+
+    def __init__(self, course: LimbMotion, body: Body, parameters: Parameters) -> None:
+        self.template, self.body, self.parameters = course, body, parameters
+        gait = course.gait or STANDING
+        self.steps = FootSteps(body, gait, parameters)
+        self.hips = next(iter(body.joints))
+        # A motion of one side is done by the other side if the first side is missing.
+        self.is_first_side = not course.either or course.either[0] in body.joints
+        tall = (body.box[1] - body.box[0]).imag
+        self.reach = self.steps.reach or tall / 3
+        self.lowered = STEADY
+        if self.steps.legs:
+            # Feet are within reach of their legs at all times, so that legs keep their lengths.
+            phases = np.arange(SAMPLES) / SAMPLES
+            self.lowered = covering_curve([self._room(phase) for phase in phases.tolist()])
+
+    @property
+    def stride(self) -> float:
+        """Distance that the body moves to the right in a cycle."""
+        return self.body.facing * self.steps.stride if self.template.can_travel else 0.0
+
+    def pose_at(self, phase: float) -> JointPose:
+        """Return the positions of the joints, and the rotations at the ends of limbs and trunk."""
+        places, turned = self._trunk_and_arms(phase)
+        gait, standing = self.steps.gait, set()
+        inner = {before for name, before in self.body.parents.items()}
+        turns = {name: turn for name, turn in turned.items() if name not in inner}
+        trunk = {name: turned[name] for name in ("chest", "hips") if name in turned}
+        turns |= dict.fromkeys(trunk, next(iter(trunk.values()), 0.0))
+        for foot, leg in self.steps.legs.items():
+            places[foot] = self.steps.foot(foot, phase)
+            places |= solve_leg_ik(leg, places[leg.joints[0]], places[foot])
+            down = gait.rolled(foot, phase) * self.parameters.size
+            turns[foot] = -self.body.facing * math.radians(down)
+            standing |= {foot} if gait.stands(foot, phase) else set()
+        return JointPose(places, turns, frozenset(standing))
+
+    def _room(self, phase: float) -> float:
+        """Return how much the hips are too high at a moment."""
+        places, _ = self._trunk_and_arms(phase)
+        return max(
+            (
+                required_drop(
+                    leg,
+                    places[leg.joints[0]],
+                    self.steps.foot(foot, phase),
+                    self.steps.gait.straight,
+                )
+                for foot, leg in self.steps.legs.items()
+            ),
+            default=0.0,
+        )
+
+    def _trunk_and_arms(self, phase: float) -> tuple[dict[str, complex], dict[str, float]]:
+        """Return the positions of all joints that no step moves, and their bones' rotations."""
+        body, course = self.body, self.template
+        amount = self.parameters.size * self.parameters.energy * self.reach
+        moved = body.facing * course.shift(phase) + 1j * course.rise(phase)
+        height = self.steps.raised - self.lowered(phase)
+        places = {self.hips: body.joints[self.hips] + amount * moved + 1j * height}
+        turned = {self.hips: self._turn(self.hips, phase)}
+        stepping = {name for leg in self.steps.legs.values() for name in leg.joints[1:]}
+        for name, before in list(body.parents.items())[1:]:
+            if name in stepping:
+                continue
+            turned[name] = turned[before] + self._turn(name, phase)
+            bone = body.joints[name] - body.joints[before]
+            places[name] = places[before] + bone * cmath.exp(1j * turned[name])
+        return places, turned
+
+    def _turn(self, name: str, phase: float) -> float:
+        """Return the rotation of a joint's bone against its parent bone, in radians."""
+        course, kept = self.template, without_side(name)
+        has_side = kept != name
+        late = course.lag if name.endswith(".R") else 0.0
+        curve = course.turns.get(kept)
+        if curve is None and self.body.kind.name != "biped-front":
+            curve = course.leans.get(kept)
+        alone = name if self.is_first_side else other_side(name)
+        if alone in course.single:
+            curve, late = course.single[alone], 0.0
+        if curve is None:
+            return 0.0
+        way = self.body.facing
+        if has_side and self.body.kind.name == "biped-front":
+            way = 1 if self.body.joints[name].real >= self.body.joints[self.hips].real else -1
+        amount = self.parameters.size * (1.0 if has_side else self.parameters.energy)
+        return way * amount * math.radians(curve(phase - late))

@@ -1,0 +1,57 @@
+"""Motions of four-legged bodies."""
+
+from app.rigging.motions.curves import even_curve
+from app.rigging.motions.leg_chains import LimbMotion
+from app.rigging.motions.motion import Motion
+from app.rigging.motions.steps import Gait
+
+FEET = ("hips", "chest")
+_TRUNK = {
+    "neck": even_curve(2, -2, 2, -2),
+    "head": even_curve(-3, 3, -3, 3),
+    "tail": even_curve(0, 8, 0, -8),
+}
+
+# Four beats: a hind foot, then the front foot of its side.
+WALK_ON_FOUR = LimbMotion(
+    gait=Gait(
+        stance=0.64,
+        stride=0.85,
+        lift=0.1,
+        landings=(("foot.L", 0.0), ("hand.L", 0.25), ("foot.R", 0.5), ("hand.R", 0.75)),
+        gathered=0.5,
+        roll=20,
+    ),
+    rise=even_curve(0.0, -0.01, 0.0, 0.01, 0.0, -0.01, 0.0, 0.01),
+    turns={**_TRUNK, "chest": even_curve(0, 1, 0, -1)},
+    needed=FEET,
+)
+
+# Two beats: diagonal feet move together.
+TROT = Motion(
+    name="trot",
+    label="Trot",
+    hint="Feet that are across go together, with a spring between",
+    seconds=0.75,
+    keys=24,
+    templates={
+        "four-legs": LimbMotion(
+            gait=Gait(
+                stance=0.42,
+                stride=1.05,
+                lift=0.14,
+                landings=(("foot.L", 0.0), ("hand.R", 0.0), ("foot.R", 0.5), ("hand.L", 0.5)),
+                gathered=0.5,
+                roll=28,
+            ),
+            rise=even_curve(0.0, -0.035, 0.0, 0.035, 0.0, -0.035, 0.0, 0.035),
+            turns={
+                "neck": even_curve(2, 0, -2, 0, 2, 0, -2, 0),
+                "head": even_curve(-2, 2, 2, -2, -2, 2, 2, -2),
+                "tail": even_curve(4, 10, 4, -2, 4, 10, 4, -2),
+                "chest": even_curve(0, 1, 0, -1, 0, 1, 0, -1),
+            },
+            needed=FEET,
+        )
+    },
+)

@@ -1,0 +1,59 @@
+"""Motions of bodies without joints."""
+
+from app.rigging.motions.curves import Curve, Leap, even_curve
+from app.rigging.motions.library.bipeds import LEAPING
+from app.rigging.motions.motion import Motion
+from app.rigging.motions.squash_stretch import SquashStretch
+
+BREATHE = Motion(
+    name="breathe",
+    label="Breathe",
+    hint="It swells and sinks, slowly",
+    seconds=3.0,
+    keys=8,
+    templates={
+        "anything": SquashStretch(
+            swell=even_curve(0.0, 0.04, 0.08, 0.065, 0.03, 0.005),
+            stretch=even_curve(0.0, 0.01, 0.02, 0.018, 0.008, 0.0),
+        )
+    },
+)
+
+SWAY = Motion(
+    name="sway",
+    label="Sway",
+    hint="It leans from side to side on its foot, as in the wind",
+    seconds=2.5,
+    keys=12,
+    templates={
+        "anything": SquashStretch(
+            lean=even_curve(0.0, 11, 13, 0.0, -11, -13), stretch=even_curve(0, -0.01, -0.01)
+        )
+    },
+)
+
+HOP = Motion(
+    name="hop",
+    label="Hop",
+    hint="It leaves the ground and lands, with both feet at once, or squashed and stretched",
+    seconds=1.0,
+    keys=24,
+    templates={
+        "biped-side": LEAPING,
+        "biped-front": LEAPING,
+        "anything": SquashStretch(
+            stretch=Curve(
+                (
+                    (0.0, -0.02),
+                    (0.14, -0.22),
+                    (0.3, 0.1),
+                    (0.4, 0.14),
+                    (0.53, 0.02),
+                    (0.7, 0.1),
+                    (0.82, -0.2),
+                )
+            ),
+            rise=Leap(0.28, 0.76, 0.3),
+        ),
+    },
+)

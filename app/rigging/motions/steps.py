@@ -1,0 +1,117 @@
+"""Steps: the position of a foot over a cycle, and the bend of its leg."""
+
+import cmath
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+from app.rigging.motions.body import Body, without_side
+from app.rigging.motions.curves import bump, hermite
+
+# A leg drawn with at least this bend keeps its side; a straighter leg bends as usual for its kind.
+BENT = 0.21  # radians
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gait:
+    """Pattern of steps: each foot stands for a share of the cycle, then it swings ahead."""
+
+    stance: float  # share of the cycle that a foot stands
+    stride: float  # distance that the body moves in a cycle, in lengths of a leg
+    lift: float  # height of a foot in the middle of its swing, in lengths of a leg
+    # Phase at which each foot comes down.
+    landings: tuple[tuple[str, float], ...]
+    gathered: float = 0.2  # share by which feet move from their drawn places to below the hips
+    # Of a leg's length: its largest reach, short of straight, so that the knee does not snap.
+    straight: float = 0.985
+    is_treadmill: bool = True  # whether, in place, feet slide back on the ground as on a treadmill
+    roll: float = 0.0  # degrees by which a foot points down when it leaves the ground
+
+    def phase(self, foot: str, phase: float) -> float:
+        """Return the phase of a foot's own cycle, which begins when the foot comes down."""
+        return (phase - dict(self.landings)[foot]) % 1.0
+
+    def stands(self, foot: str, phase: float) -> bool:
+        return self.phase(foot, phase) <= self.stance
+
+    def ahead(self, foot: str, phase: float) -> float:
+        """Return how far a foot is ahead of the middle of its stance, in strides."""
+        own, half = self.phase(foot, phase), self.stance / 2
+        if own <= self.stance:
+            return half - own
+        swing = 1 - self.stance
+        return hermite((own - self.stance) / swing, -half, half, -swing)
+
+    def lifted(self, foot: str, phase: float) -> float:
+        """Return the height of a foot as a share of its greatest height."""
+        return bump(self._swung(foot, phase))
+
+    def rolled(self, foot: str, phase: float) -> float:
+        """Return by how many degrees a foot points down; negative, up, before it comes down."""
+        share = self._swung(foot, phase)
+        return self.roll * (bump(share / 0.7) - 0.4 * bump((share - 0.5) / 0.5))
+
+    def _swung(self, foot: str, phase: float) -> float:
+        """Return the finished share of a foot's swing, 0 while the foot stands."""
+        own = self.phase(foot, phase)
+        return 0.0 if own <= self.stance else (own - self.stance) / (1 - self.stance)
+
+
+class BodyLeg(NamedTuple):
+    """A leg at rest: joints from root to tip, lengths, and the side to which it bends."""
+
+    joints: tuple[str, ...]
+    lengths: tuple[float, ...]
+    bend: int
+
+    @property
+    def length(self) -> float:
+        """Reach of the straight leg."""
+        return sum(self.lengths)
+
+
+def find_leg(body: Body, tip: str) -> BodyLeg:
+    """Return the leg that ends at a foot, or at a hand of a body that walks on its hands."""
+    joints = body.limb_joints(tip)
+    places = [body.joints[name] for name in joints]
+    lengths = tuple(abs(b - a) for a, b in pairwise(places))
+    turn = 0.0
+    if len(places) == 3:
+        turn = cmath.phase((places[2] - places[1]) / (places[1] - places[0]))
+    bend = -1 if turn > 0 else 1
+    if abs(turn) < BENT:
+        bend = _usual_bend(body, tip)
+    return BodyLeg(joints, lengths, bend)
+
+
+def _usual_bend(body: Body, tip: str) -> int:
+    """Return the side to which a leg bends: 1 is counter-clockwise from root to tip."""
+    if body.kind.name == "biped-front":
+        middle = body.joints[next(iter(body.joints))].real
+        return -1 if body.joints[tip].real < middle else 1
+    # A hock points backwards, knees and wrists forwards.
+    is_hock = body.kind.name == "four-legs" and without_side(tip) == "foot"
+    return -body.facing if is_hock else body.facing
+
+
+def solve_leg_ik(leg: BodyLeg, root: complex, tip: complex) -> dict[str, complex]:
+    """Return the positions of the joints between a root and a tip, at the leg's own lengths.
+
+    If the tip is out of reach, the leg is straight towards it.
+    """
+    if len(leg.lengths) < 2:
+        return {}
+    upper, lower = leg.lengths
+    away = min(max(abs(tip - root), abs(upper - lower) + 1e-9), upper + lower)
+    cosine = (upper**2 + away**2 - lower**2) / (2 * upper * away)
+    turn = leg.bend * math.acos(min(max(cosine, -1.0), 1.0))
+    direction = (tip - root) / abs(tip - root)
+    return {leg.joints[1]: root + upper * direction * cmath.exp(1j * turn)}
+
+
+def required_drop(leg: BodyLeg, root: complex, tip: complex, straight: float) -> float:
+    """Return how much a root must come down so that its leg reaches the tip."""
+    reach = straight * leg.length if len(leg.lengths) > 1 else leg.length
+    beside = min(abs((root - tip).real), reach)
+    return max(0.0, (root - tip).imag - math.sqrt(reach**2 - beside**2))

@@ -1,0 +1,120 @@
+"""What kind of body a shape looks like, and where its joints may be."""
+
+import numpy as np
+import pytest
+import shapely
+from silhouettes import BODIES, CHILD, FISH, HORSE, KANGAROO, SNAKE, WALKER, dot, drawn
+
+from app.rigging import KINDS, find_kind, guess_kind, suggest_joints
+from engine.geometry import contains, signed_area
+
+
+def suggested(loops, kind):
+    """Return the joints by their names, all of them inside and of the kind."""
+    joints = suggest_joints(loops, find_kind(kind))
+    places = np.array(list(joints.values()), dtype=complex)
+    assert contains(loops[0], places, holes=loops[1:]).all()
+    find_kind(kind).require_joints(joints)
+    return joints
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("flip", [False, True])
+def test_a_kind_is_guessed_from_either_side_and_every_kind_has_joints_inside(name, flip):
+    kind, strokes = BODIES[name]
+    loops = drawn(*((-np.conj(points) if flip else points, width) for points, width in strokes))
+    assert guess_kind(loops).name == kind
+    for other in KINDS:
+        suggested(loops, other)
+
+
+def test_a_child_from_the_front_has_its_left_on_the_right_of_the_picture():
+    joints = suggested(drawn(*CHILD), "biped-front")
+    assert joints.keys() >= set(find_kind("biped-front").usual)
+    assert "tail" not in joints
+    for side, way in (("L", 1), ("R", -1)):
+        assert abs(joints[f"hand.{side}"] - complex(way * 215, 285)) < 25
+        assert abs(joints[f"foot.{side}"] - complex(way * 50, 25)) < 35
+        assert 30 < way * joints[f"shoulder.{side}"].real < 90
+        assert 20 < way * joints[f"hip.{side}"].real < 60
+    assert joints["head"].imag > 470
+    assert 310 > joints["chest"].imag > joints["hips"].imag + 40
+
+
+def test_from_the_side_the_leg_ahead_goes_with_the_arm_behind():
+    joints = suggested(drawn(*WALKER), "biped-side")
+    assert joints["foot.L"].real > 40 > -40 > joints["foot.R"].real
+    assert joints["hand.R"].real > 40 > -40 > joints["hand.L"].real
+    for ankle in ("foot.L", "foot.R"):
+        assert joints[ankle].imag < 50
+    assert not any(name.startswith(("hip.", "shoulder.")) for name in joints)
+
+
+def test_a_kangaroo_on_its_tail_has_one_leg_and_a_heel():
+    joints = suggested(drawn(*KANGAROO), "biped-side")
+    assert "foot.R" not in joints, "there is but one"
+    assert abs(joints["foot.L"] - (-45 + 25j)) < 30, "not at its toes"
+    assert joints["tail"].real < -240
+    assert joints["head"].imag > 420
+
+
+def test_a_steep_tail_is_no_second_foot():
+    loops = drawn(*KANGAROO[:-1], ([-110 + 110j, -190 + 60j, -240 + 12j, -290 + 8j], 40))
+    assert guess_kind(loops).name == "biped-side"
+    joints = suggested(loops, "biped-side")
+    assert "foot.R" not in joints
+    assert joints["foot.L"].real > -80
+
+
+def test_a_horse_has_two_pairs_of_legs_with_the_outer_ones_on_one_side():
+    joints = suggested(drawn(*HORSE), "four-legs")
+    feet = {"foot.L": -185, "foot.R": -115, "hand.R": 55, "hand.L": 125}
+    assert all(abs(joints[name] - complex(x, 25)) < 30 for name, x in feet.items())
+    assert joints["hips"].real < -80 < 40 < joints["chest"].real
+    assert joints["tail"].real < -220 < 130 < joints["head"].real
+
+
+def test_legs_whose_feet_touch_are_two():
+    loops = drawn(([100j, 250j], 120), ([-40 + 100j, -40, 0], 24), ([40 + 100j, 40, 0], 24))
+    assert len(loops) == 2
+    joints = suggested(loops, "biped-front")
+    assert joints["foot.R"].real < -15 < 15 < joints["foot.L"].real
+
+
+@pytest.mark.parametrize(("strokes", "head"), [([*SNAKE, dot(245 + 15j, 34)], 240), (FISH, 60)])
+def test_a_chain_begins_at_its_head(strokes, head):
+    joints = list(suggested(drawn(*strokes), "chain").values())
+    assert joints[0].real > head
+    assert joints[-1].real < -90
+    assert len(joints) >= 4
+    steps = np.abs(np.diff(joints))
+    assert steps.max() < 1.6 * steps.min()
+
+
+def test_what_is_anything_has_no_joints():
+    assert suggested(drawn(*CHILD), "anything") == {}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_joints_are_the_same_however_densely_edges_are_sampled(name):
+    kind, strokes = BODIES[name]
+    loops = drawn(*strokes)
+    joints = suggested(loops, kind)
+    shares = np.arange(3) / 3
+    fine = [
+        (loop[:, None] + shares * (np.roll(loop, -1) - loop)[:, None]).ravel() for loop in loops
+    ]
+    assert guess_kind(fine).name == kind
+    others = suggested(fine, kind)
+    assert others.keys() == joints.keys()
+    for joint, place in joints.items():
+        assert abs(others[joint] - place) < 1e-6
+
+
+def test_corner_that_stays_in_a_disc_of_the_body_is_no_leg():
+    body = shapely.Point(0, 0).buffer(34).union(shapely.LineString([(0, 0), (23, -33)]).buffer(5))
+    rings = body.exterior, shapely.Point(11, -10).buffer(8).exterior
+    outline, hole = (np.array(ring.coords)[:-1] @ [1, 1j] for ring in rings)
+    assert signed_area(outline) * signed_area(hole) > 0
+    loops = [outline[::-1], hole] if signed_area(outline) < 0 else [outline, hole[::-1]]
+    assert guess_kind(loops).name == "anything"

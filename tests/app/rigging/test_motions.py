@@ -1,0 +1,164 @@
+"""Ready motions loop smoothly, keep lengths, and set feet on the ground."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from bodies import body
+from numpy.testing import assert_allclose
+
+from app.rigging import MOTIONS, Body, Parameters, find_kind
+from engine.errors import EngineError
+
+USUAL = Parameters()
+FITTING = [(name, kind) for name, motion in MOTIONS.items() for kind in motion.kinds]
+TRAVELLING = [each for each in FITTING if MOTIONS[each[0]].template_for(each[1]).can_travel]
+SIZE = 240.0  # pixels: about that of the bodies
+each_motion = pytest.mark.parametrize(("name", "kind"), FITTING)
+each_gait = pytest.mark.parametrize(("name", "kind"), TRAVELLING)
+
+
+def places(name, kind, shares, parameters=USUAL, of=None):
+    moments = MOTIONS[name].poses_at(of or body(kind), parameters, list(shares))
+    return {joint: np.array([each.places[joint] for each in moments]) for joint in moments[0][0]}
+
+
+@each_motion
+def test_motions_come_round_smoothly(name, kind):
+    count = 480
+    rest = body(kind).joints
+    moved = places(name, kind, np.arange(count + 1) / count)
+    assert max(np.ptp(np.abs(way - rest[joint])) for joint, way in moved.items()) > 0.02 * SIZE
+    for joint, way in moved.items():
+        assert_allclose(way[-1], way[0], atol=1e-9 * SIZE, err_msg=joint)
+        speeds = np.diff(np.concatenate([way, way[1:2]])) * count
+        # A knee that snaps, or a jump, changes its velocity at once.
+        assert np.abs(np.diff(speeds)).max() < 0.1 * max(np.abs(speeds).max(), SIZE), joint
+
+
+@pytest.mark.parametrize(("name", "kind"), [each for each in FITTING if each[1] != "anything"])
+def test_limbs_keep_their_lengths(name, kind):
+    rest = body(kind)
+    moved = places(name, kind, np.linspace(0, 1, 49), Parameters(size=1.2, energy=1.3))
+    for joint, before in rest.parents.items():
+        if before:
+            length = abs(rest.joints[joint] - rest.joints[before])
+            lengths = np.abs(moved[joint] - moved[before])
+            assert_allclose(lengths, length, rtol=1e-9, err_msg=joint)
+
+
+@each_gait
+def test_planted_feet_have_one_ground_speed(name, kind):
+    shares = np.linspace(0, 1, 121)
+    moments = MOTIONS[name].poses_at(body(kind), USUAL, shares.tolist())
+    seen, steps = set(), []
+    for before, after in pairwise(moments):
+        for foot in before.standing & after.standing:
+            seen.add(foot)
+            steps.append(after.places[foot] - before.places[foot])
+    assert len(seen) == (4 if kind == "four-legs" else 2)
+    assert_allclose(steps, steps[0], atol=1e-9 * SIZE)
+    assert steps[0].real * body(kind).facing <= 0
+
+
+def test_nobody_crouches_for_long_steps():
+    rest = body("four-legs")
+    # Its front feet are drawn far ahead of the chest.
+    ahead = {f"hand.{side}": rest.joints[f"hand.{side}"] + 45 * rest.facing for side in "LR"}
+    of = replace(rest, joints={**rest.joints, **ahead})
+    moved = places("walk", "four-legs", np.linspace(0, 1, 49), of=of)
+    for joint in ("hips", "chest"):
+        down = rest.joints[joint].imag - moved[joint].imag
+        assert down.max() < 0.1 * (rest.joints["hips"].imag - rest.joints["foot.L"].imag)
+
+
+@each_gait
+def test_travelling_plants_feet_and_gets_on_by_a_stride(name, kind):
+    travelling = Parameters(travel=True)
+    shares = np.linspace(0, 2, 161)
+    moments = MOTIONS[name].poses_at(body(kind), travelling, shares.tolist())
+    for before, after in pairwise(moments):
+        for foot in before.standing & after.standing:
+            assert_allclose(after.places[foot], before.places[foot], atol=1e-9 * SIZE)
+    strides = {
+        joint: moments[80].places[joint] - moments[0].places[joint] for joint in moments[0].places
+    }
+    assert_allclose(list(strides.values()), strides["hips"], atol=1e-9 * SIZE)
+    assert strides["hips"].real * body(kind).facing > 0.1 * SIZE
+    later = moments[160].places["hips"] - moments[0].places["hips"]
+    assert_allclose(later, 2 * strides["hips"], atol=1e-9 * SIZE)
+
+
+@each_motion
+def test_a_mirrored_body_does_the_mirror_image(name, kind):
+    rest = body(kind)
+    low, high = rest.box
+    flipped = replace(
+        rest,
+        joints={joint: -place.conjugate() for joint, place in rest.joints.items()},
+        box=(complex(-high.real, low.imag), complex(-low.real, high.imag)),
+        facing=-rest.facing,
+    )
+    shares = np.linspace(0, 1, 13)
+    one, other = places(name, kind, shares), places(name, kind, shares, of=flipped)
+    for joint, way in one.items():
+        assert_allclose(other[joint], -way.conj(), atol=1e-9 * SIZE, err_msg=joint)
+
+
+def test_mirrored_the_other_arm_waves():
+    shares = np.linspace(0, 1, 13)
+    usual = places("wave", "biped-front", shares)
+    mirrored = places("wave", "biped-front", shares, Parameters(mirrored=True))
+    assert np.ptp(usual["hand.R"].imag) > 5 * np.ptp(usual["hand.L"].imag)
+    assert np.ptp(mirrored["hand.L"].imag) > 5 * np.ptp(mirrored["hand.R"].imag)
+    rest = body("biped-side")
+    twice = rest.mirrored().mirrored()
+    assert (dict(twice.joints), twice.facing) == (dict(rest.joints), rest.facing)
+
+
+def test_speed_is_of_time_alone_and_start_is_a_share_of_the_cycle():
+    walk = MOTIONS["walk"]
+    assert walk.frames(USUAL, 24) == 24
+    assert walk.frames(Parameters(speed=0.5), 24) == 48
+    assert walk.frames(Parameters(speed=4.0), 24) == 12
+    shares = np.linspace(0, 0.5, 5)
+    fast = places("walk", "biped-side", shares, Parameters(speed=2.0))
+    late = places("walk", "biped-side", shares, Parameters(start=0.25))
+    for joint, way in places("walk", "biped-side", [*shares, *(shares + 0.25)]).items():
+        assert_allclose(fast[joint], way[:5])
+        assert_allclose(late[joint], way[5:], atol=1e-9 * SIZE)
+
+
+def test_legs_of_one_drawing_never_pass_through_each_other():
+    for kind, pairs in (("biped-side", ["foot"]), ("four-legs", ["foot", "hand"])):
+        moved = places("walk", kind, np.linspace(0, 1, 61), Parameters(size=2.0))
+        for tip in pairs:
+            ahead = (moved[f"{tip}.L"] - moved[f"{tip}.R"]).real
+            assert ahead.min() > 0, (kind, tip)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "joints", "parameters", "said"),
+    [
+        ("slither", "biped-side", None, USUAL, "'slither' is a motion of 'chain', and not of"),
+        ("walk", "biped-side", {"hips": 0j, "head": 1j}, USUAL, "'walk' needs foot.L, foot.R"),
+        ("nod", "biped-side", None, Parameters(travel=True), "'nod' has no steps to travel by"),
+    ],
+)
+def test_what_does_not_fit_is_refused(name, kind, joints, parameters, said):
+    rest = body(kind)
+    if joints is not None:
+        rest = Body(kind=find_kind(kind), joints=joints, box=rest.box)
+    with pytest.raises(EngineError, match=said):
+        MOTIONS[name].poses_at(rest, parameters, [0.0])
+
+
+def test_parameters_have_ranges():
+    for given in ({"speed": 0.0}, {"size": 3.0}, {"energy": -1.0}, {"start": 1.0}):
+        with pytest.raises(EngineError, match=next(iter(given))):
+            Parameters(**given)
+    with pytest.raises(EngineError, match="there is no kind 'centaur'"):
+        find_kind("centaur")
+    with pytest.raises(EngineError, match="'chain' has no joint 'wing'"):
+        Body(kind=find_kind("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))
