@@ -4,11 +4,14 @@ import argparse
 from pathlib import Path
 
 from app.cli.console import StatusLine, print_line
-from app.cli.figures.page import render_page
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
-from app.cli.figures.plots.table import MAKERS
-from app.cli.figures.shape_renderer import ShapeRenderer
-from app.cli.figures.sheet import require_matplotlib
+from app.paper_figures import (
+    MAKERS,
+    FigureContext,
+    PaperFigure,
+    ShapeRenderer,
+    render_page,
+    require_matplotlib,
+)
 from app.storage import make_folder, write_atomically
 
 

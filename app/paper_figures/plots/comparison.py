@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.cli.figures.measure import measure_motions
-from app.cli.figures.methods import ARAP, FFMP, METRIC, NU, SCALED_ETA, ComparedMethod
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
-from app.cli.figures.shapes import ShapePair, bar_to_ring, beam, bend_points, letter_s
-from app.cli.figures.sheet import draw_strip, new_sheet, plot_shares
+from app.paper_figures.measure import measure_motions
+from app.paper_figures.methods import ARAP, FFMP, METRIC, NU, SCALED_ETA, ComparedMethod
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
+from app.paper_figures.shapes import ShapePair, bar_to_ring, beam, bend_points, letter_s
+from app.paper_figures.sheet import draw_strip, new_sheet, plot_shares
 from engine.baselines import harmonic_coordinate_maps
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)

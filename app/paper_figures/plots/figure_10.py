@@ -1,10 +1,10 @@
 """Figure 10: the metric variant on this project's own drawings."""
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.methods import METRIC
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
-from app.cli.figures.shapes import bar_to_ring, letter_s, make_sample_pair
-from app.cli.figures.sheet import draw_row, label_row, new_sheet
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.methods import METRIC
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
+from app.paper_figures.shapes import bar_to_ring, letter_s, make_sample_pair
+from app.paper_figures.sheet import draw_row, label_row, new_sheet
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 TIMES_MEASURED = 21

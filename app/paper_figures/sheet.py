@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.shape_renderer import ShapeRenderer, bounds_of, same_scale
 from app.errors import LissomError, install_hint
 from app.motion import BoundingBox
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.shape_renderer import ShapeRenderer, bounds_of, same_scale
 from engine.arrays import Floats
 
 if TYPE_CHECKING:

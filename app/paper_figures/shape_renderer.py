@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from typing import Self
 
-from app.cli.figures.shapes import Shape
 from app.motion import BoundingBox, VertexArray, bounding_box
+from app.paper_figures.shapes import Shape
 from app.render import DrawnMesh, Renderer, Scene, fit_view
 from app.render.gpu.context import create_context
 from app.render.gpu.mesh import GpuMesh

@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from app.cli.figures.methods import ComparedMethod, Inbetween
-from app.cli.figures.shapes import ShapePair
+from app.paper_figures.methods import ComparedMethod, Inbetween
+from app.paper_figures.shapes import ShapePair
 from app.reports import divide_by_keys, worst_points
 from engine.arrays import Complexes, Floats
 from engine.domain.meshing.mesh import Mesh

@@ -2,5 +2,5 @@
 
 In: a `FigureContext`.
 Out: `PaperFigure`s: a picture, a caption, and numbers.
-Imports: `app.cli.figures` without its page.
+Imports: `app.paper_figures` without its page.
 """

@@ -4,12 +4,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.methods import METRIC, SCALED_ETA, SIG13
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
-from app.cli.figures.shape_renderer import bounds_of
-from app.cli.figures.shapes import ShapePair, make_sample_pair
-from app.cli.figures.sheet import as_png, draw_panels
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.methods import METRIC, SCALED_ETA, SIG13
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
+from app.paper_figures.shape_renderer import bounds_of
+from app.paper_figures.shapes import ShapePair, make_sample_pair
+from app.paper_figures.sheet import as_png, draw_panels
 from engine.arrays import Complexes
 from engine.maps import HarmonicMap
 

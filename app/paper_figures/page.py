@@ -4,7 +4,7 @@ import base64
 from collections.abc import Mapping
 from html import escape
 
-from app.cli.figures.plots.paper_figure import PaperFigure
+from app.paper_figures.plots.paper_figure import PaperFigure
 
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #2b2f38; background: #fff;

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.methods import METRIC, NU, SCALED_ETA
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
-from app.cli.figures.shapes import ShapePair, square
-from app.cli.figures.sheet import as_png, draw_panels
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.methods import METRIC, NU, SCALED_ETA
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
+from app.paper_figures.shapes import ShapePair, square
+from app.paper_figures.sheet import as_png, draw_panels
 from engine.maps import HarmonicMap, distortion
 
 TIME = 0.8

@@ -1,12 +1,12 @@
 """Figure 4: a bar that is wound up and grows, with η and with scaled η."""
 
-from app.cli.figures.measure import MeasuredMotion, measure_motions
-from app.cli.figures.methods import ETA, SCALED_ETA
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
-from app.cli.figures.shape_renderer import bounds_of
-from app.cli.figures.shapes import ShapePair, beam, spiral_map
-from app.cli.figures.sheet import draw_frame, label_row, new_sheet, plot_shares
 from app.motion import BoundingBox
+from app.paper_figures.measure import MeasuredMotion, measure_motions
+from app.paper_figures.methods import ETA, SCALED_ETA
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
+from app.paper_figures.shape_renderer import bounds_of
+from app.paper_figures.shapes import ShapePair, beam, spiral_map
+from app.paper_figures.sheet import draw_frame, label_row, new_sheet, plot_shares
 from engine.maps import HarmonicMap
 
 TURN, GROWTH, NU = 2.6, 1.4, 0.5

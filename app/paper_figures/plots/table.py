@@ -1,6 +1,6 @@
 """The figures of the paper by number."""
 
-from app.cli.figures.plots import (
+from app.paper_figures.plots import (
     comparison,
     figure_1,
     figure_3,

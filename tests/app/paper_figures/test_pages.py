@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.cli.figures.plots.table import MAKERS
 from app.cli.main import main
 from app.cli.usage.figures import FIGURES
+from app.paper_figures.plots.table import MAKERS
 
 
 def test_the_usage_names_every_figure_that_there_is():

@@ -1,10 +1,10 @@
 """Figure 1: the giraffe halfway to the ground, by each method."""
 
-from app.cli.figures.measure import measure_motions
-from app.cli.figures.methods import ARAP, HANDLES, LINEAR, METRIC, NU
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
-from app.cli.figures.shapes import make_sample_pair
-from app.cli.figures.sheet import draw_panels
+from app.paper_figures.measure import measure_motions
+from app.paper_figures.methods import ARAP, HANDLES, LINEAR, METRIC, NU
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
+from app.paper_figures.shapes import make_sample_pair
+from app.paper_figures.sheet import draw_panels
 
 TIME = 0.5
 MEASURED = 3  # times: the middle, and both keyframes

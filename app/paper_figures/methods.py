@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.cli.figures.shapes import ShapePair
+from app.paper_figures.shapes import ShapePair
 from engine.baselines import Baseline, MeshFrame, prepare_baseline
 from engine.interpolation import Frame, Prepared, Variant, prepare
 from engine.maps import Boundary

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.shape_renderer import ShapeRenderer
-from app.cli.figures.sheet import as_png, format_number
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.shape_renderer import ShapeRenderer
+from app.paper_figures.sheet import as_png, format_number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from app.cli.figures.methods import METHODS, METRIC, SIG13, ComparedMethod, prepare_variant
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
-from app.cli.figures.shapes import ShapePair, make_sample_pair
-from app.cli.figures.sheet import INK, as_png, new_sheet, style_axes
+from app.paper_figures.methods import METHODS, METRIC, SIG13, ComparedMethod, prepare_variant
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
+from app.paper_figures.shapes import ShapePair, make_sample_pair
+from app.paper_figures.sheet import INK, as_png, new_sheet, style_axes
 from engine.interpolation import Variant
 from engine.streaming import Positions, build_series, finish
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.methods import ARAP, FFMP, LINEAR, METRIC, NU, SCALED_ETA, SIG13
-from app.cli.figures.plots import figure_3, figure_4, figure_8, figure_9, figure_11
-from app.cli.figures.shapes import bar_to_ring, letter_s, make_sample_pair
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.methods import ARAP, FFMP, LINEAR, METRIC, NU, SCALED_ETA, SIG13
+from app.paper_figures.plots import figure_3, figure_4, figure_8, figure_9, figure_11
+from app.paper_figures.shapes import bar_to_ring, letter_s, make_sample_pair
 from engine.maps import Boundary, Bounds, certify
 
 TRIANGLES = 1_000

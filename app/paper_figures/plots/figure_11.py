@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.cli.figures.measure import MeasuredMotion
-from app.cli.figures.methods import MESH_ETA, ComparedMethod
-from app.cli.figures.plots.paper_figure import FigureContext, PaperFigure
-from app.cli.figures.shapes import Shape, ShapePair, beam, bend_points, make_sample_pair
-from app.cli.figures.sheet import as_png, draw_panels
+from app.paper_figures.measure import MeasuredMotion
+from app.paper_figures.methods import MESH_ETA, ComparedMethod
+from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
+from app.paper_figures.shapes import Shape, ShapePair, beam, bend_points, make_sample_pair
+from app.paper_figures.sheet import as_png, draw_panels
 from engine.arrays import Complexes
 from engine.baselines import Baseline, PreparedBaseline, discrete_harmonic, prepare_baseline
 from engine.maps import HarmonicMap
