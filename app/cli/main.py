@@ -25,8 +25,8 @@ TOO_LITTLE_MEMORY = (
     "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
     "Lissom more of it"
 )
-# Subcommand → its summary. A module of this name in app.cli.usage declares its options and loads
-# fast. Its module in app.cli.commands runs it, and is loaded after the arguments are checked.
+# Subcommand → its summary. The module of this name in app.cli.commands loads fast; what computes is
+# loaded when it runs, after the arguments are checked.
 COMMANDS = {
     "window": "Open the window, with a picture or a project if one is named.",
     "domain": "Find a picture's outline; build the cage and the triangulation.",
@@ -120,9 +120,9 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in words:
-            usage = importlib.import_module(f"app.cli.usage.{name}")
-            usage.add_arguments(subparser)
-            subparser.epilog = usage.EPILOG
+            command = importlib.import_module(f"app.cli.commands.{name}")
+            command.add_arguments(subparser)
+            subparser.epilog = command.EPILOG
     return parser
 
 

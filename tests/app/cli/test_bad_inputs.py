@@ -17,7 +17,7 @@ from messages import says
 from refusals import refusal
 
 from app.cli import process
-from app.cli.hole_arrays import HOLE_SIZES
+from app.cli.arrays.hole_arrays import HOLE_SIZES
 from app.cli.main import TOO_LITTLE_MEMORY, main
 from app.cli.process import LEAST_MEMORY
 from app.errors import MAX_TEXT_LENGTH

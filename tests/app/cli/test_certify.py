@@ -202,7 +202,7 @@ def test_an_interval_has_one_verdict(made, verdict, monkeypatch, capsys):
     assert Report(keys=((0, key),), segments=(interval(), made)).verdict == verdict
     assert Report(keys=((0, other),), segments=(made,)).verdict == "over"
     report = Report(keys=((0, key),), segments=(made,))
-    monkeypatch.setattr("app.cli.commands.certify.certify_clip", lambda *_: report)
+    monkeypatch.setattr("app.reports.certification.certify_clip", lambda *_: report)
     status, said = certified(capsys, "--json")
     assert status == {"proven": 0, "measured": 3, "over": 1}[verdict]
     told = json.loads(said)

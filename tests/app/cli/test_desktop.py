@@ -231,5 +231,5 @@ def test_other_systems_are_told_what_to_do(home, monkeypatch, capsys, system, wi
     with pytest.raises(SystemExit) as leaving:
         main(["desktop", wish])
     assert leaving.value.code == 2
-    assert "for Linux and its kin" in capsys.readouterr().err
+    assert desktop.OTHER_SYSTEM in capsys.readouterr().err
     assert everything(home) == before

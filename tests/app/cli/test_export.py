@@ -179,7 +179,7 @@ def test_frames_go_where_one_is_and_files_have_a_name(project, tmp_path, monkeyp
 
 
 def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("app.cli.commands.export.create_context", None)
+    monkeypatch.setattr("app.cli.project_export.create_context", None)
     export(project, "--out", tmp_path / "{name}.glb", "--triangles", 600)
     out = tmp_path / f"{project.stem}.glb"
     assert out.read_bytes()[:4] == b"glTF"

@@ -6,7 +6,7 @@ from interpolation_shapes import inner_points, letter_l, random_map
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
-from app.cli.keyframes import COEFFICIENT_SHAPE
+from app.cli.arrays.keyframes import COEFFICIENT_SHAPE
 from app.cli.main import main
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import polygon

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.commands.window import DISPLAY_GONE, WORK_KEPT
+from app.cli.window_process import DISPLAY_GONE, WORK_KEPT
 from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from tests.campaigns.windows import lost_displays, screen
 
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[3]
 LOOKS = """
 import ctypes
 from documents import disc_document
-from app.cli.commands import window
+from app.cli import window_process
 from app.cli.main import main
 from app.document import History
 from app.document.commands import scene_commands
@@ -45,7 +45,7 @@ class Looks:
         x11.XSync(display, 0)
         print("went on", flush=True)
 
-window.Window = Looks
+window_process.Window = Looks
 raise SystemExit(main(["window"]))
 """
 

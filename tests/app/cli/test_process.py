@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 from documents import disc_document
 
-from app.cli.commands import doctor, window
+from app.cli import window_process
+from app.cli.commands import doctor
 from app.cli.main import EXIT_FAILED, main
 from app.document import History
 from app.document.commands import scene_commands
@@ -163,7 +164,7 @@ def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
         raise LissomError("the disk is full")
 
     monkeypatch.setattr(saving, "autosave_now", refuse)
-    window._keep(None)
+    window_process._keep(None)
     assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
 
 
@@ -175,17 +176,17 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
 ):
     ended = []
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    monkeypatch.setattr(window, "has_display", lambda: True)
-    monkeypatch.setattr(window, "Window", EndedWindow)
+    monkeypatch.setattr(window_process, "has_display", lambda: True)
+    monkeypatch.setattr(window_process, "Window", EndedWindow)
     monkeypatch.setattr(EndedWindow, "error", error)
-    monkeypatch.setattr(window, "exit_within", lambda *_: None)
+    monkeypatch.setattr(window_process, "exit_within", lambda *_: None)
     monkeypatch.setattr("app.cli.process.exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
     assert main(["window"]) == status
     assert ended == [1] * (error is not None)
     said = capfd.readouterr().err
-    assert window.WORK_KEPT in said
+    assert window_process.WORK_KEPT in said
     assert error is None or f"{error}" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
     assert load_recoverable_file(kept)[0].markers[0].name == "unsaved"
@@ -229,9 +230,9 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
     # The handler as Python knows it: it returns here, where the process would have ended.
     monkeypatch.setattr("app.cli.process.ctypes.CFUNCTYPE", lambda *_: lambda handler: handler)
     monkeypatch.setattr("app.cli.process.ctypes.CDLL", lambda _: display)
-    monkeypatch.setattr(window, "has_display", lambda: True)
-    monkeypatch.setattr(window, "Window", LostWindow)
-    monkeypatch.setattr(window, "exit_within", lambda *_: None)
+    monkeypatch.setattr(window_process, "has_display", lambda: True)
+    monkeypatch.setattr(window_process, "Window", LostWindow)
+    monkeypatch.setattr(window_process, "exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
     main(["window"])

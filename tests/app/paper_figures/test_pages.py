@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from app.cli.commands.figures import FIGURES
 from app.cli.main import main
-from app.cli.usage.figures import FIGURES
 from app.paper_figures.plots.table import MAKERS
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.errors import LissomError
+from app.texts import N_, _
 from engine.arrays import Complexes
 from engine.geometry import Hole
 
@@ -17,7 +18,7 @@ HOLE_ARRAYS = (
     "hole_cage_sizes",
     "hole_centres",
 )
-HOLE_SIZES = "{sizes} must be whole numbers that add up to the {count} vertices of {name}"
+HOLE_SIZES = N_("{sizes} must be whole numbers that add up to the {count} vertices of {name}")
 
 
 def hole_arrays(holes: Sequence[Hole]) -> dict[str, npt.NDArray[Any]]:
@@ -41,7 +42,9 @@ def read_holes(data: Mapping[str, npt.NDArray[Any]]) -> tuple[Hole, ...]:
     if len(missing) == len(HOLE_ARRAYS):
         return ()
     if missing:
-        raise LissomError(f"holes need {missing[0]} as well; write the domain anew with them")
+        raise LissomError(
+            _("the holes lack the array {name}; write the domain again").format(name=missing[0])
+        )
     centres = np.asarray(data["hole_centres"]).ravel()
     outlines = _cut(data, "hole_outlines", "hole_outline_sizes", len(centres))
     cages = _cut(data, "hole_cages", "hole_cage_sizes", len(centres))
@@ -62,10 +65,18 @@ def _cut(
     vertices, sizes = np.asarray(data[name]), np.asarray(data[sizes_name])
     if vertices.ndim != 1 or sizes.shape != (count,):
         raise LissomError(
-            f"{name} must be one list of vertices and {sizes_name} have one entry for each of "
-            f"{count} hole_centres; they are of shape {vertices.shape} and {sizes.shape}"
+            _(
+                "{name} must be one list of vertices, and {sizes} must have one entry for each of "
+                "{count} hole_centres; their shapes are {vertices} and {entries}"
+            ).format(
+                name=name,
+                sizes=sizes_name,
+                count=count,
+                vertices=vertices.shape,
+                entries=sizes.shape,
+            )
         )
     whole = sizes.dtype.kind in "iu" or not count
     if not whole or (sizes < 0).any() or sum(sizes.tolist()) != len(vertices):
-        raise LissomError(HOLE_SIZES.format(sizes=sizes_name, count=len(vertices), name=name))
+        raise LissomError(_(HOLE_SIZES).format(sizes=sizes_name, count=len(vertices), name=name))
     return np.split(vertices, np.cumsum(sizes.astype(np.int64))[:-1]) if count else []

@@ -8,20 +8,21 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from app.cli.arrays.hole_arrays import HOLE_ARRAYS, read_holes
+from app.cli.arrays.meshes import read_mesh_keyframes
 from app.cli.console import print_notice
-from app.cli.hole_arrays import HOLE_ARRAYS, read_holes
-from app.cli.meshes import read_mesh_keyframes
 from app.errors import LissomError
 from app.storage import read_arrays
+from app.texts import N_, _
 from engine.arrays import Complexes
 from engine.baselines import harmonic_coordinate_maps
 from engine.maps import HarmonicMap
 
 OPTIONAL = ("anchor", "triangles", "turns", "handles")
 NEAR = 1e-4  # error of harmonic coordinates, over the size, up to which no notice is printed
-COEFFICIENT_SHAPE = (
-    "phi and psi must both be of shape (keyframes, cage vertices); they are of shape {phi} and "
-    "{psi}, with {count} vertices of the cage and those in holes"
+COEFFICIENT_SHAPE = N_(
+    "phi and psi must both have the shape (keyframes, cage vertices); their shapes are {phi} and "
+    "{psi}, and the cages have {count} vertices"
 )
 
 
@@ -65,11 +66,13 @@ def read_keyframes(paths: list[Path]) -> Keyframes:
         return Keyframes(poses=poses, points=poses[0], triangles=triangles)
     (path,) = paths
     if path.suffix.lower() == ".obj":
-        raise LissomError(f"{path} is one pose; name the meshes of all keyframes, in order")
-    told = read_arrays(path, required=(), optional=("phi", "boundary", "positions"))
-    if "phi" not in told and "boundary" in told:
+        raise LissomError(
+            _("{path} is one pose; name the meshes of all keyframes, in order").format(path=path)
+        )
+    names = read_arrays(path, required=(), optional=("phi", "boundary", "positions"))
+    if "phi" not in names and "boundary" in names:
         return _from_boundary(path)
-    if "phi" not in told and "positions" in told:
+    if "phi" not in names and "positions" in names:
         return _from_poses(path)
     return _from_coefficients(path)
 
@@ -83,12 +86,13 @@ def _from_coefficients(path: Path) -> Keyframes:
     phi, psi, holes = data["phi"], data["psi"], read_holes(data)
     count = data["cage"].size + sum(len(hole.cage) for hole in holes)
     if phi.ndim != 2 or phi.shape != psi.shape or phi.shape[1] != count:
-        raise LissomError(COEFFICIENT_SHAPE.format(phi=phi.shape, psi=psi.shape, count=count))
+        raise LissomError(_(COEFFICIENT_SHAPE).format(phi=phi.shape, psi=psi.shape, count=count))
     logs = data.get("logs", np.zeros((len(phi), len(holes))))
     if logs.shape != (len(phi), len(holes)):
         raise LissomError(
-            f"logs must be of shape (keyframes, holes), ({len(phi)}, {len(holes)}), not "
-            f"{logs.shape}"
+            _("logs must have the shape (keyframes, holes), {wanted}, not {shape}").format(
+                wanted=(len(phi), len(holes)), shape=logs.shape
+            )
         )
     maps = tuple(
         HarmonicMap(cage=data["cage"], phi=a, psi=b, holes=holes, logs=c)
@@ -105,18 +109,21 @@ def _from_boundary(path: Path) -> Keyframes:
     )
     if read_holes(data):
         raise LissomError(
-            "keyframes by where the boundary goes are for domains without holes; give phi and psi"
+            _("the array 'boundary' is for domains without holes; give phi and psi instead")
         )
     boundary = data["boundary"]
     if boundary.ndim != 2 or not len(boundary):
         raise LissomError(
-            f"boundary must be of shape (keyframes, vertices of the outline), not {boundary.shape}"
+            _(
+                "boundary must have the shape (keyframes, vertices of the outline), not {shape}"
+            ).format(shape=boundary.shape)
         )
     maps, error = harmonic_coordinate_maps(data["outline"], data["cage"], list(boundary))
     if error > NEAR:
         print_notice(
-            "the keyframes take the outline where it was wanted within "
-            f"{100 * error:.2g} % of the diameter"
+            _("the keyframes miss their boundary by up to {error:.2g} % of the diameter").format(
+                error=100 * error
+            )
         )
     return Keyframes(maps=maps, points=data["points"], outline=data["outline"], **_options(data))
 
@@ -125,7 +132,11 @@ def _from_poses(path: Path) -> Keyframes:
     data = read_arrays(path, required=("positions", "triangles"), optional=("points", *OPTIONAL))
     poses = data["positions"]
     if poses.ndim != 2 or not len(poses):
-        raise LissomError(f"positions must be of shape (keyframes, points), not {poses.shape}")
+        raise LissomError(
+            _("positions must have the shape (keyframes, points), not {shape}").format(
+                shape=poses.shape
+            )
+        )
     return Keyframes(poses=tuple(poses), points=data.get("points", poses[0]), **_options(data))
 
 

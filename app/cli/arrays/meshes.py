@@ -10,11 +10,12 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.storage import read_arrays, read_file
+from app.texts import N_, _
 from engine.arrays import Complexes, Integers
 
 LARGEST = 64 * 1024 * 1024  # bytes; the size of a mesh of a million triangles
 FLAT = 1e-9  # spread of z, over that of x and y, up to which a mesh is plane
-NO_VERTEX = "a face of {path} names vertex {number}, and there are only {count}"
+NO_VERTEX = N_("a face of {path} names vertex {number}, and there are only {count}")
 
 
 class PlaneMesh(NamedTuple):
@@ -47,9 +48,15 @@ def read_mesh_keyframes(
     for path, mesh in zip(paths, meshes, strict=True):
         if not np.array_equal(mesh.triangles, first):
             raise LissomError(
-                f"the triangles of {path} are not those of {paths[0]} "
-                f"({len(mesh.triangles)} and {len(first)}); keyframes must be poses of one mesh, "
-                "with the same vertices in the same order"
+                _(
+                    "{path} has other triangles ({count}) than {first} ({first_count}); keyframes "
+                    "must be poses of one mesh, with the same vertices in the same order"
+                ).format(
+                    path=path,
+                    count=len(mesh.triangles),
+                    first=paths[0],
+                    first_count=len(first),
+                )
             )
     return first, tuple(mesh.vertices for mesh in meshes)
 
@@ -71,20 +78,25 @@ def _parsed(text: str, path: Path) -> PlaneMesh:
                     corners.extend((first, second, third))
         except (ValueError, OverflowError) as error:
             raise LissomError(
-                f"{path} is not an OBJ file that Lissom can read: line {number} is {line[:60]!r}"
+                _(
+                    "{path} is not an OBJ file that Lissom can read; line {number} is {line!r}"
+                ).format(path=path, number=number, line=line[:60])
             ) from error
     if not places or not corners:
-        raise LissomError(f"{path} has no {'faces' if places else 'vertices'}")
+        message = _("{path} has no faces") if places else _("{path} has no vertices")
+        raise LissomError(message.format(path=path))
     across, up, deep = np.frombuffer(places, dtype=np.float64).reshape(-1, 3).T
     triangles = np.frombuffer(corners, dtype=np.int64).reshape(-1, 3)
     if triangles.max() >= len(up):
-        raise LissomError(NO_VERTEX.format(path=path, number=triangles.max() + 1, count=len(up)))
+        raise LissomError(_(NO_VERTEX).format(path=path, number=triangles.max() + 1, count=len(up)))
     if not np.isfinite(across + up + deep).all():
-        raise LissomError(f"{path} has a vertex that is not finite")
+        raise LissomError(_("{path} has a vertex that is not finite").format(path=path))
     if np.ptp(deep) > FLAT * max(np.ptp(across), np.ptp(up)):
         raise LissomError(
-            f"{path} is not plane: z goes from {deep.min():g} to {deep.max():g}; lay the mesh into "
-            "x and y"
+            _(
+                "{path} is not plane; z goes from {least:g} to {most:g}. Turn the mesh into the "
+                "plane of x and y"
+            ).format(path=path, least=deep.min(), most=deep.max())
         )
     return PlaneMesh(across + 1j * up, triangles.astype(np.int32))
 
