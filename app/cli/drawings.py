@@ -22,8 +22,12 @@ from app.storage import (
     read_layered,
     save_project,
 )
-from app.texts import _
+from app.texts import N_, _
 from engine.domain import CutOut
+
+MANY_LAYERS = N_("{path} has {count} layers; name one by --layer, from the front: {names}")
+NO_LAYER = N_("{path} has no layer {layer!r}; its layers are, from the front: {names}")
+NO_LAYERS = N_("{path} has no layers; leave --layer out")
 
 
 def parse_cut_out(arguments: argparse.Namespace) -> CutOut:
@@ -66,23 +70,15 @@ def read_layer_picture(path: Path, layer: str | None) -> tuple[Picture, complex]
     """Return a picture or a layer's picture, and its lower left corner on the canvas."""
     if not is_layered(path):
         if layer is not None:
-            raise LissomError(_("{path} has no layers; leave --layer out").format(path=path))
+            raise LissomError(_(NO_LAYERS).format(path=path))
         return decode_picture(read_file(path), str(path)), 0j
     drawing = read_layered(path)
     names = [each.name for each in drawing.layers]
     shown = join_names([repr(name) for name in reversed(names)])
     if layer is None and len(names) > 1:
-        raise LissomError(
-            _(
-                "{path} has {count} layers; name one by --layer. From the front they are {names}"
-            ).format(path=path, count=len(names), names=shown)
-        )
+        raise LissomError(_(MANY_LAYERS).format(path=path, count=len(names), names=shown))
     if layer is not None and layer not in names:
-        raise LissomError(
-            _("{path} has no layer {layer!r}; from the front its layers are {names}").format(
-                path=path, layer=layer, names=shown
-            )
-        )
+        raise LissomError(_(NO_LAYER).format(path=path, layer=layer, names=shown))
     print_notices(drawing.summary.lines)
     found = drawing.layers[0 if layer is None else names.index(layer)]
     return found.picture, found.corner

@@ -31,9 +31,9 @@ def _overview(reports: Mapping[str, Report]) -> str:
     whole = {
         Verdict.PROVEN: _("All {count} layers are proven to keep their limits at every moment."),
         Verdict.MEASURED: _(
-            "No in-between folds. Of {count} layers, {worst} keep their limits by measurement only."
+            "No in-between folds. Layers whose limits are measured only: {worst} of {count}."
         ),
-        Verdict.OVER: _("Of {count} layers, {worst} exceed their limits, or may fold."),
+        Verdict.OVER: _("Layers that exceed their limits, or may fold: {worst} of {count}."),
     }[verdict].format(
         count=len(reports), worst=sum(report.verdict is verdict for report in reports.values())
     )

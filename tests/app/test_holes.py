@@ -112,7 +112,7 @@ def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, c
         assert interval.correction > 1e-4
         assert interval.reached.k <= 1.05 * interval.keys.k
     main(["certify", str(path)])
-    assert "Around holes the in-betweens" in capsys.readouterr().out
+    assert "To close around holes, the in-betweens" in capsys.readouterr().out
 
 
 def test_frames_keep_the_hole_open():

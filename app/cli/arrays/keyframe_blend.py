@@ -45,7 +45,7 @@ def blend_keyframes(given: Keyframes, options: BlendOptions) -> dict[str, npt.ND
         if given.count >= 2 and not 0 <= time <= last:
             raise LissomError(
                 _(
-                    "time {time:g} is out of range; {count} keyframes span the times from 0 to "
+                    "time {time:g} is out of range: {count} keyframes span the times from 0 to "
                     "{last}"
                 ).format(time=time, count=given.count, last=last)
             )

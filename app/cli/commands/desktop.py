@@ -81,22 +81,24 @@ MIME_TYPE = """\
 </mime-info>
 """
 
-EPILOG = """\
-On Linux and its kin, Lissom is entered for this person only, under $XDG_DATA_HOME (or
-~/.local/share): in the menu of applications, with its icon; as what opens .lissom files; and as
-what makes the small pictures of them that file managers show. --remove takes all of that away
-again. Install again after Lissom has moved.
+EPILOG = _(
+    """\
+On Linux and similar systems this adds Lissom for the current person only, under $XDG_DATA_HOME (or
+~/.local/share). Lissom appears in the menu of applications, with its icon, and opens .lissom files.
+File managers show thumbnails of them. --remove removes all of this. Install again after Lissom has
+moved to another folder.
 
 examples:
   lissom desktop --install
   lissom desktop --remove
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     either = parser.add_mutually_exclusive_group(required=True)
-    either.add_argument("--install", action="store_true", help="enter Lissom into the desktop")
-    either.add_argument("--remove", action="store_true", help="take all of that away again")
+    either.add_argument("--install", action="store_true", help=_("add Lissom to the desktop"))
+    either.add_argument("--remove", action="store_true", help=_("remove Lissom from the desktop"))
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -154,7 +156,7 @@ def build_desktop_files(program: str) -> dict[str, bytes]:
     """Return the desktop files for the program at this path, by their places in a data folder."""
     from app.storage import app_icon, decode_picture, draw_thumbnail
 
-    icon = decode_picture(app_icon(), "the icon of Lissom").rgba
+    icon = decode_picture(app_icon(), _("the icon of Lissom")).rgba
     values = {"program": _escaped(program), "quoted": _quoted(program)}
     return {
         ENTRY_AT: os.fsencode(ENTRY.format_map(values)),

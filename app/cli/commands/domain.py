@@ -15,30 +15,31 @@ from app.cli.options import (
 )
 from app.texts import _, ngettext
 
-EPILOG = """\
-The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO, or a layer of an
-OpenRaster (.ora) or Photoshop (.psd) drawing that --layer names. Transparent pixels are outside;
-from an opaque picture, other than a layer, a plain background is removed. Whatever else had to be
-done (parts bridged, holes filled, specks dropped) is told on standard error. Holes stay holes, the
-largest first, if a disc fits into them that is as wide as 2.4 % of the drawing's diagonal; with
---holes fill none does. A knife parts what touches, boots or a tail over a flank, by a slit along a
-line: of 0.2 % of the drawing's diagonal, from an edge to a place inside.
+EPILOG = _(
+    """\
+The picture may be a PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO. It may also be a layer
+of an OpenRaster (.ora) or Photoshop (.psd) drawing, which --layer names. Transparent pixels are
+outside. From an opaque picture, but not from a layer, a plain background is removed. Other changes
+(bridged parts, filled holes, dropped specks) are listed on standard error. Holes stay holes, the
+largest first, if a disc of 2.4 % of the drawing's diagonal fits into them; --holes fill fills all.
+A knife separates parts that touch, such as boots, or a tail over a flank. It cuts a slit of 0.2 %
+of the diagonal along a line, from an edge to a place inside.
 
-DOMAIN.npz holds, in pixels of the picture, or of the whole canvas where it is a layer of one, with
-the origin at the lower left corner and y up:
+DOMAIN.npz holds arrays in pixels of the picture, or of the whole canvas of a layer. The origin is
+at the lower left corner, and y is up:
   outline     (p,)    complex128  the domain's boundary, counter-clockwise
   cage        (n,)    complex128  the cage around it, counter-clockwise
   vertices    (v,)    complex128  of the triangulation
   triangles   (m, 3)  int32       counter-clockwise
   uv          (v, 2)  float64     u right, v up; [0, 1] spans the picture
   image_size  (2,)    int64       width, height
-  corner      ()      complex128  where the picture's lower left corner is: 0, or a layer's own
-  closed      (m,)    complex128  where the vertices of outline and holes are painted: the sides of
-                                  slits meet; the outline's own where nothing was parted
-and of the holes that are kept, all empty where there are none:
+  corner      ()      complex128  lower left corner of the picture: 0, or a layer's own
+  closed      (m,)    complex128  positions of the vertices of outline and holes with closed slits;
+                                  equal to the outline without slits
+For the kept holes it also holds, all empty without holes:
   hole_outlines       (a,)  complex128  clockwise, one hole after the other
   hole_cages          (b,)  complex128  the cage in each hole, clockwise
-  hole_outline_sizes, hole_cage_sizes  (holes,)  int64  how many vertices belong to each hole
+  hole_outline_sizes, hole_cage_sizes  (holes,)  int64  the number of vertices of each hole
   hole_centres        (holes,)  complex128  a point in the cage of each hole
 
 examples:
@@ -51,15 +52,16 @@ examples:
   lissom domain boots.png --out boots.npz --knife 450,1060,450,540
   lissom domain photo.jpg --out photo.npz --background "#8fb0d0" --tolerance 40
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("picture", metavar="PICTURE", type=input_file, help="the drawing")
+    parser.add_argument("picture", metavar="PICTURE", type=input_file, help=_("the drawing"))
     add_out(parser, "DOMAIN.npz")
     parser.add_argument(
         "--layer",
         metavar="NAME",
-        help="which layer of a drawing that has several; without a name they are listed",
+        help=_("a layer of the drawing; by default the command lists the layers"),
     )
     add_meshing_options(parser)
     add_cut_out_options(parser)
@@ -69,14 +71,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_line,
         action="append",
         default=[],
-        help="part what touches along a line from outside to a place inside, in pixels of the "
-        "picture from its upper left corner, y down; may be given several times",
+        help=_(
+            "separate parts that touch, along a line from outside to a place inside, in pixels of "
+            "the picture from its upper left corner, y down; may be given several times"
+        ),
     )
     parser.add_argument(
         "--preview",
         metavar="PREVIEW.png",
         type=output_file,
-        help="also draw picture, outline, cage and mesh",
+        help=_("also draw picture, outline, cage and mesh"),
     )
 
 
@@ -156,6 +160,8 @@ def _line(text: str) -> tuple[complex, ...]:
         numbers = []
     if len(numbers) < 4 or len(numbers) % 2 or not all(map(isfinite, numbers)):
         raise argparse.ArgumentTypeError(
-            f"expected x,y,x,y,... of at least two places in pixels, not {text!r}"
+            _("expected x,y,x,y,... of at least two places in pixels, not {text!r}").format(
+                text=text
+            )
         )
     return tuple(map(complex, numbers[::2], numbers[1::2]))

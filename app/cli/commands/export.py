@@ -21,7 +21,7 @@ NO_USE = N_("{name} has no use for --{flag}; leave it out")
 COLUMN = max(map(len, EXPORT_FORMATS)) + 4
 FORMATS = "\n".join(
     textwrap.fill(
-        format_.about,
+        _(format_.about),
         width=98,
         initial_indent=f"  {name}".ljust(COLUMN),
         subsequent_indent=" " * COLUMN,
@@ -30,15 +30,16 @@ FORMATS = "\n".join(
     for name, format_ in EXPORT_FORMATS.items()
 )
 *OTHERS, LAST = format_by_suffix()  # suffixes
-EPILOG = f"""\
-What is not given is as the project's own export settings have it.
+EPILOG = _(
+    """\
+The defaults of options are the project's own export settings.
 
 formats:
-{FORMATS}
-Without --format, an --out that ends in {", ".join(OTHERS)} or {LAST} chooses it. Animations
-of a project that loops play for ever, others once. PNGs have straight alpha; colours are those of
-sRGB. Interrupted, png leaves the frames that are done, each of them whole, and every other format
-nothing. Files of before are replaced.
+{formats}
+Without --format, an --out that ends in {suffixes} or {last}
+chooses the format. Animations of a project that loops play for ever, others once. PNGs have
+straight alpha, and colours are sRGB. An interrupted export to png keeps the finished frames, each
+of them whole; other formats write nothing then. Existing files are replaced.
 
 examples:
   lissom export wave.lissom --out frames
@@ -47,6 +48,7 @@ examples:
   lissom export wave.lissom --out wave.glb --tolerance 0.2
   lissom export wave.lissom --out pose.png --frame 12 --size 4000x3000
 """
+).format(formats=FORMATS, suffixes=", ".join(OTHERS), last=LAST)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -54,35 +56,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_out(
         parser,
         "DIR_OR_FILE",
-        "a folder for PNG frames, a file for every other format",
+        _("a folder for PNG frames, a file for every other format"),
         place=output,
     )
     either = parser.add_mutually_exclusive_group()
     either.add_argument(
-        "--frames", metavar="A:B", type=_frames, help="frames of the timeline, both ends included"
+        "--frames",
+        metavar="A:B",
+        type=_frames,
+        help=_("frames of the timeline, both ends included"),
     )
     either.add_argument(
-        "--frame", metavar="N", type=int, help="one frame; to a name in .png, as one picture"
+        "--frame",
+        metavar="N",
+        type=int,
+        help=_("one frame; with a name that ends in .png, one picture"),
     )
     parser.add_argument(
-        "--fps", metavar="F", type=float, help="pictures a second (default: the project's)"
+        "--fps", metavar="F", type=float, help=_("frames per second (default: the project's)")
     )
     parser.add_argument(
-        "--size", metavar="WxH", type=_size, help="in pixels (default: as the framing needs)"
+        "--size", metavar="WxH", type=_size, help=_("in pixels (default: as the framing needs)")
     )
     parser.add_argument(
-        "--background", metavar="COLOUR", help="transparent, or a colour such as #fff or #ffffff"
+        "--background", metavar="COLOUR", help=_("transparent, or a colour such as #fff or #ffffff")
     )
     parser.add_argument(
         "--framing",
         choices=FRAMINGS,
-        help="the canvas, or all of the motion; with a camera both are what it shows",
+        help=_("the canvas, or all of the motion; with a camera both are its view"),
     )
     parser.add_argument(
         "--names",
         metavar="PATTERN",
-        help='of the files of PNG frames, such as "{name}_####": "#" for each digit of the number, '
-        "{name} for the project's name, here and in --out (default: the project's, frame_####)",
+        help=_(
+            'names of PNG frames, such as "{name}_####": "#" for each digit of the frame, {name} '
+            "for the project's name, which --out may contain too (default: the project's names, "
+            "frame_####)"
+        ),
     )
     for options in FormatSettings().options().values():
         for name, option in options.option_fields().items():
@@ -92,12 +103,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             else:
                 is_whole = isinstance(usual, int)
                 how = {"metavar": "N" if is_whole else "PX", "type": int if is_whole else float}
-            parser.add_argument(f"--{option.flag}", dest=name, help=option.description, **how)
-    parser.add_argument("--layer", metavar="NAME", help="export this layer alone")
+            parser.add_argument(f"--{option.flag}", dest=name, help=_(option.description), **how)
+    parser.add_argument("--layer", metavar="NAME", help=_("export this layer alone"))
     # Its name in earlier versions.
     parser.add_argument("--figure", dest="layer", metavar="NAME", help=argparse.SUPPRESS)
     add_variant_option(parser)
-    parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help="what to write")
+    parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help=_("the format to write"))
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -202,15 +213,17 @@ def _format_of(out: Path, own: "ExportSettings", *, is_one: bool) -> str | None:
 
 
 def _frames(text: str) -> tuple[int, int]:
-    return _two_numbers(text, r"(\d+):(\d+)", "two frames with a colon, such as 0:47")
+    wanted = _("expected two frames with a colon, such as 0:47, not {text!r}")
+    return _two_numbers(text, r"(\d+):(\d+)", wanted)
 
 
 def _size(text: str) -> tuple[int, int]:
-    return _two_numbers(text, r"(\d+)[xX×](\d+)", "width and height, such as 1920x1080")
+    wanted = _("expected width and height, such as 1920x1080, not {text!r}")
+    return _two_numbers(text, r"(\d+)[xX×](\d+)", wanted)
 
 
 def _two_numbers(text: str, pattern: str, wanted: str) -> tuple[int, int]:
     match = re.fullmatch(pattern, text)
     if match is None:
-        raise argparse.ArgumentTypeError(f"expected {wanted}, not {text!r}")
+        raise argparse.ArgumentTypeError(wanted.format(text=text))
     return int(match[1]), int(match[2])

@@ -11,18 +11,20 @@ from app.texts import _, ngettext
 
 FIGURES = (1, 3, 4, 5, 6, 7, 8, 9, 10, 11)
 
-EPILOG = """\
-Makes the figures of the paper anew with Lissom's own drawings: DIR/figure_N.png, and one page,
-DIR/figures.html, with captions and measured numbers. Figure 9 times every method, the slowest with
-seconds a frame: --largest 100000 takes many minutes.
+EPILOG = _(
+    """\
+Draws the figures of the paper with Lissom's own drawings: DIR/figure_N.png, and one page,
+DIR/figures.html, with captions and measured numbers. Figure 9 times every method. The slowest one
+takes seconds for a frame; with --largest 100000 this takes many minutes.
 
-It needs matplotlib; without it, it says how to install that.
+It needs matplotlib; if it is missing, the command says how to install it.
 
 examples:
   lissom figures --out figures
   lissom figures --out figures --only 5
   lissom figures --out figures --only 9 --largest 100000
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,21 +35,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=int,
         choices=FIGURES,
         action="append",
-        help=f"make this figure, of {', '.join(map(str, FIGURES))}; may be said again",
+        help=_("make this figure, of {numbers}; may be given several times").format(
+            numbers=", ".join(map(str, FIGURES))
+        ),
     )
     parser.add_argument(
         "--triangles",
         metavar="N",
         type=whole_number(1_000, 2_000_000),
         default=6_000,
-        help="of each drawing, 1000 to 2000000 (default: %(default)s)",
+        help=_("triangles of each drawing, 1000 to 2000000 (default: %(default)s)"),
     )
     parser.add_argument(
         "--largest",
         metavar="N",
         type=whole_number(1_000),
         default=10_000,
-        help="vertices of the largest mesh in figure 9, at least 1000 (default: %(default)s)",
+        help=_("vertices of the largest mesh in figure 9, at least 1000 (default: %(default)s)"),
     )
 
 

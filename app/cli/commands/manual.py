@@ -8,14 +8,16 @@ from app.cli.console import print_line
 from app.cli.options import add_out, output
 from app.texts import _
 
-EPILOG = """\
-Pages, pictures and all, are written into DIR, which is made if it is missing: open DIR/index.html
-in a browser. They need no network and no server. In the window, F1 opens the page about what is in
-front.
+EPILOG = _(
+    """\
+Pages and pictures are written into DIR, which is created if it is missing. Open DIR/index.html in a
+browser. The pages need no network and no server. In the window, F1 opens the page about the panel
+or tool in use.
 
 examples:
   lissom manual --out manual
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,8 @@ from app.cli.console import StatusLine, print_line, print_notices
 from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
 from app.texts import _
 
-EPILOG = """\
+EPILOG = _(
+    """\
 SCRIPT.json is an animation as a small text. Coordinates are pixels of the picture with the origin
 at its lower left corner and y up, as in `lissom domain`:
 
@@ -15,25 +16,27 @@ at its lower left corner and y up, as in `lissom domain`:
    "handles": {"nose": [120, 880], "hoof": [300, 40]},
    "keys": [{"frame": 0}, {"frame": 24, "targets": {"nose": [90, 400]}, "ease": "in-out"}]}
 
-Left out, fps is 24, loop false, variant "metric" (or nu, scaled-eta, eta, linear), bounds as above,
-which is "Natural" in the window ("Rubbery" is 0.8, 5.0, 0.2 and "Stiff" 0.35, 1.5, 0.67), the
-anchor the engine's choice, and ease "linear" (or in, out, in-out, hold, or four numbers from 0 to 1
-of a Bézier curve); it leads to the next key. A key's passing is "through", where it is between two
-others the motion passes it at one velocity; "corner", come and go straight, which is what a key has
-that names an ease; "stop"; or "hold", stay until the next key. A handle that a key does not name
-keeps its target of the key before, at first its place in the picture. Each key is solved by a drag
-from the key before; where the bounds hold a handle back, the key is kept and a notice says by how
-much.
+By default fps is 24, loop false, and variant "metric" (or nu, scaled-eta, eta, linear). The limits
+are called bounds; by default they are those above, which are "Natural" in the window ("Rubbery" is
+0.8, 5.0, 0.2 and "Stiff" 0.35, 1.5, 0.67). By default Lissom chooses the anchor, and ease is
+"linear" (or in, out, in-out, hold, or four numbers from 0 to 1 of a Bézier curve). The ease of a
+key leads to the next key. The passing of a key is "through", "corner", "stop" or "hold". "through"
+is the default between two other keys: the motion goes through the key at one velocity. At a
+"corner" it comes and goes straight; this is the default of keys with an ease. "hold" stays until
+the next key. A handle that a key does not name keeps its target of the key before, at first its
+place in the picture. Each key is solved by a drag from the key before. If the limits stop a handle,
+the key is kept, and a notice says how far the handle is from its target.
 
-A key with "turn": {"nose": 20} turns the shape at handles by so many degrees, counter-clockwise,
-from how it is drawn; a later key that names none leaves them turned so.
+A key with "turn": {"nose": 20} turns the shape at a handle by 20 degrees, counter-clockwise, from
+the drawing. Later keys without "turn" keep it.
 
-A key with "pull": 10 pulls the handles that it names with no more force than that, as the hand does
-in the window: what is beyond their reach moves nothing else, and is wanted where it came to.
+A key with "pull": 10 pulls the handles that it names with at most this force, as a drag in the
+window does. Handles that cannot reach their targets then move nothing else, and their targets move
+to where the handles are.
 
-A handle that two neighbouring keys have at one place stays there in between, as a foot does on the
-ground. With "still": false in {"at": [300, 40], "still": false} it moves as the shape takes it; the
-same at the top, or in a layer, says so of all handles. A handle has a clock of its own with
+A handle with equal targets in two neighbouring keys stays there in between, as a foot does on the
+ground. With "still": false in {"at": [300, 40], "still": false} it follows the shape instead. At
+the top, or in a layer, "still" is for all handles. A handle has a track of its own with
 
    "tracks": [{"handle": "nose", "with": "pose", "delay": 4, "reach": 0.3,
                "keys": [{"frame": 0, "offset": [0, 0]}, {"frame": 9, "offset": [12, 5]},
@@ -42,55 +45,54 @@ same at the top, or in a layer, says so of all handles. A handle has a clock of 
    "springs": [{"handle": "ear", "preset": "ear", "lag": 1, "strength": 0.5},
                {"handle": "tail", "frequency": 1.6, "damping": 0.18, "root": "hip"}]
 
-A track acts from its first key to its last one, both included, and changes nothing elsewhere. Its
-offset is by how much the handle is beside its place in the motion of the poses, in axes that turn
-with the shape there; with "picture", at is its place on the canvas. Several handles move together
-as "handles": ["hoof", "heel"]: keys are of the first one. A key may turn the shape at the handle by
-so many degrees, counter-clockwise ("turn": 20), and has ease and passing as those above; through
-the first and the last one the handle comes from rest and to rest, unless they meet in a loop. One
-that is passed through may say at which velocity, in pixels a frame in the axes of its offset or of
-the canvas ("velocity": [2, -0.5]). Left out, with is "pose", delay 0 frames (in a loop it comes
-round), and reach 1: from 0 to 1, how far around the handle the body gives. The last key, of poses
-or of a track, or the end of what repeats, is where the animation ends.
+A track acts from its first key to its last key, both included. An offset is relative to the
+handle's place in the motion of the poses, in axes that turn with the shape there. With "picture",
+"at" is the place on the canvas. Several handles move together as "handles": ["hoof", "heel"]; the
+keys are those of the first handle. A key may turn the shape at the handle by degrees,
+counter-clockwise ("turn": 20), and has ease and passing as above. At its first and last key the
+handle starts and ends at rest, unless they meet in a loop. A key with passing "through" may set the
+velocity, in pixels a frame, in the axes of its offset or of the canvas ("velocity": [2, -0.5]). By
+default "with" is "pose", delay is 0 frames (in a loop it wraps around), and reach is 1. Reach, from
+0 to 1, says how far around the handle the body gives way. The animation ends at the last key of
+poses or tracks, or at the end of the last cycle.
 
-A spring lets a handle follow the motion late and swing: frequency in Hz; damping, 1 where it comes
-back without swinging over; lag 0 frames, and strength 1. The presets are tail, ear, hair, cloth and
-jelly. It swings about another handle and keeps its distance to that: about its "root", or where
-that is left out about the nearest handle along bones, or else along the drawing, that has no
-spring. "stretch": from 0, which is the default, to 1, lets that distance change; 1 swings freely.
-Keys do not hold what follows: in poses it goes where the body carries it.
+A spring makes a handle follow the motion late and swing. Frequency is in Hz; damping 1 does not
+overshoot; by default lag is 0 frames, and strength is 1. The presets are tail, ear, hair, cloth and
+jelly. The handle swings about its "root", another handle, and keeps its distance to it. By default
+the root is the nearest handle without a spring, along bones, or else along the drawing. "stretch",
+from 0, the default, to 1, lets that distance change; 1 swings freely. Keys do not hold handles with
+springs: in poses the body carries them.
 
 A stretch of time repeats with
 
    "cycles": [{"from": 0, "to": 24, "until": 96}]
 
-Its last frame is the same moment as its first one, as in a loop: keys are from frame 0 up to 23,
-and one at 24 must be like that at 0. Every repeat is the same motion, through the seams too;
-without until it goes on to the end of the animation. Tracks of which all keys are in the stretch
-repeat with it, and so do "movement" and "opacity", unless they end otherwise than they begin; and
-so do "front", "visible" and "order". "attach" does where all of its changes are in the stretch:
-each repeat begins as the stretch does, the last entry with "keep" leads there, and nothing jumps.
-So do the keys of a choice with a cycle that all of its layers have. Keys before lead to its first
-key; keys after go on from what is shown at the end, which must be one of its keys. Cycles do not
-overlap.
+Its last frame is the same moment as its first frame, as in a loop. Set keys from frame 0 to 23; a
+key at 24 must equal the key at 0. Every repeat is the same motion, without a seam. Without "until"
+it repeats to the end of the animation. Tracks with all their keys in the cycle repeat with it. So
+do "movement" and "opacity" if they end as they begin, and "front", "visible" and "order". "attach"
+repeats if all its changes are in the cycle. Each repeat then begins as the cycle does; the last
+entry with "keep" leads there, and nothing jumps. The keys of "choices" repeat with a cycle that all
+of their layers have. Keys before the cycle lead to its first key. Keys after it continue from the
+frame shown at its end, which must be one of its keys. Cycles do not overlap.
 
-A handle may say what is painted in front around it, from -1 (behind) to 1, and how far around, in
-pixels: {"at": [120, 880], "front": 0.5, "extent": 60}; a key with "front": {"nose": 1} says it from
-there on.
+A handle may set the depth of the drawing around it, from -1 (behind) to 1 (in front), and how far
+around, in pixels: {"at": [120, 880], "front": 0.5, "extent": 60}. A key with "front": {"nose": 1}
+sets it from there on.
 
 Parts of the drawing are stiffer or softer with
 
    "stiff": [{"around": [530, 800], "radius": 250, "amount": 10},
              {"from": "elbow", "to": "wrist", "amount": 30}]
 
-The first is painted on the outline within so many pixels of a point, as far as it is seen from
-there; the second is a bone, the limb between two handles without the joints at its ends. amount is
-from 1/30, soft, to 100; where it is above 1 the drawing also bends and stretches less: k and the
-logarithms of sigma_a and sigma_b are there at most those of the bounds over the root of amount.
+The first entry paints the outline within so many pixels of a point, as far as it is visible from
+there. The second entry is a bone: the limb between two handles without the joints at its ends.
+"amount" is from 1/30, soft, to 100. Above 1 the limits are tighter, too: k and the logarithms of
+sigma_a and sigma_b are divided by the square root of the amount.
 
-DRAWING may have layers (OpenRaster .ora, or .psd where psd-tools is installed). Coordinates are
-pixels of the canvas then, and a script of several layers has, instead of anchor, handles, keys,
-tracks, springs, cycles and stiff:
+DRAWING may have layers (OpenRaster .ora, or .psd if psd-tools is installed). Coordinates are then
+pixels of the canvas. In place of anchor, handles, keys, tracks, springs, cycles and stiff, a script
+of several layers has
 
    "layers": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
                {"layer": "arm", "handles": {"hand": [310, 240]},
@@ -99,54 +101,57 @@ tracks, springs, cycles and stiff:
                 "visible": [[0, true], [40, false]]}],
    "choices": [{"name": "mouth", "layers": ["closed", "ah"], "keys": [[0, "closed"], [8, "ah"]]}]
 
-Each may have a variant, bounds, an anchor, tracks, springs, cycles and stiff of its own. What is
-attached is moved as a whole, in every frame, so that its anchor comes to where the point "at" of
-its parent has come; with turn, which is true where left out, it turns with the parent there. "at"
-is a point of the parent as it is drawn; where no anchor is given it is the anchor, too, and is on
-both layers. Handles and targets are told as if it hung on nothing. A list lets it change hands,
-each entry from its frame on: with "keep" nothing jumps then, and at may be left out; "to": null
-lets go:
+Each layer may have its own variant, bounds, anchor, tracks, springs, cycles and stiff. An attached
+layer moves as a whole, so that in every frame its anchor is at the point "at" of its parent. With
+"turn", which is true by default, it turns with the parent there. "at" is a point of the undeformed
+parent. Without an anchor, "at" is the anchor, too, and must be on both layers. Handles and targets
+are those of the layer without its parent. A list changes the parent; each entry counts from its
+frame on. With "keep" nothing jumps then, and "at" may be left out. "to": null detaches the layer:
 
    "attach": [{"to": "hand A", "at": [310, 240]}, {"frame": 80, "to": "hand B", "keep": true}]
 
-Layers that no entry names stand still. visible says from which frames on a layer is seen or
-not, also one that is hidden in DRAWING. Of the layers of a choice exactly one is seen at a time,
-from the frame on that its keys name; none of them is in another choice or has visible.
+Layers without an entry stand still. "visible" lists the frames from which a layer is visible or
+not; it also shows layers that are hidden in DRAWING. "choices" are switches: exactly one of their
+layers is visible, from the frame on that the key names. A layer is in one switch only, and has no
+"visible" then.
 
-What moves between keys of its own:
+The camera and its canvas are at the top of the script:
 
    "camera": {"keys": [{"frame": 0, "centre": [400, 300]},
-                       {"frame": 48, "centre": [520, 340], "zoom": 2, "turn": 10}]},
+                       {"frame": 48, "centre": [520, 340], "zoom": 2, "turn": 10]}},
    "canvas": [1280, 720]
 
-at the top lets every frame of an export show what the camera does: the point centre in the middle,
-all zoom times as large (1 where left out; blended by its logarithm) and turned by so many degrees
-counter-clockwise as it is seen (0). Its frame is the canvas, from the origin to its upper right
-corner, which is as large as DRAWING where no canvas is given. Before its first key and after its
-last one it is held; in a loop the last one leads on to the first one. A layer has
+Every frame of an export then shows the camera's view. The point centre is in its middle. The view
+is zoom times enlarged (1 by default; blended by its logarithm), and turned by degrees,
+counter-clockwise as seen (0 by default). Its size is the canvas, by default as large as DRAWING.
+Before its first key and after its last key the camera stands still; in a loop the last key leads to
+the first key. A layer has
 
    "movement": {"keys": [{"frame": 0}, {"frame": 24, "shift": [60, 0], "turn": 90}]},
    "opacity": [[0, 1], [12, 0.2]],
    "order": [[24, {"in_front_of": "arm"}], [36, {"behind": "body"}], [48, null]]
 
-movement shifts it as a whole from where its poses have it, and turns it around its anchor, or else
-the middle of its shape, with all that hangs on it; while it hangs on another one it goes with that
-one alone. opacity is a number, or fades evenly from key to key. order lays it right in front of
-another layer from a frame on, or right behind it; null takes it back to its place in DRAWING. A
-layer that stands still has these too, with "handles": {} and "keys": [{"frame": 0}]. Keys of the
-camera and of movements have ease and passing as those of poses; where they begin and end they come
-from rest and to rest, unless an ease is named.
+"movement" shifts the posed layer as a whole, and turns it around its anchor, or else around the
+middle of its shape. Attached layers move with it. While the layer itself is attached it follows
+only its parent. "opacity" is a number, or changes evenly from key to key. "order" moves the layer
+right in front of or right behind another layer from a frame on; null returns it to its place in
+DRAWING. A layer that stands still has these too, with "handles": {} and "keys": [{"frame": 0}].
+Keys of the camera and of movements have ease and passing as those of poses. They start and end at
+rest, unless they have an ease.
 
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine
   lissom pose photo.jpg nod.json --out nod.lissom --mask mask.png
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("picture", metavar="DRAWING", type=input_file, help="the drawing")
-    parser.add_argument("script", metavar="SCRIPT.json", type=input_file, help="handles and keys")
+    parser.add_argument("picture", metavar="DRAWING", type=input_file, help=_("the drawing"))
+    parser.add_argument(
+        "script", metavar="SCRIPT.json", type=input_file, help=_("handles and keys")
+    )
     add_out(parser, "PROJECT.lissom")
     add_meshing_options(parser)
     add_cut_out_options(parser)

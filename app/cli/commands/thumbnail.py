@@ -9,14 +9,16 @@ from app.texts import N_, _
 
 NO_SMALL_PICTURE = N_("{project} has no thumbnail; open the project in the window and save it")
 
-EPILOG = """\
-The small picture is the one that was saved with the project; nothing is rendered. It is never made
-larger than it is. File managers call this command after 'lissom desktop --install'.
+EPILOG = _(
+    """\
+The thumbnail was saved with the project; nothing is rendered. It is never enlarged. File managers
+call this command after 'lissom desktop --install'.
 
 examples:
   lissom thumbnail nod.lissom --out nod.png
   lissom thumbnail nod.lissom --out nod.png --size 128
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=whole_number(1),
         default=256,
-        help="pixels of its longer side, at most (default: %(default)s)",
+        help=_("pixels of the longer side, at most (default: %(default)s)"),
     )
 
 

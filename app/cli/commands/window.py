@@ -6,7 +6,8 @@ from pathlib import Path
 from app.errors import LissomError
 from app.texts import _
 
-EPILOG = """\
+EPILOG = _(
+    """\
 Without FILE the window opens with samples to try. `lissom FILE` is short for `lissom window FILE`.
 
 examples:
@@ -14,11 +15,12 @@ examples:
   lissom giraffe.png
   lissom wave.lissom
 """
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "file", metavar="FILE", nargs="?", type=_existing, help="a picture or a .lissom project"
+        "file", metavar="FILE", nargs="?", type=_existing, help=_("a picture or a .lissom project")
     )
 
 

@@ -204,7 +204,7 @@ def test_too_little_memory_is_told_in_one_line(tmp_path, command, limit):
     given = SAMPLE if command == "domain" else sample_images() / "friend.lissom"
     ended = run(command, given, "--out", tmp_path / "out", preexec_fn=lessen)
     assert ended.returncode == 2
-    assert ended.stderr.startswith("lissom: error: not enough memory")
+    assert ended.stderr.startswith(f"lissom: error: {TOO_LITTLE_MEMORY}")
     assert ended.stderr.count("\n") == 1
 
 

@@ -238,4 +238,4 @@ def test_certify_says_how_many_frames_it_looked_at(tmp_path, monkeypatch, capsys
     save_project(project, with_layer(replace(document, frames=FrameRange(0, 9)), tracks=(track,)))
     status, text = certified(capsys, project=project)
     assert status == 3
-    assert "act in 7 frames, repeats told once. 3 of them were looked at" in text
+    assert "act in 7 frames; a repeat counts once. 3 of them were examined" in text

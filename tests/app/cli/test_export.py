@@ -129,7 +129,7 @@ def test_options_stand_in_for_the_projects_own_settings(document, tmp_path, caps
     project = tmp_path / "own.lissom"
     save_project(project, altered(document, export=own))
     export(project, "--out", tmp_path / "sheet", "--no-trim", "--padding", 0)
-    assert "4 frames of 60 × 45 pixels in 2 columns and 2 rows" in capsys.readouterr().out
+    assert "4 frames of 60 × 45 pixels, in 2 columns and 2 rows" in capsys.readouterr().out
     sheet = pixels(tmp_path / "sheet")
     assert sheet.shape == (90, 120, 4)
     assert sheet[0, 0].tolist() == [0x11, 0x22, 0x33, 255]
@@ -242,7 +242,7 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "walk.gif", "--no-trim"], "no use for --trim"),
         (["--out", "walk.html", "--power-of-two"], "no use for --power-of-two"),
         (["--out", "frames", "--tolerance", "1"], "no use for --tolerance"),
-        (["--out", "walk.png"], "walk.png may be picture or apng or spritesheet"),
+        (["--out", "walk.png"], "(picture, apng, spritesheet)"),
         (["--out", "walk.png", "--frame", "7"], "0 to 6"),
         (["--out", "walk.obj", "--format", "gif"], "end in .gif"),
         (["--out", "walk.glb", "--format", "gif"], "end in .gif"),

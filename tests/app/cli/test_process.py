@@ -13,6 +13,7 @@ from documents import disc_document
 from app.cli import window_process
 from app.cli.commands import doctor
 from app.cli.main import EXIT_FAILED, main
+from app.cli.process import STILL_AT_WORK
 from app.document import History
 from app.document.commands import scene_commands
 from app.editor import error_reports
@@ -102,7 +103,7 @@ def test_what_hangs_after_a_signal_does_not_keep_the_process():
         process.send_signal(signal.SIGTERM)
         out, said = process.communicate()
     assert out == ""
-    assert said == "lissom: interrupted by SIGTERM, while something was still at work\n"
+    assert said == f"lissom: {STILL_AT_WORK.format(signal='SIGTERM')}\n"
     assert process.returncode == 143
 
 

@@ -135,7 +135,7 @@ def test_certify_tells_of_each_layer(project, capsys):
     overview, *details = capsys.readouterr().out.split("\n\n")
     first, header, *lines, _ = overview.splitlines()
     assert first == (
-        "All in all: proven: all 3 layers are proven to keep their bounds at every moment."
+        "All in all: proven. All 3 layers are proven to keep their limits at every moment."
     )
     assert header.split() == ["k", "sigma_a", "sigma_b"]
     assert [line.split()[0] for line in lines] == ["body", "arm", "patch"]
@@ -156,7 +156,7 @@ def test_certify_names_what_is_over_first(project, capsys, tmp_path):
     save_project(tmp_path / "over.lissom", document.with_layer(narrow))
     assert main(["certify", str(tmp_path / "over.lissom")]) == 1
     first, _, _, line, _, more = capsys.readouterr().out.splitlines()
-    assert first == "All in all: OVER: 1 of 3 layers are beyond their bounds, or may fold."
+    assert first == "All in all: OVER. Layers that exceed their limits, or may fold: 1 of 3."
     assert line.split()[0] == "arm"
     assert "OVER at key 8" in line
     assert "--details" in more
