@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from html import escape
 
 from app.paper_figures.plots.paper_figure import PaperFigure
+from app.texts import _
 
 STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #2b2f38; background: #fff;
@@ -17,7 +18,7 @@ th, td { padding: .25rem .9rem .25rem 0; text-align: right; border-bottom: 1px s
   font-variant-numeric: tabular-nums }
 th:first-child, td:first-child { text-align: left }
 """
-INTRODUCTION = (
+INTRODUCTION = _(
     "The figures of <cite>Bounded Distortion Harmonic Shape Interpolation</cite> (Chien, Chen and "
     "Weber, SIGGRAPH 2016), made anew with Lissom's own drawings. Where a table speaks of a key, a "
     "number is relative to the larger of both keyframes: k and τ − 1 of the 100 points of highest "
@@ -30,13 +31,14 @@ def render_page(plates: Mapping[int, PaperFigure]) -> str:
     figures = "\n".join(_figure(number, plate) for number, plate in plates.items())
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">\n'
-        "<title>Figures – Lissom</title>\n"
-        f"<style>{STYLE}</style></head>\n<body>\n<h1>Figures</h1>\n<p>{INTRODUCTION}</p>\n"
+        f"<title>{_('Figures')} – Lissom</title>\n"
+        f"<style>{STYLE}</style></head>\n<body>\n<h1>{_('Figures')}</h1>\n<p>{INTRODUCTION}</p>\n"
         f"{figures}\n</body></html>\n"
     )
 
 
 def _figure(number: int, plate: PaperFigure) -> str:
+    name = _("Figure {number}").format(number=number)
     picture = base64.b64encode(plate.picture).decode()
     head = "".join(f"<th>{escape(word)}</th>" for word in plate.column_names)
     rows = "".join(
@@ -44,8 +46,8 @@ def _figure(number: int, plate: PaperFigure) -> str:
         for row in plate.rows
     )
     return (
-        f'<figure id="figure-{number}">\n<h2>Figure {number}: {escape(plate.title)}</h2>\n'
-        f'<img alt="Figure {number}" src="data:image/png;base64,{picture}">\n'
+        f'<figure id="figure-{number}">\n<h2>{name}: {escape(plate.title)}</h2>\n'
+        f'<img alt="{name}" src="data:image/png;base64,{picture}">\n'
         f"<figcaption>{escape(plate.caption)}\n<table><tr>{head}</tr>\n{rows}</table>\n"
         "</figcaption></figure>"
     )

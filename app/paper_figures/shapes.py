@@ -124,18 +124,18 @@ def make_sample_pair(name: str, first: int, second: int, triangles: int) -> Shap
     """
     path = sample_images() / f"{name}.lissom"
     document = load_project(path)
-    (figure,) = document.layers
-    domain = figure.domain
+    (layer,) = document.layers
+    domain = layer.domain
     domain = MeshedDomain.of(domain, triangles)
-    picture = decode_picture(figure.picture.data, f"the picture of {path}")
-    poses = [figure.keys[index].pose for index in (first, second)]
+    picture = decode_picture(layer.picture.data, path.name)
+    poses = [layer.keys[index].pose for index in (first, second)]
     return ShapePair(
-        shape=Shape(picture=cut_picture(picture, figure.cut_out).texture, domain=domain),
-        first=figure.map_of(poses[0]),
-        second=figure.map_of(poses[1]),
-        anchor=figure.anchor,
-        handles=np.array([handle.position for handle in figure.handles]),
-        bounds=figure.bounds,
+        shape=Shape(picture=cut_picture(picture, layer.cut_out).texture, domain=domain),
+        first=layer.map_of(poses[0]),
+        second=layer.map_of(poses[1]),
+        anchor=layer.anchor,
+        handles=np.array([handle.position for handle in layer.handles]),
+        bounds=layer.bounds,
     )
 
 

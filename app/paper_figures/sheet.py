@@ -10,6 +10,7 @@ from app.errors import LissomError, install_hint
 from app.motion import BoundingBox
 from app.paper_figures.measure import MeasuredMotion
 from app.paper_figures.shape_renderer import ShapeRenderer, bounds_of, same_scale
+from app.texts import _
 from engine.arrays import Floats
 
 if TYPE_CHECKING:
@@ -25,7 +26,9 @@ SHOWN = 1.9  # relative distortion above which curves are cut off
 def require_matplotlib() -> None:
     """Raise `LissomError` if matplotlib is not installed, before any computation."""
     if remedy := install_hint("figures"):
-        raise LissomError(f"the figures need matplotlib, which is not installed: {remedy}")
+        raise LissomError(
+            _("the figures need matplotlib, which is not installed: {remedy}").format(remedy=remedy)
+        )
 
 
 def new_sheet(width: float, height: float) -> "Figure":
@@ -121,7 +124,9 @@ def plot_shares(axes: "Axes", times: Floats, shares: Floats, title: str, colour:
     axes.axhline(1.0, color=LIMIT, linewidth=1.2)
     axes.set_xlim(0, 1)
     axes.set_ylim(0, SHOWN)
-    axes.set_title(f"{title}, at most {format_number(float(shares.max()))}", color=INK, fontsize=9)
+    most = format_number(float(shares.max()))
+    text = _("{title}, at most {value}").format(title=title, value=most)
+    axes.set_title(text, color=INK, fontsize=9)
     style_axes(axes)
 
 
@@ -137,5 +142,5 @@ def style_axes(axes: "Axes") -> None:
 def format_number(value: float) -> str:
     """Format a number for printing beside a figure."""
     if not np.isfinite(value):
-        return "unbounded (it folds)"
+        return _("unbounded (it folds)")
     return f"{value:.4f}" if value < 10 else f"{value:,.0f}"

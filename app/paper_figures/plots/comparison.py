@@ -8,6 +8,7 @@ from app.paper_figures.methods import ARAP, FFMP, METRIC, NU, SCALED_ETA, Compar
 from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
 from app.paper_figures.shapes import ShapePair, bar_to_ring, beam, bend_points, letter_s
 from app.paper_figures.sheet import draw_strip, new_sheet, plot_shares
+from app.texts import _
 from engine.baselines import harmonic_coordinate_maps
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -16,28 +17,28 @@ HORN_TURN, HORN_GROWTH = 2.4, 0.7  # of the bar in Figure 7, over its length
 
 def make_figure_5(studio: FigureContext) -> PaperFigure:
     """Draw Figure 5: a letter S becomes a U."""
-    caption = (
+    caption = _(
         "S to U. Pictures and geometric distortion of our variants, ARAP and FFMP: k and τ of the "
         "100 points of highest distortion, each relative to its keyframe. Ours stay below the red "
         "line; the others' in-betweens exceed it."
     )
     methods = (ARAP, FFMP, NU, SCALED_ETA, METRIC)
-    return _compare(studio, letter_s(studio.triangles), methods, "S to U", caption)
+    return _compare(studio, letter_s(studio.triangles), methods, _("S to U"), caption)
 
 
 def make_figure_6(studio: FigureContext) -> PaperFigure:
     """Draw Figure 6: a bar becomes a ring."""
-    caption = (
+    caption = _(
         "Bar to ring. Pictures and geometric distortion, as in Figure 5, of ARAP, FFMP and our "
         "variants that interpolate the direction of the stretch, which turns by a right angle here."
     )
     methods = (ARAP, FFMP, SCALED_ETA, METRIC)
-    return _compare(studio, bar_to_ring(studio.triangles), methods, "Bar to ring", caption)
+    return _compare(studio, bar_to_ring(studio.triangles), methods, _("Bar to ring"), caption)
 
 
 def make_figure_7(studio: FigureContext) -> PaperFigure:
     """Draw Figure 7: a bar bent to a horn, with a keyframe known only on its boundary."""
-    caption = (
+    caption = _(
         "Square bar. Only the places of the outline's vertices are given in both keyframes; "
         "harmonic coordinates make maps of them (Weber and Gotsman 2010, Section 10). Pictures and "
         "geometric distortion as in Figure 5."
@@ -46,12 +47,12 @@ def make_figure_7(studio: FigureContext) -> PaperFigure:
     outline = shape.domain.outline
     middle = outline.mean()
     horn = bend_points(outline - middle, turn=HORN_TURN, growth=HORN_GROWTH)
-    (first, second), _ = harmonic_coordinate_maps(outline, shape.domain.cage, [outline, horn])
+    (first, second), _error = harmonic_coordinate_maps(outline, shape.domain.cage, [outline, horn])
     domain = replace(shape.domain, cage=first.cage)
     pair = ShapePair(
         shape=replace(shape, domain=domain), first=first, second=second, anchor=complex(middle)
     )
-    return _compare(studio, pair, (ARAP, FFMP, METRIC), "Harmonic coordinates", caption)
+    return _compare(studio, pair, (ARAP, FFMP, METRIC), _("Harmonic coordinates"), caption)
 
 
 def _compare(

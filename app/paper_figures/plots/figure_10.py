@@ -5,10 +5,11 @@ from app.paper_figures.methods import METRIC
 from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, make_distortion_figure
 from app.paper_figures.shapes import bar_to_ring, letter_s, make_sample_pair
 from app.paper_figures.sheet import draw_row, label_row, new_sheet
+from app.texts import _
 
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 TIMES_MEASURED = 21
-CAPTION = (
+CAPTION = _(
     "A collection of in-betweens by the metric variant: between the keyframes at the left and at "
     "the right nothing is distorted further than in them. The ring has a hole, which the paper "
     "does not treat."
@@ -32,4 +33,4 @@ def make_figure_10(studio: FigureContext) -> PaperFigure:
     for row, (named, track) in zip(rows, tracks.items(), strict=True):
         draw_row(row, studio.renderer, track, TIMES)
         label_row(row[0], named)
-    return make_distortion_figure("A collection", CAPTION, sheet, tracks)
+    return make_distortion_figure(_("A collection"), CAPTION, sheet, tracks)

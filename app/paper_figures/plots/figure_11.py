@@ -9,6 +9,7 @@ from app.paper_figures.methods import MESH_ETA, ComparedMethod
 from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
 from app.paper_figures.shapes import Shape, ShapePair, beam, bend_points, make_sample_pair
 from app.paper_figures.sheet import as_png, draw_panels
+from app.texts import _
 from engine.arrays import Complexes
 from engine.baselines import Baseline, PreparedBaseline, discrete_harmonic, prepare_baseline
 from engine.maps import HarmonicMap
@@ -18,7 +19,7 @@ TIME = 0.5
 SIZES = (500, 2_000, 8_000)
 SWIRL, WAVE = 1.1, 0.05  # radians in the middle; share of the height
 TURN, SHEAR = 1.5, 0.15
-CAPTION = (
+CAPTION = _(
     "The scaled η variant on meshes: two keyframes that are not harmonic, blended triangle by "
     "triangle, and made a map again by a Poisson step. The table has what that step changes of the "
     "Jacobians at t = 0.5, relative to them: between discrete harmonic maps (cotangent weights) of "
@@ -40,7 +41,7 @@ def measure_errors(triangles: int) -> tuple[PoissonError, ...]:
     found = []
     for size in SIZES:
         shape = beam(size)
-        found.append(_measure_error("discrete harmonic bar", shape, *_bent(shape)))
+        found.append(_measure_error(_("discrete harmonic bar"), shape, *_bent(shape)))
     octopus = _octopus(triangles)
     return (*found, _measure_error("octopus", octopus, *_swirled(octopus)))
 
@@ -52,15 +53,15 @@ def make_figure_11(studio: FigureContext) -> PaperFigure:
     method = ComparedMethod(
         name=MESH_ETA.name,
         colour=MESH_ETA.colour,
-        prepare=lambda _: _prepared(shape, *keyframes).frame,
+        prepare=lambda _pair: _prepared(shape, *keyframes).frame,
     )
     track = MeasuredMotion(ShapePair(shape=shape, first=still, second=still), method)
     panels = [(f"t = {time:g}", track, time) for time in TIMES]
     return PaperFigure(
-        title="Meshes",
+        title=_("Meshes"),
         caption=CAPTION,
         picture=as_png(draw_panels(studio.renderer, panels, (13, 3))),
-        column_names=("", "triangles", "Poisson error"),
+        column_names=("", _("triangles"), _("Poisson error")),
         rows=tuple(
             (loss.name, f"{loss.triangles:,}", f"{loss.error:.2e}")
             for loss in measure_errors(studio.triangles)

@@ -9,12 +9,13 @@ from app.paper_figures.methods import METRIC, NU, SCALED_ETA
 from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
 from app.paper_figures.shapes import ShapePair, square
 from app.paper_figures.sheet import as_png, draw_panels
+from app.texts import _
 from engine.maps import HarmonicMap, distortion
 
 TIME = 0.8
 MU = -1 / 3
 TRIANGLES = 400  # the maps are affine
-CAPTION = (
+CAPTION = _(
     "Interpolation of the stretch direction. The square (a) is stretched along y by both keyframes "
     "(b) and (e), μ = −1/3, and (e) is also turned by a right angle. At t = 0.8 the ν variant (c) "
     "stretches it in another direction, and less; scaled η (d) and metric keep the direction."
@@ -66,10 +67,10 @@ def make_figure_3(studio: FigureContext) -> PaperFigure:
         ("(e) f¹", nu, 1.0),
     )
     return PaperFigure(
-        title="Stretch direction",
+        title=_("Stretch direction"),
         caption=CAPTION,
         picture=as_png(draw_panels(studio.renderer, panels, (12, 2.8))),
-        column_names=("t = 0.8", "direction off by", "k (keys: 0.3333)"),
+        column_names=("t = 0.8", _("direction off by"), _("k (keys: 0.3333)")),
         rows=tuple(
             (one.name, f"{one.direction:.4f}°", f"{one.k:.4f}") for one in measure_stretch()
         ),

@@ -7,12 +7,13 @@ from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure, mak
 from app.paper_figures.shape_renderer import bounds_of
 from app.paper_figures.shapes import ShapePair, beam, spiral_map
 from app.paper_figures.sheet import draw_frame, label_row, new_sheet, plot_shares
+from app.texts import _
 from engine.maps import HarmonicMap
 
 TURN, GROWTH, NU = 2.6, 1.4, 0.5
 TIME = 0.36
 ZOOM = 0.17  # of the picture's longer side: half of the enlarged part
-CAPTION = (
+CAPTION = _(
     "Scaling η, at t = 0.36. Where the keyframe enlarges the bar by more than √e, the unscaled η "
     "variant leaves the bounds on conformal distortion (upper row, and nearer in the second "
     "picture); scaled by ρ(t) it keeps them (lower row). Third: the keyframe. Right: k of the 100 "
@@ -42,4 +43,4 @@ def make_figure_4(studio: FigureContext) -> PaperFigure:
         draw_frame(row[2], studio.renderer, track, 1.0)
         label_row(row[0], track.method.name)
         plot_shares(row[3], track.times, track.k_shares, "k", track.method.colour)
-    return make_distortion_figure("Scaling η", CAPTION, sheet, tracks)
+    return make_distortion_figure(_("Scaling η"), CAPTION, sheet, tracks)

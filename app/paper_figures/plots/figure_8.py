@@ -10,12 +10,13 @@ from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
 from app.paper_figures.shape_renderer import bounds_of
 from app.paper_figures.shapes import ShapePair, make_sample_pair
 from app.paper_figures.sheet import as_png, draw_panels
+from app.texts import _
 from engine.arrays import Complexes
 from engine.maps import HarmonicMap
 
 TIME = 0.5
 NEAR = 0.04  # of the width: the neighbourhood of the tail's tip
-CAPTION = (
+CAPTION = _(
     "Dragon with a moving tail: Ω in the first picture and f⁰ ≠ Id in the second. Scaled η blends "
     "the angle of the tail linearly and metric does not; metric and Chen et al. (2013) look alike."
 )
@@ -69,10 +70,10 @@ def make_figure_8(studio: FigureContext) -> PaperFigure:
         ("f¹", metric, 1.0),
     )
     return PaperFigure(
-        title="The dragon's tail",
+        title=_("The dragon's tail"),
         caption=CAPTION,
         picture=as_png(draw_panels(studio.renderer, panels, (14, 2.6))),
-        column_names=("t = 0.5", "of the tail's turn", "from metric, of the diameter"),
+        column_names=("t = 0.5", _("of the tail's turn"), _("from metric, of the diameter")),
         rows=tuple(
             (one.name, f"{one.turned:.3f}", f"{one.from_metric:.2%}")
             for one in measure_tail(tracks)

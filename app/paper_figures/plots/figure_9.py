@@ -9,6 +9,7 @@ from app.paper_figures.methods import METHODS, METRIC, SIG13, ComparedMethod, pr
 from app.paper_figures.plots.paper_figure import FigureContext, PaperFigure
 from app.paper_figures.shapes import ShapePair, make_sample_pair
 from app.paper_figures.sheet import INK, as_png, new_sheet, style_axes
+from app.texts import _
 from engine.interpolation import Variant
 from engine.streaming import Positions, build_series, finish
 
@@ -16,8 +17,8 @@ SIZES = (1_000, 3_000, 10_000, 50_000, 100_000)
 TIME = 0.4
 ENOUGH = 0.02  # minimum seconds of a measurement
 MOST = 200  # frames of a measurement
-SERIES = "metric, as a series"
-CAPTION = (
+SERIES = _("metric, as a series")
+CAPTION = _(
     "Time of one frame on one core of this machine's processor, against the number of vertices: "
     "everything that does not depend on the time of the frame is prepared before. As a series, "
     "what the metric variant does in an interval is written in few functions of time beforehand; "
@@ -67,11 +68,11 @@ def make_figure_9(studio: FigureContext) -> PaperFigure:
         style = "--" if named == SERIES else "-"
         axes.loglog(vertices, seconds, style, marker="o", markersize=4, color=colour, label=named)
     axes.set_xlabel("vertices", color=INK)
-    axes.set_ylabel("seconds a frame", color=INK)
+    axes.set_ylabel(_("seconds per frame"), color=INK)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     style_axes(axes)
     return PaperFigure(
-        title="Running times",
+        title=_("Running times"),
         caption=CAPTION,
         picture=as_png(sheet),
         column_names=(
@@ -101,7 +102,7 @@ def _played(pair: ShapePair) -> Callable[[float], object]:
 def _seconds(frame: Callable[[], object]) -> float:
     """Return the smallest time of a frame, on one core."""
     least, spent = float("inf"), 0.0
-    for _ in range(MOST):
+    for _run in range(MOST):
         start = time.process_time()
         frame()
         taken = time.process_time() - start

@@ -7,11 +7,19 @@ from typing import TYPE_CHECKING
 from app.paper_figures.measure import MeasuredMotion
 from app.paper_figures.shape_renderer import ShapeRenderer
 from app.paper_figures.sheet import as_png, format_number
+from app.texts import _
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BOUNDED = ("", "k, of its key", "τ − 1, of its key", "largest k", "largest τ − 1", "least area")
+BOUNDED = (
+    "",
+    _("k, of its key"),
+    _("τ − 1, of its key"),
+    _("largest k"),
+    _("largest τ − 1"),
+    _("least area"),
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

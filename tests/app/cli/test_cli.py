@@ -134,10 +134,10 @@ def test_the_words_to_choose_from_are_those_that_the_program_knows():
     assert defaults.detail == options.DEFAULT_DETAIL
     assert defaults.triangles == options.DEFAULT_TRIANGLES
     assert CutOut().tolerance == options.DEFAULT_TOLERANCE
-    told = pose.EPILOG.replace("\n", " ")
+    epilog = pose.EPILOG.replace("\n", " ")
     assert (
         f"The presets are {', '.join(list(SPRING_PRESETS)[:-1])} and {list(SPRING_PRESETS)[-1]}."
-        in told
+        in epilog
     )
 
 
@@ -235,7 +235,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
 
 
 @pytest.mark.parametrize("command", ["export", "certify", "interpolate"])
-def test_the_variants_are_told_as_they_are_written(command, capsys):
+def test_the_variants_are_reported_as_they_are_written(command, capsys):
     with pytest.raises(SystemExit):
         main([command, str(SAMPLE), "--variant", "mu"])
     said = error_line(capsys.readouterr().err)

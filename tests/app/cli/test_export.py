@@ -303,7 +303,7 @@ def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["html", "glb", "spritesheet", "gif", "picture"])
-def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys, kind):
+def test_names_that_are_not_utf_8_are_written_and_reported(project, tmp_path, capsys, kind):
     odd = os.fsdecode(b"caf\xe9")
     try:
         renamed = project.rename(tmp_path / f"{odd}.lissom")
@@ -314,8 +314,8 @@ def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys
     export(renamed, "--format", kind, "--out", tmp_path / f"{{name}}{ending}", *still)
     assert capsys.readouterr().out.startswith(f"{tmp_path}/caf\N{REPLACEMENT CHARACTER}{ending}: ")
     assert (tmp_path / f"{odd}{ending}").stat().st_size
-    told = error_of(capsys, tmp_path / f"{odd} too.lissom", "--out", tmp_path / odd)
-    assert "caf\N{REPLACEMENT CHARACTER} too.lissom" in told
+    reported = error_of(capsys, tmp_path / f"{odd} too.lissom", "--out", tmp_path / odd)
+    assert "caf\N{REPLACEMENT CHARACTER} too.lissom" in reported
 
 
 # An export whose in-betweens are never prepared.

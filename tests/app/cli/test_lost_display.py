@@ -16,7 +16,7 @@ from tests.campaigns.windows import lost_displays, screen
 ROOT = Path(__file__).parents[3]
 
 # The command of the window, with one that looks at a display as GLFW does, has unsaved work, and
-# speaks to the display once more when it is told to. Nothing is drawn.
+# speaks to the display once more after a line of input. Nothing is drawn.
 LOOKS = """
 import ctypes
 from documents import disc_document
@@ -71,8 +71,8 @@ def test_unsaved_work_is_kept_when_the_display_goes(tmp_path):
         assert looks.stdout.readline() == "open\n", looks.communicate()
         shown.server.kill()
         shown.server.wait()
-        told, said = looks.communicate("\n")
-    assert (told, looks.returncode) == ("", 1), said
+        output, said = looks.communicate("\n")
+    assert (output, looks.returncode) == ("", 1), said
     assert DISPLAY_GONE in said
     assert WORK_KEPT in said
     (kept,) = find_recoverable_files(tmp_path / "lissom")

@@ -96,7 +96,7 @@ threading.Thread(target=meet, daemon=True).start()"""
     assert process.returncode == 143
 
 
-def test_what_hangs_after_a_signal_does_not_keep_the_process():
+def test_stuck_process_ends_after_a_signal():
     with listening(
         before="process.PATIENCE = 0.1", work="time.sleep(60)", after="time.sleep(60)"
     ) as process:
@@ -254,7 +254,7 @@ def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
     assert "Fatal Python error: Aborted" in load_report(tmp_path)
     error_reports.discard_report(session, ProblemReport(text="", is_kept=True))
     error_reports.keep_fault_report(session)
-    assert load_report(tmp_path) == "", "it is told once"
+    assert load_report(tmp_path) == "", "it is reported once"
 
 
 def test_a_command_that_fails_itself_tells_it_without_names_of_files(monkeypatch, capfd, tmp_path):

@@ -39,15 +39,15 @@ def test_without_matplotlib_it_says_how_to_install_that(tmp_path, monkeypatch, c
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (["--only", "2"], "invalid choice"),
         (["--triangles", "10"], "between 1,000"),
         (["--largest", "10"], "at least 1,000"),
     ],
 )
-def test_bad_requests_are_refused(tmp_path, capsys, words, told):
+def test_bad_requests_are_refused(tmp_path, capsys, words, message):
     with pytest.raises(SystemExit) as leaving:
         main(["figures", "--out", str(tmp_path), *words])
     assert leaving.value.code == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
