@@ -246,16 +246,14 @@ def _measured(inbetweens: Inbetweens) -> DistortionRange:
     return reduce(DistortionRange.joined, found)
 
 
-def _frames(
-    clip: Clip, interval: int, stretches: tuple[tuple[float, float], ...]
-) -> tuple[int, ...]:
+def _frames(clip: Clip, number: int, ranges: tuple[tuple[float, float], ...]) -> tuple[int, ...]:
     """Return the frames of a segment nearest to these ranges of its time in [0, 1]."""
-    span, segment = clip_segments(clip)[interval], pose_segments(clip)[interval]
+    span, segment = clip_segments(clip)[number], pose_segments(clip)[number]
     start, end = span.start, span.start + span.frames
     found = []
-    for frame in range(start, end + 1) if stretches else ():
+    for frame in range(start, end + 1) if ranges else ():
         ends = (span.share(max(frame - 0.5, start)), span.share(min(frame + 0.5, end)))
         since, until = (segment.weight(clip.keys[span.first].easing(share)) for share in ends)
-        if any(first <= until and last >= since for first, last in stretches):
+        if any(first <= until and last >= since for first, last in ranges):
             found.append(frame)
     return tuple(found)
