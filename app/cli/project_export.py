@@ -109,21 +109,21 @@ def _summary_of_frames(plan: ExportPlan) -> str:
         return text.format(**values, fps=plan.fps)
     if plan.sheet.trimmed:
         text = ngettext(
-            "{path}: {count} frame of {width} × {height} pixels, trimmed; its place is in {data}",
-            "{path}: {count} frames of {width} × {height} pixels, trimmed; their places are in "
-            "{data}",
+            "{path}: {count} frame of {width} × {height} pixels, trimmed, listed in {data}",
+            "{path}: {count} frames of {width} × {height} pixels, trimmed, listed in {data}",
             count,
         )
-        return text.format(**values, data=data.name)
-    columns, rows = sheet_grid(plan)
-    text = ngettext(
-        "{path}: {count} frame of {width} × {height} pixels, in {columns} columns and {rows} rows; "
-        "its place is in {data}",
-        "{path}: {count} frames of {width} × {height} pixels, in {columns} columns and {rows} "
-        "rows; their places are in {data}",
-        count,
-    )
-    return text.format(**values, columns=columns, rows=rows, data=data.name)
+    else:
+        columns, rows = sheet_grid(plan)
+        values |= {"columns": columns, "rows": rows}
+        text = ngettext(
+            "{path}: {count} frame of {width} × {height} pixels in {columns} columns and {rows} "
+            "rows, listed in {data}",
+            "{path}: {count} frames of {width} × {height} pixels in {columns} columns and {rows} "
+            "rows, listed in {data}",
+            count,
+        )
+    return text.format(**values, data=data.name)
 
 
 def _summary_of_shapes(maker: MeshExport, plan: ExportPlan) -> str:

@@ -127,18 +127,13 @@ def run(arguments: argparse.Namespace) -> int:
             "closed": np.concatenate(domain.loops) if domain.closed is None else domain.closed,
         },
     )
-    summary = _(
-        "{path}: {width} × {height} pixels, {vertices} vertices of the outline and its cage, "
-        "{triangles:,} triangles"
+    summary = ngettext(
+        "{path}: {width} × {height} pixels, {vertices} vertices of outline and cage, {holes} hole, "
+        "{triangles:,} triangles",
+        "{path}: {width} × {height} pixels, {vertices} vertices of outline and cage, {holes} "
+        "holes, {triangles:,} triangles",
+        len(holes),
     )
-    if holes:
-        summary = ngettext(
-            "{path}: {width} × {height} pixels, {vertices} vertices of the outline and its cage, "
-            "{holes} hole, {triangles:,} triangles",
-            "{path}: {width} × {height} pixels, {vertices} vertices of the outlines and their "
-            "cages, {holes} holes, {triangles:,} triangles",
-            len(holes),
-        )
     print_line(
         summary.format(
             path=arguments.out,

@@ -146,7 +146,7 @@ def run(*words, **how):
     return subprocess.run([*PROGRAM, *map(str, words)], check=False, **how)
 
 
-def test_a_full_standard_output_is_reported_when_a_command_has_run(monkeypatch, capsys):
+def test_full_standard_output_is_reported_after_a_command(monkeypatch, capsys):
     with open("/dev/full", "w") as full:  # noqa: PTH123 - it is no file
         monkeypatch.setattr(sys, "stdout", full)
         said = refusal(capsys, "move", "--list")

@@ -129,7 +129,7 @@ def test_options_stand_in_for_the_projects_own_settings(document, tmp_path, caps
     project = tmp_path / "own.lissom"
     save_project(project, altered(document, export=own))
     export(project, "--out", tmp_path / "sheet", "--no-trim", "--padding", 0)
-    assert "4 frames of 60 × 45 pixels, in 2 columns and 2 rows" in capsys.readouterr().out
+    assert "4 frames of 60 × 45 pixels in 2 columns and 2 rows" in capsys.readouterr().out
     sheet = pixels(tmp_path / "sheet")
     assert sheet.shape == (90, 120, 4)
     assert sheet[0, 0].tolist() == [0x11, 0x22, 0x33, 255]
