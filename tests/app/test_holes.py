@@ -9,6 +9,7 @@ from documents import PICTURE
 from holed_shapes import Holed, boundary_of, random_map, ring
 from numpy.testing import assert_allclose, assert_array_equal
 
+from app.cli.arrays.hole_arrays import HOLES_LACK
 from app.cli.main import main
 from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_layer
 from app.errors import LissomError
@@ -192,7 +193,7 @@ def test_arrays_of_holes_are_handed_from_command_to_command(tmp_path):
     ("change", "message"),
     [
         ({"hole_cage_sizes": np.array([3])}, "add up to"),
-        ({"hole_centres": None}, "holes need hole_centres as well"),
+        ({"hole_centres": None}, HOLES_LACK.format(name="hole_centres")),
         ({"hole_outline_sizes": np.array([1.5])}, "whole numbers"),
     ],
 )

@@ -18,6 +18,7 @@ HOLE_ARRAYS = (
     "hole_cage_sizes",
     "hole_centres",
 )
+HOLES_LACK = N_("the holes lack the array {name}; write the domain again")
 HOLE_SIZES = N_("{sizes} must be whole numbers that add up to the {count} vertices of {name}")
 
 
@@ -42,9 +43,7 @@ def read_holes(data: Mapping[str, npt.NDArray[Any]]) -> tuple[Hole, ...]:
     if len(missing) == len(HOLE_ARRAYS):
         return ()
     if missing:
-        raise LissomError(
-            _("the holes lack the array {name}; write the domain again").format(name=missing[0])
-        )
+        raise LissomError(_(HOLES_LACK).format(name=missing[0]))
     centres = np.asarray(data["hole_centres"]).ravel()
     outlines = _cut(data, "hole_outlines", "hole_outline_sizes", len(centres))
     cages = _cut(data, "hole_cages", "hole_cage_sizes", len(centres))
