@@ -2,6 +2,7 @@
 
 import ast
 import re
+import sys
 import tomllib
 from collections.abc import Iterator
 from functools import cache
@@ -84,8 +85,8 @@ def test_rooms_have_few_modules():
         folder = FILES[package].parent
         modules = {path.stem for path in folder.glob("*.py")} - {"__init__", "__main__"}
         rooms = {path.parent.name for path in folder.glob("*/__init__.py")}
-        # The folders of commands are listed in their table, which has a module for each.
-        most = len(COMMANDS) if package in {"app.cli.commands", "app.cli.usage"} else MOST_IN_A_ROOM
+        # The table of commands lists their folder, which has a module for each.
+        most = len(COMMANDS) if package == "app.cli.commands" else MOST_IN_A_ROOM
         if package in ROOTS:
             is_crowded = len(rooms) > most or len(modules) > MOST_LOOSE
         else:
@@ -120,6 +121,22 @@ def test_faces_have_only_a_docstring_and_public_names():
         if not (is_documented and are_names) or (statements and package.count(".") > 1):
             others.append(package)
     assert others == []
+
+
+def test_commands_load_what_computes_only_when_they_run():
+    light = {"app.cli.console", "app.cli.options", "app.errors", "app.export_formats", "app.texts"}
+    heavy = []
+    for name in sorted(name for name in FILES if name.startswith("app.cli.commands.")):
+        for node in parsed(name).body:
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom):
+                modules = [node.module or ""]
+            heavy += [
+                (name, module)
+                for module in modules
+                if module not in light and module.split(".")[0] not in sys.stdlib_module_names
+            ]
+    assert heavy == []
 
 
 def test_names_of_a_face_are_imported_through_it():
@@ -202,7 +219,7 @@ def test_types_have_names_of_their_own():
 def test_functions_have_names_of_their_own_in_their_room():
     modules: dict[str, list[str]] = {}
     for name in FILES:
-        if name.startswith(("app.cli.commands.", "app.cli.usage.")):
+        if name.startswith("app.cli.commands."):
             continue
         for function in defined_names(name)[1]:
             modules.setdefault(f"{room_of(name)}: {function}", []).append(name)

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from typing import NoReturn, Self
 
 from app.errors import display_message, few_notices, printable
+from app.texts import _, message_of
+from engine.errors import Message
 
 EXIT_ERROR = 2
 PATIENCE = 0.5  # seconds before progress is shown
@@ -17,12 +19,15 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Report bad usage and exit."""
-        exit_with_error(f"{message} (see '{self.prog} --help')")
+        exit_with_error(
+            _("{message} (see '{program} --help')").format(message=message, program=self.prog)
+        )
 
 
 def exit_with_error(message: str) -> NoReturn:
     """Print one line of error and exit with the status of bad input."""
-    print(f"lissom: error: {display_message(message)}", file=sys.stderr)
+    line = _("lissom: error: {message}").format(message=display_message(message))
+    print(line, file=sys.stderr)
     raise SystemExit(EXIT_ERROR)
 
 
@@ -35,9 +40,9 @@ def print_notice(message: str) -> None:
     print(f"lissom: {display_message(message)}", file=sys.stderr)
 
 
-def print_notices(messages: Sequence[str]) -> None:
+def print_notices(messages: Sequence[str | Message]) -> None:
     """Print the first notices, and the number of the others."""
-    for message in few_notices(messages):
+    for message in few_notices([message_of(message) for message in messages]):
         print_notice(message)
 
 
@@ -54,7 +59,7 @@ class StatusLine:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, *error: object) -> None:
         self.show("")
 
     def show(self, text: str) -> None:
@@ -65,4 +70,5 @@ class StatusLine:
     def show_progress(self, share: float) -> None:
         """Show the finished share of a long computation, from 0 to 1."""
         if time.monotonic() - self._begun > PATIENCE:
-            self.show(f"preparing the outline: {share:.0%}" if share < 1.0 else "")
+            text = _("preparing the outline: {share:.0%}").format(share=share)
+            self.show(text if share < 1.0 else "")

@@ -18,29 +18,30 @@ from app.cli.process import (
     use_one_thread,
 )
 from app.errors import EXPECTED_ERRORS, REINSTALL, listen_to_progress
+from app.texts import N_, _, message_of
 
 EXIT_FAILED, EXIT_PIPE_CLOSED = 1, 141
 
-TOO_LITTLE_MEMORY = (
-    "not enough memory for this; ask for fewer triangles or a smaller picture, or allow "
-    "Lissom more of it"
+TOO_LITTLE_MEMORY = N_(
+    "there is not enough memory; choose fewer triangles or a smaller picture, or give Lissom more "
+    "memory"
 )
-# Subcommand → its summary. A module of this name in app.cli.usage declares its options and loads
-# fast. Its module in app.cli.commands runs it, and is loaded after the arguments are checked.
+# Subcommand → its summary. The module of this name in app.cli.commands loads fast; what computes is
+# loaded when it runs, after the arguments are checked.
 COMMANDS = {
-    "window": "Open the window, with a picture or a project if one is named.",
-    "domain": "Find a picture's outline; build the cage and the triangulation.",
-    "deform": "Drag handles of a shape within bounds, from file to file.",
-    "pose": "Make a project from a picture and a script of handles and keys.",
-    "move": "Make a project in which a drawing walks, waves or sways, by a ready motion.",
-    "certify": "Tell how far an animation distorts its drawing, and prove its keyframes.",
-    "interpolate": "In-betweens of keyframes at points, from file to file.",
-    "figures": "Make the figures of the paper anew, with what was measured beside them.",
-    "export": "Render an animation to picture files or video.",
-    "thumbnail": "Write the small picture of a project, as file managers ask for it.",
-    "desktop": "Enter Lissom into the menu of applications, or take it out again.",
-    "manual": "Copy the manual, pages that any browser shows, into a folder.",
-    "doctor": "Tell what works on this machine, and what to install where it does not.",
+    "window": _("Open the window, with a picture or a project if you name one."),
+    "domain": _("Find a picture's outline; build its cage and its triangles."),
+    "deform": _("Drag handles of a shape within limits, from file to file."),
+    "pose": _("Make a project from a picture and a script of handles and keys."),
+    "move": _("Make a project in which a drawing walks, waves or sways by a motion preset."),
+    "certify": _("Measure how far an animation distorts its drawing, and prove its limits."),
+    "interpolate": _("Make in-betweens of keyframes at points, from file to file."),
+    "figures": _("Draw the paper's figures, with measured numbers beside them."),
+    "export": _("Render an animation to picture files or video."),
+    "thumbnail": _("Write the thumbnail of a project, for file managers."),
+    "desktop": _("Add Lissom to the menu of applications, or remove it."),
+    "manual": _("Copy the manual, pages for any browser, into a folder."),
+    "doctor": _("Check what works on this machine, and what to install."),
 }
 
 
@@ -63,17 +64,20 @@ def main(argv: Sequence[str] | None = None) -> int:
                 # Here, because at Python's own end nobody could handle a closed pipe.
                 sys.stdout.flush()
     except EXPECTED_ERRORS as error:
-        exit_with_error(str(error))
+        exit_with_error(message_of(error))
     except ImportError as error:
         exit_with_error(
-            f"a library cannot be loaded ({error}); give it more memory, or {REINSTALL}"
+            _("a library cannot be loaded ({error}); give Lissom more memory, or {remedy}").format(
+                error=error, remedy=_(REINSTALL)
+            )
         )
     except (MemoryError, RuntimeError) as error:
         if isinstance(error, RuntimeError) and "start new thread" not in str(error):
             return _report(error, words)
-        exit_with_error(TOO_LITTLE_MEMORY)
+        exit_with_error(_(TOO_LITTLE_MEMORY))
     except KeyboardInterrupt:
-        print(f"lissom: interrupted by {endings.signal_name}", file=sys.stderr, flush=True)
+        print_notice(_("interrupted by {signal}").format(signal=endings.signal_name))
+        sys.stderr.flush()
         if has_running_threads():
             # Running jobs may take long, and libraries must not be taken down under their threads.
             os._exit(endings.exit_status)
@@ -85,7 +89,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except OSError as error:
         discard_output()
         exit_with_error(
-            f"cannot use {error.filename or 'standard output'}: {error.strerror or error}"
+            _("cannot use {file}: {reason}").format(
+                file=error.filename or _("standard output"), reason=error.strerror or error
+            )
         )
     except Exception as error:  # noqa: BLE001 - the command line: unexpected errors
         return _report(error, words)
@@ -98,9 +104,7 @@ def _report(error: Exception, words: Sequence[str]) -> int:
     files = [Path(word) for word in words if {".", os.sep}.intersection(word)]
     trace = reports.format_trace(error, files)
     print(reports.format_problem_report(graphics="", actions=(), trace=trace), file=sys.stderr)
-    print_notice(
-        "this command failed, as told above; nothing is sent, and names of files are left out"
-    )
+    print_notice(_("this command failed; the report above names no files, and nothing is sent"))
     return EXIT_FAILED
 
 
@@ -108,7 +112,7 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """Return the parser; only the subcommand in `words` is loaded."""
     parser = Parser(
         prog="lissom",
-        description="Pose a drawing with a few handles and get in-betweens that never fold.",
+        description=_("Pose a drawing with a few handles and get in-betweens that never fold."),
     )
     parser.add_argument("--version", action="version", version=f"lissom {version('lissom')}")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
@@ -120,9 +124,9 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in words:
-            usage = importlib.import_module(f"app.cli.usage.{name}")
-            usage.add_arguments(subparser)
-            subparser.epilog = usage.EPILOG
+            command = importlib.import_module(f"app.cli.commands.{name}")
+            command.add_arguments(subparser)
+            subparser.epilog = command.EPILOG
     return parser
 
 

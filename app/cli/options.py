@@ -1,7 +1,7 @@
 """Options shared by several subcommands, and their choices.
 
-Choices and defaults are repeated here if their own module loads slowly, so that usage is printed at
-once. A test compares them with the original.
+Choices and defaults are repeated here if their own module loads slowly, so that help comes at once.
+A test compares them with the original.
 """
 
 import argparse
@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from app.errors import LissomError
 from app.export_formats import expand_colour
+from app.texts import N_, _
 from engine.variant import Baseline, Variant
 
 DETAILS = ("coarse", "normal", "fine")
@@ -25,8 +26,8 @@ DEFAULT_TOLERANCE = 18
 VARIANTS = tuple(variant.value for variant in Variant)
 METHODS = (*VARIANTS, *(method.value for method in Baseline))
 FRAMINGS = ("canvas", "fit")
-NAMED_LIKE_FOLDER = "cannot write {name}: its name ends as that of a folder; name a file"
-NO_STANDARD_OUTPUT = "standard output is not offered; name a file instead of -"
+NAMED_LIKE_FOLDER = N_("cannot write {name}: it is the name of a folder; name a file")
+NO_STANDARD_OUTPUT = N_("Lissom cannot write to standard output; name a file instead of -")
 
 
 def input_file(text: str) -> Path:
@@ -41,7 +42,9 @@ def input_file(text: str) -> Path:
     try:
         path.stat()
     except OSError as error:
-        raise LissomError(f"cannot read {text}: {error.strerror}") from error
+        raise LissomError(
+            _("cannot read {path}: {reason}").format(path=text, reason=error.strerror)
+        ) from error
     return path
 
 
@@ -52,7 +55,7 @@ class Output(NamedTuple):
     def as_file(self) -> Path:
         """Return the path of a file; raise a `LissomError` if the text can only name a folder."""
         if os.path.basename(self.text) in {"", "."}:  # noqa: PTH119 - paths end without a slash
-            raise LissomError(NAMED_LIKE_FOLDER.format(name=self.text))
+            raise LissomError(_(NAMED_LIKE_FOLDER).format(name=self.text))
         return self.path
 
 
@@ -62,7 +65,7 @@ def output(text: str) -> Output:
     Raises `LissomError` if the path is empty or a dash, which stands for standard output elsewhere.
     """
     if text == "-":
-        raise LissomError(NO_STANDARD_OUTPUT)
+        raise LissomError(_(NO_STANDARD_OUTPUT))
     return Output(Path(_named(text)), text)
 
 
@@ -74,30 +77,35 @@ def output_file(text: str) -> Path:
 def _named(text: str) -> str:
     """Return the name of a file; refuse an empty one, which Python takes for the current folder."""
     if not text:
-        raise LissomError("the name of a file is empty; name one")
+        raise LissomError(_("the name of a file is empty; give a name"))
     return text
 
 
 def whole_number(least: int, most: int = sys.maxsize) -> Callable[[str], int]:
     """Return a parser of whole numbers in a range, both ends included."""
-    wanted = f"at least {least:,}" if most == sys.maxsize else f"between {least:,} and {most:,}"
+    wanted = (
+        _("expected a whole number, at least {least:,}, not {text!r}")
+        if most == sys.maxsize
+        else _("expected a whole number between {least:,} and {most:,}, not {text!r}")
+    )
 
     def read(text: str) -> int:
         if not text.isdecimal() or not least <= int(text) <= most:
-            raise argparse.ArgumentTypeError(f"expected a whole number, {wanted}, not {text!r}")
+            message = wanted.format(least=least, most=most, text=text)
+            raise argparse.ArgumentTypeError(message)
         return int(text)
 
     return read
 
 
 def add_project(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("project", metavar="PROJECT", type=input_file, help="the .lissom file")
+    parser.add_argument("project", metavar="PROJECT", type=input_file, help=_("the .lissom file"))
 
 
 def add_out(
     parser: argparse.ArgumentParser,
     metavar: str,
-    about: str = "where to write",
+    about: str = _("where to write"),
     *,
     place: Callable[[str], Path | Output] = output_file,
 ) -> None:
@@ -111,13 +119,13 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=int,
         default=DEFAULT_TRIANGLES,
-        help="how many triangles to aim at, 1000 to 2000000 (default: %(default)s)",
+        help=_("number of triangles to aim at, 1000 to 2000000 (default: %(default)s)"),
     )
     parser.add_argument(
         "--detail",
         choices=DETAILS,
         default=DEFAULT_DETAIL,
-        help="how closely the outline follows the subject (default: %(default)s)",
+        help=_("how closely the outline follows the subject (default: %(default)s)"),
     )
 
 
@@ -128,35 +136,39 @@ def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
         metavar="WHICH",
         type=_background,
         default="auto",
-        help="what is removed from an opaque picture: auto, none, or a colour such as #fff that "
-        "reaches its border (default: %(default)s)",
+        help=_(
+            "the background of an opaque picture, which is removed: auto, none, or a colour such "
+            "as #fff that reaches the border (default: %(default)s)"
+        ),
     )
     either.add_argument(
         "--mask",
         metavar="MASK.png",
         type=input_file,
-        help="a picture of the same size: white is kept, black is removed",
+        help=_("a picture of the same size: white is kept, black is removed"),
     )
     parser.add_argument(
         "--tolerance",
         metavar="N",
         type=int,
         default=DEFAULT_TOLERANCE,
-        help="levels by which the background may vary, 0 to 255 (default: %(default)s)",
+        help=_("levels by which the background may vary, 0 to 255 (default: %(default)s)"),
     )
     parser.add_argument(
         "--enclosed",
         choices=ENCLOSED,
         default=ENCLOSED[0],
-        help="whether parts inside the subject that have the background's colour, such as the gap "
-        "between an arm and the body, are kept or removed too; auto removes vivid colours, but "
-        "not white, grey and black (default: %(default)s)",
+        help=_(
+            "what happens to parts of the background's colour inside the subject, such as the gap "
+            "between an arm and the body; auto removes vivid colours, and keeps white, grey and "
+            "black (default: %(default)s)"
+        ),
     )
     parser.add_argument(
         "--holes",
         choices=HOLES,
         default=HOLES[0],
-        help="whether large holes stay holes (default: %(default)s)",
+        help=_("whether large holes are kept or filled (default: %(default)s)"),
     )
 
 
@@ -166,7 +178,9 @@ def _background(text: str) -> str | tuple[int, int, int]:
     colour = expand_colour(text)
     if re.fullmatch("#[0-9a-fA-F]{6}", colour) is None:
         raise argparse.ArgumentTypeError(
-            f"expected auto, none, or a colour such as #fff or #ffffff, not {text!r}"
+            _("expected auto, none, or a colour such as #fff or #ffffff, not {text!r}").format(
+                text=text
+            )
         )
     red, green, blue = bytes.fromhex(colour[1:])
     return red, green, blue
@@ -175,5 +189,7 @@ def _background(text: str) -> str | tuple[int, int, int]:
 def add_variant_option(parser: argparse.ArgumentParser) -> None:
     """Declare the variant, by default the project's."""
     parser.add_argument(
-        "--variant", choices=VARIANTS, help="how to blend the keyframes (default: the project's)"
+        "--variant",
+        choices=VARIANTS,
+        help=_("how to blend the keyframes (default: as in the project)"),
     )

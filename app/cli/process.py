@@ -17,6 +17,8 @@ from contextlib import contextmanager, suppress
 from types import FrameType, TracebackType
 from typing import Final, Self
 
+from app.texts import N_, _
+
 if sys.platform != "win32":
     import resource
 
@@ -27,6 +29,7 @@ SWITCH_INTERVAL: Final = 0.0005
 PATIENCE: Final = 10.0  # seconds for a process to end by itself
 # Bytes of address space. With 300 MB OpenBLAS asks for more again and again, and never ends.
 LEAST_MEMORY: Final = 400_000_000
+STILL_AT_WORK: Final = N_("interrupted by {signal}; unfinished work was stopped")
 _INTERRUPTED: Final = 128  # plus the signal's number: the usual exit status in shells
 
 
@@ -142,26 +145,26 @@ class SignalHandler:
         # This also ends the thread, unless the process is about to end.
         os.close(self._pipe[1])
 
-    def _note(self, number: int, _: FrameType | None) -> None:
+    def _note(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002
         is_first, self._number = self._number is None, self._number or number
         if is_first and self._wake is None:
             raise KeyboardInterrupt
 
     def _listen(self, pipe: int, main_thread: int) -> None:
-        while (told := os.read(pipe, 1)) and told[0] not in self._before:
+        while (heard := os.read(pipe, 1)) and heard[0] not in self._before:
             pass
-        if told:
+        if heard:
             if self._wake is not None:
                 self._wake()
             try:
-                name = signal.Signals(told[0]).name
-                words = f"lissom: interrupted by {name}, while something was still at work\n"
-                exit_within(PATIENCE, _INTERRUPTED + told[0], "" if self._wake else words)
+                name = signal.Signals(heard[0]).name
+                words = f"lissom: {_(STILL_AT_WORK).format(signal=name)}\n"
+                exit_within(PATIENCE, _INTERRUPTED + heard[0], "" if self._wake else words)
             except RuntimeError:  # no memory for another thread
-                os._exit(_INTERRUPTED + told[0])
+                os._exit(_INTERRUPTED + heard[0])
             # A signal just before the main thread begins to wait does not end this wait.
             while not self.is_signalled and os.name != "nt":
-                signal.pthread_kill(main_thread, told[0])
+                signal.pthread_kill(main_thread, heard[0])
                 time.sleep(SWITCH_INTERVAL)
         while os.read(pipe, 1):  # further signals from Python change nothing
             pass
@@ -176,7 +179,7 @@ def on_display_lost(keep: Callable[[], None], status: int) -> object:
     if sys.platform != "linux":
         return None
 
-    def lost(_: int | None) -> int:
+    def lost(display: int | None) -> int:  # noqa: ARG001
         try:
             keep()
         finally:
@@ -194,13 +197,13 @@ def redirect_faulthandler(descriptor: int) -> Iterator[None]:
 
     An already enabled fault handler stays.
     """
-    tells = not faulthandler.is_enabled()
-    if tells:
+    enables = not faulthandler.is_enabled()
+    if enables:
         faulthandler.enable(descriptor)
     try:
         yield
     finally:
-        if tells:
+        if enables:
             faulthandler.disable()
         os.close(descriptor)
 

@@ -10,7 +10,10 @@ from app.reports.certification import (
     SegmentReport as SegmentReport,
     Verdict as Verdict,
     certify_clip as certify_clip,
+    certify_document as certify_document,
 )
+from app.reports.certification_json import format_certification_json as format_certification_json
+from app.reports.certification_table import format_certification_table as format_certification_table
 from app.reports.corrected_frames import CorrectedReport as CorrectedReport, Short as Short
 from app.reports.curve_picture import draw_curves as draw_curves
 from app.reports.curves import (

@@ -12,12 +12,14 @@ from app.document import (
     Clip,
     Cycle,
     DistortionRange,
+    Document,
     PoseSegment,
     Variant,
+    clip_of,
     clip_segments,
     pose_segments,
 )
-from app.motion import Animation, ParentMotion
+from app.motion import Animation, ParentMotion, find_parent_motion
 from app.reports.corrected_frames import CorrectedReport, report_corrected
 from engine.arrays import Floats
 from engine.interpolation import Inbetweens, Proof, prove
@@ -143,6 +145,17 @@ def _are_within(reached: DistortionRange, limits: DistortionRange) -> bool:
     )
 
 
+def certify_document(document: Document, variant: Variant | None = None) -> dict[str, Report]:
+    """Return the reports of the posed layers by name."""
+    return {
+        layer.name: certify_clip(
+            clip_of(document, layer.id), variant, find_parent_motion(document, layer.id)
+        )
+        for layer in document.layers
+        if not layer.still
+    }
+
+
 def certify_clip(
     clip: Clip, variant: Variant | None = None, carried: ParentMotion | None = None
 ) -> Report:
@@ -166,8 +179,8 @@ def certify_clip(
     )
     animation = Animation(clip, variant, points=boundary.points)
     reports = tuple(
-        _segment_report(clip, animation, boundary, number, transit)
-        for number, transit in enumerate(pose_segments(clip))
+        _segment_report(clip, animation, boundary, number, segment)
+        for number, segment in enumerate(pose_segments(clip))
     )
     every = [each.limits for each in reports]
     every += [DistortionRange(own.k, own.sigma_a, own.sigma_b) for _, own in keys]
@@ -178,7 +191,7 @@ def certify_clip(
 
 
 def _segment_report(
-    clip: Clip, animation: Animation, boundary: Boundary, number: int, transit: PoseSegment
+    clip: Clip, animation: Animation, boundary: Boundary, number: int, segment: PoseSegment
 ) -> SegmentReport:
     layer, span = clip.layer, clip_segments(clip)[number]
     start, end, last = clip.keys[span.first], clip.keys[span.last], span.start + span.frames
@@ -186,7 +199,7 @@ def _segment_report(
     held = start.easing == HOLD
     ends = [
         DistortionRange.measured(*layer.map_of(key.pose).derivatives(boundary.points))
-        for key in ((start, start) if held else (start, end, *transit.keys))
+        for key in ((start, start) if held else (start, end, *segment.keys))
     ]
     bound = ends[0].joined(ends[1])
     inbetweens = (
@@ -195,7 +208,7 @@ def _segment_report(
         else animation.base.inbetweens(number)
     )
     limits = bound
-    if transit.has_smooth_tangent or inbetweens.corrections:
+    if segment.has_smooth_tangent or inbetweens.corrections:
         bounds = layer.bounds
         limits = reduce(
             DistortionRange.joined, ends, DistortionRange(bounds.k, bounds.sigma_a, bounds.sigma_b)
@@ -233,16 +246,14 @@ def _measured(inbetweens: Inbetweens) -> DistortionRange:
     return reduce(DistortionRange.joined, found)
 
 
-def _frames(
-    clip: Clip, interval: int, stretches: tuple[tuple[float, float], ...]
-) -> tuple[int, ...]:
+def _frames(clip: Clip, number: int, ranges: tuple[tuple[float, float], ...]) -> tuple[int, ...]:
     """Return the frames of a segment nearest to these ranges of its time in [0, 1]."""
-    span, transit = clip_segments(clip)[interval], pose_segments(clip)[interval]
+    span, segment = clip_segments(clip)[number], pose_segments(clip)[number]
     start, end = span.start, span.start + span.frames
     found = []
-    for frame in range(start, end + 1) if stretches else ():
+    for frame in range(start, end + 1) if ranges else ():
         ends = (span.share(max(frame - 0.5, start)), span.share(min(frame + 0.5, end)))
-        since, until = (transit.weight(clip.keys[span.first].easing(share)) for share in ends)
-        if any(first <= until and last >= since for first, last in stretches):
+        since, until = (segment.weight(clip.keys[span.first].easing(share)) for share in ends)
+        if any(first <= until and last >= since for first, last in ranges):
             found.append(frame)
     return tuple(found)

@@ -6,6 +6,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from app.reports.curves import Curves
+from app.texts import _
 from engine.arrays import Floats
 
 SIZE = (1400, 560)
@@ -15,7 +16,7 @@ PAPER, INK, GRID = (255, 255, 255), (60, 64, 74), (224, 226, 232)
 LINE, BOUND = (74, 91, 224), (207, 63, 60)
 OPACITY = 0.3  # of one curve
 # The font has no Greek letters.
-TITLES = ("k, relative to the larger key", "tau - 1, relative to the larger key")
+TITLES = (_("k, relative to the larger key"), _("tau - 1, relative to the larger key"))
 
 
 def draw_curves(curves: Curves) -> bytes:

@@ -73,13 +73,13 @@ def measure_curves(
     frames are measured.
     """
     frames, ks, taus, extremes = [], [], [], []
-    for span, transit, between in zip(
+    for span, segment, between in zip(
         clip_segments(clip), pose_segments(clip), inbetweens, strict=True
     ):
         for share in np.linspace(0.0, 1.0, TIMES):
             if corrected is not None:
                 share = round(share * span.frames) / span.frames  # noqa: PLW2901
-            t = transit.weight(clip.keys[span.first].easing(float(share)))
+            t = segment.weight(clip.keys[span.first].easing(float(share)))
             frames.append(span.start + share * span.frames)
             if corrected is None:
                 blended = between.frame(t)

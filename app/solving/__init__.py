@@ -13,6 +13,7 @@ from app.solving.drag_solver import (
 from app.solving.flipping import flip_poses as flip_poses, flip_targets as flip_targets
 from app.solving.motion_preset.joints_file import (
     JointsFile as JointsFile,
+    find_joints as find_joints,
     load_joints as load_joints,
 )
 from app.solving.motion_preset.motion_request import (

@@ -9,6 +9,7 @@ from documents import PICTURE
 from holed_shapes import Holed, boundary_of, random_map, ring
 from numpy.testing import assert_allclose, assert_array_equal
 
+from app.cli.arrays.hole_arrays import HOLES_LACK
 from app.cli.main import main
 from app.cut_out import CutOut, build_picture_domain
 from app.document import Document, Handle, Keyframe, Meshing, Pose, Target, clip_of, new_layer
@@ -113,7 +114,7 @@ def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, c
         assert interval.correction > 1e-4
         assert interval.reached.k <= 1.05 * interval.keys.k
     main(["certify", str(path)])
-    assert "Around holes the in-betweens" in capsys.readouterr().out
+    assert "To close around holes, the in-betweens" in capsys.readouterr().out
 
 
 def test_frames_keep_the_hole_open():
@@ -193,7 +194,7 @@ def test_arrays_of_holes_are_handed_from_command_to_command(tmp_path):
     ("change", "message"),
     [
         ({"hole_cage_sizes": np.array([3])}, "add up to"),
-        ({"hole_centres": None}, "holes need hole_centres as well"),
+        ({"hole_centres": None}, HOLES_LACK.format(name="hole_centres")),
         ({"hole_outline_sizes": np.array([1.5])}, "whole numbers"),
     ],
 )

@@ -39,7 +39,7 @@ MOST_LOST = 10.0  # seconds of edits then, on a busy machine
 DRIVEN = """
 import os, sys, threading, time
 from pathlib import Path
-from app.cli.commands import window
+from app.cli import window_process
 from app.cli.main import main
 from app.document.commands import scene_commands
 from app.editor import do
@@ -58,7 +58,7 @@ def name(session, number):
 def close(session):
     session.dialog = None
 
-class Driven(window.Window):
+class Driven(window_process.Window):
     def __init__(self, *arguments):
         super().__init__(*arguments)
         threading.Thread(target=self.drive, daemon=True).start()
@@ -98,7 +98,7 @@ class Driven(window.Window):
             if saves and number % saves == saves - 1:
                 self.save(number)
 
-window.Window = Driven
+window_process.Window = Driven
 raise SystemExit(main(sys.argv[3:]))
 """
 

@@ -1,6 +1,7 @@
-"""The commands, one module each with `run(arguments)`.
+"""The commands, one module each: a help `EPILOG`, `add_arguments(parser)` and `run(arguments)`.
 
-In: parsed arguments.
+In: words of a command line.
 Out: an exit status.
-Imports: everything below `app.cli`.
+Imports: everything below `app.cli`; what computes only within `run`, so that help and errors of
+usage come at once.
 """

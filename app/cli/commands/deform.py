@@ -1,132 +1,70 @@
 """`lissom deform`: drag handles of a shape, from file to file."""
 
 import argparse
-from collections.abc import Mapping
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
 
 from app.cli.console import print_line
-from app.cli.hole_arrays import HOLE_ARRAYS, hole_arrays, read_holes
-from app.errors import LissomError
-from app.storage import check_writable, read_arrays, write_arrays
-from engine.arrays import Complexes
-from engine.deform import BoundedPull, Deformer, Handles, require_held
-from engine.geometry import Domain
-from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds
+from app.cli.options import add_out, input_file
+from app.texts import _
 
-LIMITS = ("k_max", "sigma_a_max", "sigma_b_min")
-MATERIAL = ("stiffness", "local_limits")
+EPILOG = _(
+    """\
+CASE.npz holds the shape and its targets:
+  outline      (p,)   complex128  the domain's boundary, counter-clockwise
+  cage         (n,)   complex128  the cage around it, counter-clockwise
+  handles      (h,)   complex128  points of the shape
+  targets      (h,)   complex128  where the handles should be
+  k_max, sigma_a_max, sigma_b_min  scalars, limits of the distortion
+  phi, psi     (n,)   complex128  optional, the map to start from, with logs (holes,) around holes
+  hole_outlines, hole_outline_sizes, hole_cages, hole_cage_sizes, hole_centres
+                                  optional, the holes, as lissom domain writes them
+  stiffness    (p,)   float64     optional, from 1/30 to 100 at the vertices of outline, then at
+                                  those of hole_outlines: a factor of the energy along the boundary,
+                                  and of the forces at handles there; 1 by default; its logarithm
+                                  is linear along edges
+  local_limits scalar             optional, 0 or 1: whether limits are tighter where stiffness is
+                                  above 1; k, ln sigma_a and ln sigma_b are divided by its square
+                                  root there
+  path         (s, h) complex128  optional, positions of the handles on the way to the targets
+  pull         (h,) or scalar     optional, the strongest force of each handle over the diameter of
+                                  the outline; infinite holds the handle, as by default; a scalar
+                                  is for handles whose target is not at rest; with 10 a limb moves
+                                  as far as it goes, and nothing else moves
+
+MAP.npz holds outline, cage, the arrays of the holes, and
+  phi, psi     (n,)   complex128  the map: the coefficients of the cage, then those of each hole's
+  logs         (holes,) complex128  a_j; the map contains 2 a_j ln|z - hole_centre_j|
+  handles_mapped (h,) complex128  where the handles are
+  k, sigma_a, sigma_b             proven for the whole shape
+  certified                       whether these are within the limits, and the map is injective
+  status                          "converged" at rest; "at the limits" at rest, stopped by the
+                                  limits; "unfinished" if neither is proven
+  steps                           Newton steps of the search that found the map
+  steps_tried                     steps of all searches, and along the path
+
+examples:
+  lissom deform case.npz --out map.npz
+"""
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "case", metavar="CASE.npz", type=input_file, help=_("shape, handles and targets")
+    )
+    add_out(parser, "MAP.npz")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Deform the shape of a case and write the map."""
+    from app.cli.arrays.deform_case import solve_case
+    from app.storage import check_writable, write_arrays
+
     check_writable(arguments.out, sources=[arguments.case])
-    case = read_arrays(
-        arguments.case,
-        required=("outline", "cage", "handles", "targets", *LIMITS),
-        optional=("phi", "psi", "logs", "path", "pull", *MATERIAL, *HOLE_ARRAYS),
-    )
-    k, sigma_a, sigma_b = (_scalar(case, name) for name in LIMITS)
-    bounds: LocalBounds = Bounds(k=k, sigma_a=sigma_a, sigma_b=sigma_b)
-    domain = Domain(case["outline"], case["cage"], read_holes(case))
-    points = require_held(case["handles"], domain)
-    boundary = Boundary.sample(domain)
-    if "stiffness" in case:
-        boundary = boundary.stiffened(case["stiffness"])
-    if _is_local(case):
-        bounds = bounds.scaled_by_stiffness(boundary)
-    handles = Handles.place(boundary, points)
-    rows = _rows(case, len(handles.points))
-    hands = _hands(case, handles.points)
-    wishes = [handles.targets(row, None, hands) for row in rows]
-    deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-    state, tried = deformer.start(_start(case, boundary)), 0
-    for wish in wishes[:-1]:
-        state, count = deformer.track_path_row(state, wish)
-        tried += count
-    state, count = deformer.settle(state, wishes[-1], throw=False)
-    tried += count
-    certificate = state.certificate
-    write_arrays(
-        arguments.out,
-        {
-            "outline": boundary.outline,
-            "cage": boundary.cage,
-            "phi": state.map.phi,
-            "psi": state.map.psi,
-            "logs": state.map.logs,
-            **hole_arrays(boundary.holes),
-            "handles_mapped": deformer.positions(state),
-            "k": certificate.k,
-            "sigma_a": certificate.sigma_a,
-            "sigma_b": certificate.sigma_b,
-            "certified": certificate.is_certified,
-            "status": state.status.value,
-            "steps": state.steps,
-            "steps_tried": tried,
-        },
-    )
+    results = solve_case(arguments.case)
+    write_arrays(arguments.out, results)
     print_line(
-        f"{state.status.value}: k ≤ {certificate.k:.4f}, sigma_a ≤ {certificate.sigma_a:.4f}, "
-        f"sigma_b ≥ {certificate.sigma_b:.4f}, {state.steps} steps of {tried} tried"
+        _(
+            "{status}: k ≤ {k:.4f}, sigma_a ≤ {sigma_a:.4f}, sigma_b ≥ {sigma_b:.4f}, {steps} "
+            "steps of {steps_tried} tried"
+        ).format(**results)
     )
     return 0
-
-
-def _scalar(case: Mapping[str, npt.NDArray[Any]], name: str) -> float:
-    value = case[name]
-    if value.size != 1 or value.dtype.kind not in "biuf":
-        raise LissomError(f"{name} must be one number, not of shape {value.shape}, {value.dtype}")
-    return float(value.reshape(()))
-
-
-def _is_local(case: Mapping[str, npt.NDArray[Any]]) -> bool:
-    """Return whether limits are tighter in stiff parts of the shape."""
-    value = _scalar(case, "local_limits") if "local_limits" in case else 0.0
-    if value not in (0.0, 1.0):
-        raise LissomError(f"local_limits must be 0 or 1, not {value:g}")
-    return value == 1.0
-
-
-def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[Any]]:
-    """Return the rows of the path, then the targets."""
-    path = case.get("path", np.empty((0, count)))
-    if path.ndim != 2 or path.shape[1] != count:
-        raise LissomError(f"path must have one column for each of {count} handles: {path.shape}")
-    return [*path, case["targets"]]
-
-
-def _hands(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[BoundedPull]:
-    """Return bounded drag forces, each at one handle, if the case asks for them.
-
-    A single given force is used for all handles whose target differs from their rest position.
-    """
-    if "pull" not in case:
-        return []
-    pull, count = case["pull"], len(points)
-    if pull.dtype.kind not in "biuf" or pull.shape not in ((), (1,), (count,)):
-        raise LissomError(
-            f"pull must be one number, or one for each of {count} handles, not of shape "
-            f"{pull.shape}, {pull.dtype}"
-        )
-    forces = np.broadcast_to(pull.astype(np.float64), count)
-    if pull.shape != (count,) and case["targets"].shape == points.shape:
-        forces = np.where(case["targets"] == points, np.inf, forces)
-    return [BoundedPull([handle], force) for handle, force in enumerate(forces.tolist())]
-
-
-def _start(case: Mapping[str, npt.NDArray[Any]], boundary: Boundary) -> HarmonicMap | None:
-    """Return the map to start from, or None for the identity."""
-    if ("phi" in case) != ("psi" in case):
-        raise LissomError("a start map needs both phi and psi")
-    if "phi" not in case:
-        return None
-    return HarmonicMap(
-        cage=boundary.cage,
-        phi=case["phi"],
-        psi=case["psi"],
-        holes=boundary.holes,
-        logs=case.get("logs", np.zeros(len(boundary.holes))),
-    )

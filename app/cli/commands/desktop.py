@@ -13,11 +13,12 @@ import subprocess
 import sys
 import sysconfig
 from contextlib import suppress
+from operator import methodcaller
 from pathlib import Path
 
 from app.cli.console import print_line
 from app.errors import REINSTALL, LissomError
-from app.storage import app_icon, decode_picture, draw_thumbnail, home_folder, write_atomically
+from app.texts import N_, _
 
 PROGRAM = "lissom"
 # Below the person's data folder.
@@ -37,11 +38,15 @@ MIME_DATABASE = (
     *("mime.cache", "subclasses", "treemagic", "types", "version"),
 )
 PATIENCE = 60.0  # seconds
+OTHER_SYSTEM = N_(
+    "'lissom desktop' is for Linux and similar systems; here, choose Lissom for .lissom files in "
+    "the settings of the system"
+)
 ENTRY = """\
 [Desktop Entry]
 Type=Application
 Name=Lissom
-GenericName=Puppet Animation
+GenericName=2D Animation
 Comment=Pose a drawing with a few handles, and get in-betweens that never fold
 TryExec={program}
 Exec={quoted} %f
@@ -49,7 +54,7 @@ Icon=lissom
 Terminal=false
 StartupWMClass=Lissom
 Categories=Graphics;2DGraphics;
-Keywords=animation;puppet;in-between;
+Keywords=animation;rig;in-between;
 MimeType=application/x-lissom;
 """
 THUMBNAILER = """\
@@ -76,31 +81,52 @@ MIME_TYPE = """\
 </mime-info>
 """
 
+EPILOG = _(
+    """\
+On Linux and similar systems this adds Lissom for the current person only, under $XDG_DATA_HOME (or
+~/.local/share). Lissom appears in the menu of applications, with its icon, and opens .lissom files.
+File managers show thumbnails of them. --remove removes all of this. Install again after Lissom has
+moved to another folder.
+
+examples:
+  lissom desktop --install
+  lissom desktop --remove
+"""
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    either = parser.add_mutually_exclusive_group(required=True)
+    either.add_argument("--install", action="store_true", help=_("add Lissom to the desktop"))
+    either.add_argument("--remove", action="store_true", help=_("remove Lissom from the desktop"))
+
 
 def run(arguments: argparse.Namespace) -> int:
     """Install Lissom in the desktop, or remove it."""
     if sys.platform in {"win32", "darwin"}:
-        raise LissomError(
-            "'lissom desktop' is for Linux and its kin; here, choose Lissom for .lissom files in "
-            "the settings of the system"
-        )
+        raise LissomError(_(OTHER_SYSTEM))
     home = _data_home()
     try:
         if arguments.install:
             _install(home)
-            print_line(
-                f"Lissom is in the menu of applications, and .lissom files open with it ({home})."
+            text = _(
+                "Lissom is in the menu of applications, and .lissom files open with it ({folder})."
             )
         else:
             _remove(home)
-            print_line(f"Nothing of Lissom is left in {home}.")
+            text = _("Everything of Lissom is removed from {folder}.")
     except OSError as error:
-        raise LissomError(f"cannot change {error.filename}: {error.strerror}") from error
+        raise LissomError(
+            _("cannot change {path}: {reason}").format(path=error.filename, reason=error.strerror)
+        ) from error
+    print_line(text.format(folder=home))
     return 0
 
 
 def _data_home() -> Path:
     """Return the person's data folder; a relative path in the variable is ignored."""
+    from app.storage import home_folder
+
     chosen = Path(os.environ.get("XDG_DATA_HOME", ""))
     return chosen if chosen.is_absolute() else home_folder() / ".local" / "share"
 
@@ -128,11 +154,13 @@ def _remove(home: Path) -> None:
 
 def build_desktop_files(program: str) -> dict[str, bytes]:
     """Return the desktop files for the program at this path, by their places in a data folder."""
-    icon = decode_picture(app_icon(), "the icon of Lissom").rgba
-    said = {"program": _escaped(program), "quoted": _quoted(program)}
+    from app.storage import app_icon, decode_picture, draw_thumbnail
+
+    icon = decode_picture(app_icon(), _("the icon of Lissom")).rgba
+    values = {"program": _escaped(program), "quoted": _quoted(program)}
     return {
-        ENTRY_AT: os.fsencode(ENTRY.format_map(said)),
-        THUMBNAILER_AT: os.fsencode(THUMBNAILER.format_map(said)),
+        ENTRY_AT: os.fsencode(ENTRY.format_map(values)),
+        THUMBNAILER_AT: os.fsencode(THUMBNAILER.format_map(values)),
         MIME_TYPE_AT: MIME_TYPE.encode(),
         **{place: draw_thumbnail(icon, side) for side, place in ICONS_AT.items()},
     }
@@ -145,7 +173,11 @@ def _program() -> str:
     own = Path(sysconfig.get_path("scripts")) / PROGRAM
     program = str(own) if own.is_file() else shutil.which(PROGRAM)
     if program is None:
-        raise LissomError(f"there is no program {PROGRAM} in {own.parent}; {REINSTALL}")
+        raise LissomError(
+            _("there is no program {name} in {folder}; {remedy}").format(
+                name=PROGRAM, folder=own.parent, remedy=_(REINSTALL)
+            )
+        )
     return program
 
 
@@ -181,5 +213,7 @@ def _refresh(home: Path) -> None:
 
 
 def _write(path: Path, content: bytes) -> None:
+    from app.storage import write_atomically
+
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_atomically(path, lambda file: file.write(content))
+    write_atomically(path, methodcaller("write", content))

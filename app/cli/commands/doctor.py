@@ -1,109 +1,35 @@
 """`lissom doctor`: the working features of this machine."""
 
 import argparse
-import os
-import sys
-from typing import Final, NamedTuple
-
-import numpy as np
 
 from app.cli.console import print_line
-from app.errors import LIBRARIES, Extra, LissomError, install_hint
-from app.export_formats import EXPORT_FORMATS
-from app.render import Renderer, Scene, canvas_view
-from app.render.gpu.context import AUTOMATIC, Backend, GlError, create_context, probe_backend
-from app.render.gpu.mesh import GpuMesh, PosedMesh, PositionBuffer, to_float32_points
-from app.render.gpu.picture import GpuPicture
-from app.render.gpu.target import RenderTarget
-from app.reports import describe_machine, library_version
-from app.ui.dialogs.native_dialog import find_system_dialogs
+from app.texts import _
 
-USES: Final[dict[Extra, str]] = {
-    "video": ", ".join(name for name, each in EXPORT_FORMATS.items() if each.extra == "video"),
-    "psd": "Photoshop files",
-    "figures": "lissom figures",
-}
+EPILOG = _(
+    """\
+The exit status is 0 if Lissom can render here, and 1 if not. "--" marks what is missing, and says
+what to install. Only rendering is required.
+
+examples:
+  lissom doctor
+"""
+)
 
 
-class CheckResult(NamedTuple):
-    """Whether a feature works, and its version or remedy."""
-
-    name: str
-    text: str
-    works: bool = True
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare nothing."""
 
 
-def run(_: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001
+    from app.cli.machine_checks import check_rendering, check_surroundings
+    from app.reports import describe_machine
+
     print_line(describe_machine())
-    rendering = [_rendering(backend) for backend in AUTOMATIC]
-    for finding in (*rendering, _display(), _dialogs(), *map(_extra, LIBRARIES)):
-        print_line(f"{'ok' if finding.works else '--'}  {finding.name}: {finding.text}")
-    if any(finding.works for finding in rendering):
-        print_line("Lissom can render here.")
+    rendering = check_rendering()
+    for check in (*rendering, *check_surroundings()):
+        print_line(f"{'ok' if check.works else '--'}  {check.name}: {check.text}")
+    if any(check.works for check in rendering):
+        print_line(_("Lissom can render here."))
         return 0
-    print_line("Lissom cannot render here: install what is named above.")
+    print_line(_("Lissom cannot render here. Install one of the drivers that are named above."))
     return 1
-
-
-def _rendering(backend: Backend) -> CheckResult:
-    name = f"rendering with {backend}"
-    report = probe_backend(backend)
-    if report.problem:
-        return CheckResult(name, report.problem, works=False)
-    text = (
-        f"{report.renderer}, OpenGL {report.version}, up to {report.largest_size} pixels each way"
-    )
-    try:
-        if _draws_exactly(backend):
-            return CheckResult(name, text)
-        problem = "the pictures come out wrong"
-    except (LissomError, GlError) as error:
-        problem = f"drawing fails: {error}"
-    return CheckResult(name, f"{text}, but {problem}; install another graphics driver", works=False)
-
-
-def _draws_exactly(backend: Backend) -> bool:
-    """Draw a small picture at its own size and compare."""
-    picture = np.random.default_rng(0).integers(1, 256, (12, 16, 4), dtype=np.uint8)
-    rest = np.array([0, 16, 16 + 12j, 12j])
-    triangles = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
-    context = create_context(backend)
-    try:
-        renderer = Renderer(context)
-        texture = GpuPicture(context, picture)
-        mesh = GpuMesh(renderer.programs, texture, rest=rest, triangles=triangles)
-        vertices = PositionBuffer(context, len(rest))
-        vertices.write(to_float32_points(rest))
-        target = RenderTarget(renderer.programs, (16, 12))
-        renderer.draw(target, canvas_view((16, 12)), Scene(meshes=(PosedMesh(mesh, vertices),)))
-        return np.array_equal(target.read_straight_rgba(), picture)
-    finally:
-        # Releases also all objects of the context.
-        context.release()
-
-
-def _display() -> CheckResult:
-    name = "display for the window"
-    if sys.platform in {"win32", "darwin"}:
-        return CheckResult(name, "the system's own")
-    for variable in ("WAYLAND_DISPLAY", "DISPLAY"):
-        if os.environ.get(variable):
-            return CheckResult(name, f"{variable}={os.environ[variable]}")
-    return CheckResult(name, "none; the command line does not need one", works=False)
-
-
-def _dialogs() -> CheckResult:
-    name = "file dialogs of the system"
-    found = find_system_dialogs()
-    if found:
-        return CheckResult(name, found)
-    remedy = "none, Lissom's own are used; for the system's: sudo apt install zenity"
-    return CheckResult(name, remedy, works=False)
-
-
-def _extra(extra: Extra) -> CheckResult:
-    """Return the state of an optional extra."""
-    name, library = USES[extra], LIBRARIES[extra]
-    if remedy := install_hint(extra):
-        return CheckResult(name, f"{library} is not installed: {remedy}", works=False)
-    return CheckResult(name, f"{library} {library_version(library)}")

@@ -1,49 +1,126 @@
 """`lissom export`: a project's animation as pictures, video or a model."""
 
 import argparse
-from collections.abc import Mapping
-from contextlib import ExitStack, closing
+import re
+import textwrap
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from app.cli.console import StatusLine, print_line, print_notices
-from app.document import (
-    Document,
-    ExportSettings,
-    FrameRange,
-    clip_of,
-    motion_notices,
-    without_foreign_clips,
-)
-from app.errors import LissomError, join_names
-from app.export import (
-    PROJECT,
-    CachedVertices,
-    ExportPlan,
-    ExportRequest,
-    FrameRenderer,
-    MeshExport,
-    check_request,
-    data_file,
-    plan_export,
-    sheet_grid,
-    with_reduced_meshes,
-)
+from app.cli.console import print_line, print_notices
+from app.cli.options import FRAMINGS, add_out, add_project, add_variant_option, output
+from app.errors import LissomError
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT, FormatSettings, format_by_suffix
-from app.motion import Animation, hung_animations
-from app.render.gpu.context import create_context
-from app.storage import cut_picture, decode_picture, load_project
-from engine.arrays import Bytes
+from app.texts import N_, _
 
-NO_USE = "{name} has no use for --{flag}; leave it out"
+if TYPE_CHECKING:
+    from app.document import ExportSettings
+
+NO_USE = N_("{name} has no use for --{flag}; leave it out")
+
+COLUMN = max(map(len, EXPORT_FORMATS)) + 4
+FORMATS = "\n".join(
+    textwrap.fill(
+        _(format_.about),
+        width=98,
+        initial_indent=f"  {name}".ljust(COLUMN),
+        subsequent_indent=" " * COLUMN,
+        break_on_hyphens=False,
+    )
+    for name, format_ in EXPORT_FORMATS.items()
+)
+*OTHERS, LAST = format_by_suffix()  # suffixes
+EPILOG = _(
+    """\
+The defaults of options are the project's own export settings.
+
+formats:
+{formats}
+Without --format, an --out that ends in {suffixes} or {last}
+chooses the format. Animations of a project that loops play for ever, others once. PNGs have
+straight alpha, and colours are sRGB. An interrupted export to png keeps the finished frames, each
+of them whole; other formats write nothing then. Existing files are replaced.
+
+examples:
+  lissom export wave.lissom --out frames
+  lissom export wave.lissom --out wave.gif --size 480x480 --fps 12
+  lissom export wave.lissom --out wave.mp4 --background "#ffffff" --framing fit
+  lissom export wave.lissom --out wave.glb --tolerance 0.2
+  lissom export wave.lissom --out pose.png --frame 12 --size 4000x3000
+"""
+).format(formats=FORMATS, suffixes=", ".join(OTHERS), last=LAST)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_project(parser)
+    add_out(
+        parser,
+        "DIR_OR_FILE",
+        _("a folder for PNG frames, a file for every other format"),
+        place=output,
+    )
+    either = parser.add_mutually_exclusive_group()
+    either.add_argument(
+        "--frames",
+        metavar="A:B",
+        type=_frames,
+        help=_("frames of the timeline, both ends included"),
+    )
+    either.add_argument(
+        "--frame",
+        metavar="N",
+        type=int,
+        help=_("one frame; with a name that ends in .png, one picture"),
+    )
+    parser.add_argument(
+        "--fps", metavar="F", type=float, help=_("frames per second (default: the project's)")
+    )
+    parser.add_argument(
+        "--size", metavar="WxH", type=_size, help=_("in pixels (default: as the framing needs)")
+    )
+    parser.add_argument(
+        "--background", metavar="COLOUR", help=_("transparent, or a colour such as #fff or #ffffff")
+    )
+    parser.add_argument(
+        "--framing",
+        choices=FRAMINGS,
+        help=_("the canvas, or all of the motion; with a camera both are its view"),
+    )
+    parser.add_argument(
+        "--names",
+        metavar="PATTERN",
+        help=_(
+            'names of PNG frames, such as "{name}_####": "#" for each digit of the frame, {name} '
+            "for the project's name, which --out may contain too (default: the project's names, "
+            "frame_####)"
+        ),
+    )
+    for options in FormatSettings().options().values():
+        for name, option in options.option_fields().items():
+            usual = getattr(options, name)
+            if isinstance(usual, bool):
+                how: dict[str, Any] = {"action": argparse.BooleanOptionalAction}
+            else:
+                is_whole = isinstance(usual, int)
+                how = {"metavar": "N" if is_whole else "PX", "type": int if is_whole else float}
+            parser.add_argument(f"--{option.flag}", dest=name, help=_(option.description), **how)
+    parser.add_argument("--layer", metavar="NAME", help=_("export this layer alone"))
+    # Its name in earlier versions.
+    parser.add_argument("--figure", dest="layer", metavar="NAME", help=argparse.SUPPRESS)
+    add_variant_option(parser)
+    parser.add_argument("--format", choices=tuple(EXPORT_FORMATS), help=_("the format to write"))
 
 
 def run(arguments: argparse.Namespace) -> int:
+    from app.cli.project_export import export_project, keep_layer
+    from app.document import motion_notices
+    from app.export import PROJECT, ExportRequest, check_request
+    from app.storage import load_project
+
     document = load_project(arguments.project)
     print_notices(motion_notices(document))
     if arguments.layer is not None:
-        document = _alone(document, arguments.layer)
+        document = keep_layer(document, arguments.layer)
     name = arguments.project.stem
     named: Path = arguments.out.path
     out = named.parent / named.name.replace(PROJECT, name)
@@ -58,70 +135,14 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.out.as_file()
     check_request(document, request)
     _check_options(request.settings.format, arguments)
-    source = f"the picture of {arguments.project}"
-    decoded = {
-        file: decode_picture(file.data, source)
-        for file in {layer.picture for layer in document.layers}
-    }
-    pictures = {
-        layer.id: cut_picture(decoded[layer.picture], layer.cut_out).texture
-        for layer in document.layers
-    }
-    print_line(_make(document, pictures, request, arguments))
+    print_line(export_project(document, request, arguments.variant))
     return 0
 
 
-def _alone(document: Document, name: str) -> Document:
-    """Return a document with only one visible layer; its parent stays."""
-    names = [layer.name for layer in document.layers]
-    if name not in names:
-        raise LissomError(f"there is no layer {name!r}; the layers are {join_names(names)}")
-    layers = tuple(
-        replace(layer, hidden=False, reference=layer.name != name) for layer in document.layers
-    )
-    groups = tuple(replace(group, hidden=False) for group in document.groups)
-    alone = replace(document, layers=layers, groups=groups, size=document.canvas)
-    return without_foreign_clips(alone, [layer.id for layer in layers if layer.name == name])
-
-
-def _make(
-    document: Document,
-    pictures: Mapping[int, Bytes],
-    request: ExportRequest,
-    arguments: argparse.Namespace,
-) -> str:
-    """Run the export; return a summary."""
-    maker: FrameRenderer | MeshExport
-    with ExitStack() as ending:
-        context = None
-        if EXPORT_FORMATS[request.settings.format].is_drawn:
-            context = create_context()
-            ending.callback(context.release)
-        else:
-            document = with_reduced_meshes(document, request.settings.shapes.triangles)
-        status = ending.enter_context(StatusLine())
-        status.show("preparing the in-betweens")
-        poses = _poses(document, arguments)
-        plan = plan_export(document, request, poses)
-        given = document, pictures, poses, plan
-        maker = MeshExport(*given) if context is None else FrameRenderer(context, *given)
-        with closing(maker.run()) as steps:
-            for done in steps:
-                status.show(f"{done} of {len(plan.times)} frames")
-    print_notices((*maker.notices, *plan.notices))
-    if isinstance(maker, MeshExport):
-        return _summary_of_shapes(maker, plan)
-    return _summary_of_frames(plan)
-
-
-def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, CachedVertices]:
-    alone = [Animation(clip_of(document, layer.id), arguments.variant) for layer in document.layers]
-    hung = hung_animations(alone, document)
-    return {layer: CachedVertices(animation) for layer, animation in hung.items()}
-
-
-def _settings(own: ExportSettings, arguments: argparse.Namespace, out: Path) -> ExportSettings:
+def _settings(own: "ExportSettings", arguments: argparse.Namespace, out: Path) -> "ExportSettings":
     """Return the project's settings, replaced by the given options."""
+    from app.document import FrameRange
+
     one = arguments.frame
     frames = arguments.frames if one is None else (one, one)
     name = arguments.format or _format_of(out, own, is_one=one is not None)
@@ -152,14 +173,14 @@ def _check_options(name: str, arguments: argparse.Namespace) -> None:
             useless |= {each: option.flag for each, option in asking.option_fields().items()}
     for each, flag in useless.items():
         if getattr(arguments, each) is not None:
-            raise LissomError(NO_USE.format(name=name, flag=flag))
+            raise LissomError(_(NO_USE).format(name=name, flag=flag))
 
 
 def _known(given: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in given.items() if value is not None}
 
 
-def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
+def _format_of(out: Path, own: "ExportSettings", *, is_one: bool) -> str | None:
     """Return the only format for a file name, or None if the project's format fits.
 
     For a single frame, pictures come first among several formats.
@@ -172,43 +193,37 @@ def _format_of(out: Path, own: ExportSettings, *, is_one: bool) -> str | None:
     every = {end: name for name, format_ in EXPORT_FORMATS.items() for end in format_.suffixes}
     if suffix not in every:
         raise LissomError(
-            f"no format has names that end in {out.suffix}: choose one of {', '.join(every)}, or "
-            "say --format"
+            _(
+                "no format has names that end in {suffix}; choose one of {suffixes}, or add "
+                "--format"
+            ).format(suffix=out.suffix, suffixes=", ".join(every))
         )
     is_own = suffix in EXPORT_FORMATS[own.format].suffixes
     if suffix in format_by_suffix() or (is_own and not is_one):
         return None if is_own else format_by_suffix()[suffix]
-    several = [name for name, format_ in EXPORT_FORMATS.items() if suffix in format_.suffixes]
     if is_one:
         return STILL_FORMAT
+    several = [name for name, format_ in EXPORT_FORMATS.items() if suffix in format_.suffixes]
     raise LissomError(
-        f"{out} may be {' or '.join(several)}: say --format, or --frame N for the picture of a "
-        "frame"
+        _(
+            "{path} may be in several formats ({formats}); add --format, or --frame N for the "
+            "picture of a frame"
+        ).format(path=out, formats=", ".join(several))
     )
 
 
-def _summary_of_frames(plan: ExportPlan) -> str:
-    width, height = plan.view.size
-    count = len(plan.times)
-    text = f"{plan.out}: {count} {'frame' if count == 1 else 'frames'} of {width} × {height} pixels"
-    if not EXPORT_FORMATS[plan.format].suffixes:
-        names = dict.fromkeys((plan.names[0], plan.names[-1]))
-        return f"{text}, {' to '.join(names)}"
-    data = data_file(plan.out, plan.format)
-    if data is not None:
-        columns, rows = sheet_grid(plan)
-        grid = f" in {columns} columns and {rows} rows"
-        return f"{text}{', trimmed' if plan.sheet.trimmed else grid}, as {data.name} tells"
-    return f"{text}, {plan.fps:g} a second"
+def _frames(text: str) -> tuple[int, int]:
+    wanted = _("expected two frames with a colon, such as 0:47, not {text!r}")
+    return _two_numbers(text, r"(\d+):(\d+)", wanted)
 
 
-def _summary_of_shapes(maker: MeshExport, plan: ExportPlan) -> str:
-    first, last = plan.span
-    counts = [
-        f"{len(shape.motion.targets)} shapes of {len(shape.uv):,} vertices within "
-        f"{shape.motion.error:.2g} pixels of the motion"
-        for shape in maker.meshes
-    ]
-    size = plan.out.stat().st_size / 1000
-    seconds = (last - first) / plan.fps
-    return f"{plan.out}: {'; '.join(counts)}, {seconds:g} s, {size:,.0f} KB"
+def _size(text: str) -> tuple[int, int]:
+    wanted = _("expected width and height, such as 1920x1080, not {text!r}")
+    return _two_numbers(text, r"(\d+)[xX×](\d+)", wanted)
+
+
+def _two_numbers(text: str, pattern: str, wanted: str) -> tuple[int, int]:
+    match = re.fullmatch(pattern, text)
+    if match is None:
+        raise argparse.ArgumentTypeError(wanted.format(text=text))
+    return int(match[1]), int(match[2])

@@ -1,47 +1,118 @@
 """`lissom move`: picture + motion preset → project."""
 
 import argparse
-from typing import NamedTuple
+from dataclasses import fields, replace
+from typing import TYPE_CHECKING
 
 from app.cli.console import StatusLine, print_line, print_notices
-from app.cli.cut_out import parse_cut_out
-from app.document import Document, Layer, Meshing
+from app.cli.options import (
+    add_cut_out_options,
+    add_meshing_options,
+    input_file,
+    output_file,
+)
 from app.errors import LissomError
-from app.rigging import (
-    MOTIONS,
-    Motion,
-    Parameters,
-    find_kind,
-    find_motion,
-    guess_kind,
-    suggest_joints,
-)
-from app.solving import (
-    JointsFile,
-    MotionRequest,
-    find_facing,
-    load_joints,
-    start_motion_solve,
-    step_motion_solve,
-)
-from app.storage import (
-    OpenedScene,
-    check_writable,
-    cut_picture,
-    draw_thumbnail,
-    is_layered,
-    open_merged,
-    open_picture,
-    save_project,
+from app.texts import _
+
+if TYPE_CHECKING:
+    from app.document import Document
+    from app.solving import JointsFile, MotionRequest
+
+EPILOG = _(
+    """\
+A motion preset moves the joints of a drawing. The command guesses the kind of body and the joints,
+and prints them. A file of joints sets them instead:
+
+  {"schema": 1, "kind": "biped-side",
+   "joints": {"hips": [225, 250], "chest": [230, 365], "head": [235, 490],
+              "knee.L": [300, 160], "foot.L": [330, 55], "knee.R": [190, 150],
+              "foot.R": [125, 55]}}
+
+Places are pixels of the drawing from its lower left corner, x to the right and y up, as in
+`lissom pose`. These are the kinds and their joints; leave out joints that the drawing lacks:
+
+  biped-front, biped-side, four-legs
+    hips, chest, neck, head, tail, and on each side, as in knee.L and knee.R,
+    shoulder, elbow, hand, hip, knee, foot; the hands of four legs are its front feet, and in a
+    side view L and R are the two limbs of a pair, in any order
+  chain
+    joint.1, joint.2 and so on to joint.16, from the end that leads, or is held, to the other end
+  anything
+    none: it moves as a whole
+
+The project has a handle at each joint, and keys of the motion, which you can edit as any other
+keys. It loops, unless the motion travels. If the limits of distortion stop joints short of their
+targets, a notice lists them, with the largest --size at which none is stopped. The layers of a
+drawing are merged into one picture first.
+
+examples:
+  lissom move --list
+  lissom move horse.png --motion walk --out horse.lissom
+  lissom move person.png --motion wave --mirrored --size 0.8 --out hello.lissom
+  lissom move bird.png --motion walk --joints bird.json --travel --out bird.lissom
+"""
 )
 
-WHOLE = "anything"  # motions of the whole drawing suit any kind
-NO_JOINTS = JointsFile(kind=None, joints={})
 
-
-class _LayerJoints(NamedTuple):
-    kind: str
-    joints: dict[str, complex]
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "picture", metavar="DRAWING", type=input_file, nargs="?", help=_("the drawing")
+    )
+    parser.add_argument(
+        "--list", action="store_true", help=_("list the motion presets, with their kinds of bodies")
+    )
+    parser.add_argument("--motion", metavar="NAME", help=_("the motion preset to apply"))
+    parser.add_argument(
+        "--out", metavar="PROJECT.lissom", type=output_file, help=_("where to write")
+    )
+    parser.add_argument("--kind", metavar="KIND", help=_("the kind of body"))
+    parser.add_argument(
+        "--joints", metavar="JOINTS.json", type=input_file, help=_("the joints of the drawing")
+    )
+    parser.add_argument(
+        "--facing", choices=("left", "right"), help=_("where it looks (default: guessed)")
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        type=float,
+        default=1.0,
+        help=_("factor of the usual speed, 0.1 to 4"),
+    )
+    parser.add_argument(
+        "--size",
+        metavar="X",
+        type=float,
+        default=1.0,
+        help=_("factor of the usual swings and steps, 0.05 to 2"),
+    )
+    parser.add_argument(
+        "--energy",
+        metavar="X",
+        type=float,
+        default=1.0,
+        help=_("factor of the usual bounce and sway of the body, 0 to 2"),
+    )
+    parser.add_argument(
+        "--mirrored", action="store_true", help=_("the other side begins, or moves alone")
+    )
+    parser.add_argument(
+        "--start",
+        metavar="X",
+        type=float,
+        default=0.0,
+        help=_("the share of its cycle at which it begins, from 0 to below 1"),
+    )
+    parser.add_argument(
+        "--travel",
+        action="store_true",
+        help=_("advance by one stride, with feet planted in the picture; it does not loop"),
+    )
+    parser.add_argument(
+        "--bones", action="store_true", help=_("add a bone to each limb, which keeps it stiff")
+    )
+    add_meshing_options(parser)
+    add_cut_out_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -49,23 +120,28 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.list:
         _list_motions()
         return 0
+    from app.cli.drawings import open_drawing, save_drawing
+    from app.rigging import Parameters, find_motion
+    from app.solving import MotionRequest, find_joints
+    from app.storage import check_writable
+
     for name, option in (("picture", "DRAWING"), ("motion", "--motion"), ("out", "--out")):
         if getattr(arguments, name) is None:
-            raise LissomError(f"{option} is missing; 'lissom move --help' tells what is said")
+            text = _("{option} is missing (see 'lissom move --help')")
+            raise LissomError(text.format(option=option))
     read = arguments.picture, arguments.joints, arguments.mask
     check_writable(arguments.out, sources=filter(None, read))
-    motion, parameters = find_motion(arguments.motion), _parameters(arguments)
-    told = NO_JOINTS if arguments.joints is None else load_joints(arguments.joints)
-    if arguments.kind is not None:
-        find_kind(arguments.kind)
-        if told.kind not in (None, arguments.kind):
-            raise LissomError(
-                f"--kind is {arguments.kind!r}, but {arguments.joints} is of {told.kind!r}"
-            )
-    opened = _open_picture(arguments)
-    layer = opened.document.layers[0]
-    found = _find_joints(layer, motion, arguments.kind or told.kind, told)
-    order = MotionRequest(
+    motion = find_motion(arguments.motion)
+    names = [field.name for field in fields(Parameters)]
+    parameters = Parameters(**{name: getattr(arguments, name) for name in names})
+    given = _read_joints(arguments)
+    opened = open_drawing(arguments, merges_layers=True)
+    found = find_joints(opened.document.layers[0], motion, given)
+    if given.kind is None:
+        print_line(_("kind: {kind} (guessed)").format(kind=found.kind))
+    if found.joints and not given.joints:
+        print_line(_("joints: {names} (guessed)").format(names=", ".join(found.joints)))
+    request = MotionRequest(
         motion=arguments.motion,
         kind=found.kind,
         joints=found.joints,
@@ -73,77 +149,64 @@ def run(arguments: argparse.Namespace) -> int:
         facing={"left": -1, "right": 1, None: None}[arguments.facing],
         bones=arguments.bones,
     )
-    document = _apply_motion(opened.document, order)
-    _save(arguments, opened, document)
+    document = _solve(opened.document, request)
+    save_drawing(arguments.out, opened, document)
+    length = document.frames.last - document.frames.first
+    summary = (
+        _("{path}: {motion}, {frames} frames, looped, {keys} keys")
+        if document.loop
+        else _("{path}: {motion}, {frames} frames, {keys} keys")
+    )
+    print_line(
+        summary.format(
+            path=arguments.out,
+            motion=arguments.motion,
+            frames=length if document.loop else length + 1,
+            keys=len(document.layers[0].keys),
+        )
+    )
     return 0
 
 
 def _list_motions() -> None:
+    from app.rigging import MOTIONS
+
     longest = max(map(len, MOTIONS))
     for name, motion in MOTIONS.items():
-        travels = "; it may travel" if motion.can_travel else ""
-        print_line(f"{name:<{longest}}  {', '.join(motion.kinds)}: {motion.hint}{travels}")
+        text = _("{kinds}: {hint}; it may travel") if motion.can_travel else _("{kinds}: {hint}")
+        text = text.format(kinds=", ".join(motion.kinds), hint=_(motion.hint))
+        print_line(f"{name:<{longest}}  {text}")
 
 
-def _parameters(arguments: argparse.Namespace) -> Parameters:
-    """Return the motion's parameters; refuse wrong ones before anything is read."""
-    return Parameters(
-        speed=arguments.speed,
-        size=arguments.size,
-        energy=arguments.energy,
-        mirrored=arguments.mirrored,
-        start=arguments.start,
-        travel=arguments.travel,
-    )
+def _read_joints(arguments: argparse.Namespace) -> "JointsFile":
+    """Return the given kind and joints of the drawing."""
+    from app.rigging import find_kind
+    from app.solving import JointsFile, load_joints
+
+    given = JointsFile(kind=None, joints={})
+    if arguments.joints is not None:
+        given = load_joints(arguments.joints)
+    if arguments.kind is None:
+        return given
+    find_kind(arguments.kind)
+    if given.kind not in (None, arguments.kind):
+        text = _("--kind is {kind!r}, but {path} is of {other!r}")
+        raise LissomError(text.format(kind=arguments.kind, path=arguments.joints, other=given.kind))
+    return replace(given, kind=arguments.kind)
 
 
-def _open_picture(arguments: argparse.Namespace) -> OpenedScene:
-    """Return the drawing as a scene of one layer."""
-    meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
-    open_one = open_merged if is_layered(arguments.picture) else open_picture
-    opened = open_one(arguments.picture, meshing, parse_cut_out(arguments))
-    print_notices((*opened.notices, *opened.document.import_log.lines))
-    return opened
-
-
-def _find_joints(layer: Layer, motion: Motion, kind: str | None, told: JointsFile) -> _LayerJoints:
-    """Return the kind and the joints of a drawing, guessed if not given."""
-    loops = layer.domain.loops
-    if kind is None:
-        if told.joints:
-            raise LissomError("the file of joints does not say of which kind; add kind, or --kind")
-        kind = guess_kind(loops).name
-        if kind not in motion.kinds and WHOLE in motion.kinds:
-            kind = WHOLE
-        print_line(f"kind: {kind} (guessed)")
-    joints = dict(told.joints)
-    if not joints and find_kind(kind).parents:
-        joints = dict(suggest_joints(loops, find_kind(kind)))
-        if not joints:
-            raise LissomError(f"no joints of {kind!r} are found in the drawing; tell --joints")
-        print_line(f"joints: {', '.join(joints)} (guessed)")
-    return _LayerJoints(kind, joints)
-
-
-def _apply_motion(document: Document, order: MotionRequest) -> Document:
+def _solve(document: "Document", request: "MotionRequest") -> "Document":
     """Return the document with the motion; print notices about unreachable targets."""
-    with StatusLine() as status:
-        giving = start_motion_solve(document, document.layers[0].id, order)
-        if order.facing is None and order.kind in {"biped-side", "four-legs"}:
-            side = "right" if find_facing(document.layers[0], order) > 0 else "left"
-            print_line(f"it looks to the {side} (guessed)")
-        while not giving.is_over:
-            status.show(giving.status_text)
-            giving = step_motion_solve(giving)
-    print_notices(giving.notices)
-    return giving.command(document)
+    from app.solving import find_facing, start_motion_solve, step_motion_solve
 
-
-def _save(arguments: argparse.Namespace, opened: OpenedScene, document: Document) -> None:
-    """Write the project, and print a summary."""
     (layer,) = document.layers
-    texture = cut_picture(opened.pictures[layer.id], layer.cut_out).texture
-    save_project(arguments.out, document, thumbnail=draw_thumbnail(texture))
-    length = document.frames.last - document.frames.first
-    frames = f"{length} frames, looped" if document.loop else f"{length + 1} frames"
-    print_line(f"{arguments.out}: {arguments.motion}, {frames}, {len(layer.keys)} keys")
+    with StatusLine() as status:
+        solve = start_motion_solve(document, layer.id, request)
+        if request.facing is None and request.kind in {"biped-side", "four-legs"}:
+            is_left = find_facing(layer, request) < 0
+            print_line(_("facing: left (guessed)") if is_left else _("facing: right (guessed)"))
+        while not solve.is_over:
+            status.show(solve.status_text)
+            solve = step_motion_solve(solve)
+    print_notices(solve.notices)
+    return solve.command(document)

@@ -3,45 +3,183 @@
 import argparse
 
 from app.cli.console import StatusLine, print_line, print_notices
-from app.cli.cut_out import parse_cut_out
-from app.document import Meshing
-from app.solving import load_pose_script, pose_document
-from app.storage import (
-    check_writable,
-    cut_picture,
-    draw_thumbnail,
-    flatten_layers,
-    is_layered,
-    open_layered,
-    open_picture,
-    save_project,
+from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
+from app.texts import _
+
+EPILOG = _(
+    """\
+SCRIPT.json is an animation as a small text. Coordinates are pixels of the picture with the origin
+at its lower left corner and y up, as in `lissom domain`:
+
+  {"schema": 1, "fps": 24, "loop": false, "variant": "metric",
+   "bounds": {"k": 0.5, "sigma_a": 2.0, "sigma_b": 0.5}, "anchor": [400, 500],
+   "handles": {"nose": [120, 880], "hoof": [300, 40]},
+   "keys": [{"frame": 0}, {"frame": 24, "targets": {"nose": [90, 400]}, "ease": "in-out"}]}
+
+By default fps is 24, loop false, and variant "metric" (or nu, scaled-eta, eta, linear). The limits
+are called bounds; by default they are those above, which are "Natural" in the window ("Rubbery" is
+0.8, 5.0, 0.2 and "Stiff" 0.35, 1.5, 0.67). By default Lissom chooses the anchor, and ease is
+"linear" (or in, out, in-out, hold, or four numbers from 0 to 1 of a Bézier curve). The ease of a
+key leads to the next key. The passing of a key is "through", "corner", "stop" or "hold". "through"
+is the default between two other keys: the motion goes through the key at one velocity. At a
+"corner" it comes and goes straight; this is the default of keys with an ease. "hold" stays until
+the next key. A handle that a key does not name keeps its target of the key before, at first its
+place in the picture. Each key is solved by a drag from the key before. If the limits stop a handle,
+the key is kept, and a notice says how far the handle is from its target.
+
+A key with "turn": {"nose": 20} turns the shape at a handle by 20 degrees, counter-clockwise, from
+the drawing. Later keys without "turn" keep it.
+
+A key with "pull": 10 pulls the handles that it names with at most this force, as a drag in the
+window does. Handles that cannot reach their targets then move nothing else, and their targets move
+to where the handles are.
+
+A handle with equal targets in two neighbouring keys stays there in between, as a foot does on the
+ground. With "still": false in {"at": [300, 40], "still": false} it follows the shape instead. At
+the top, or in a layer, "still" is for all handles. A handle has a track of its own with
+
+   "tracks": [{"handle": "nose", "with": "pose", "delay": 4, "reach": 0.3,
+               "keys": [{"frame": 0, "offset": [0, 0]}, {"frame": 9, "offset": [12, 5]},
+                        {"frame": 24, "offset": [0, 0]}]},
+              {"handle": "hoof", "with": "picture", "keys": [{"frame": 6, "at": [310, 40]}]}],
+   "springs": [{"handle": "ear", "preset": "ear", "lag": 1, "strength": 0.5},
+               {"handle": "tail", "frequency": 1.6, "damping": 0.18, "root": "hip"}]
+
+A track acts from its first key to its last key, both included. An offset is relative to the
+handle's place in the motion of the poses, in axes that turn with the shape there. With "picture",
+"at" is the place on the canvas. Several handles move together as "handles": ["hoof", "heel"]; the
+keys are those of the first handle. A key may turn the shape at the handle by degrees,
+counter-clockwise ("turn": 20), and has ease and passing as above. At its first and last key the
+handle starts and ends at rest, unless they meet in a loop. A key with passing "through" may set the
+velocity, in pixels a frame, in the axes of its offset or of the canvas ("velocity": [2, -0.5]). By
+default "with" is "pose", delay is 0 frames (in a loop it wraps around), and reach is 1. Reach, from
+0 to 1, says how far around the handle the body gives way. The animation ends at the last key of
+poses or tracks, or at the end of the last cycle.
+
+A spring makes a handle follow the motion late and swing. Frequency is in Hz; damping 1 does not
+overshoot; by default lag is 0 frames, and strength is 1. The presets are tail, ear, hair, cloth and
+jelly. The handle swings about its "root", another handle, and keeps its distance to it. By default
+the root is the nearest handle without a spring, along bones, or else along the drawing. "stretch",
+from 0, the default, to 1, lets that distance change; 1 swings freely. Keys do not hold handles with
+springs: in poses the body carries them.
+
+A stretch of time repeats with
+
+   "cycles": [{"from": 0, "to": 24, "until": 96}]
+
+Its last frame is the same moment as its first frame, as in a loop. Set keys from frame 0 to 23; a
+key at 24 must equal the key at 0. Every repeat is the same motion, without a seam. Without "until"
+it repeats to the end of the animation. Tracks with all their keys in the cycle repeat with it. So
+do "movement" and "opacity" if they end as they begin, and "front", "visible" and "order". "attach"
+repeats if all its changes are in the cycle. Each repeat then begins as the cycle does; the last
+entry with "keep" leads there, and nothing jumps. The keys of "choices" repeat with a cycle that all
+of their layers have. Keys before the cycle lead to its first key. Keys after it continue from the
+frame shown at its end, which must be one of its keys. Cycles do not overlap.
+
+A handle may set the depth of the drawing around it, from -1 (behind) to 1 (in front), and how far
+around, in pixels: {"at": [120, 880], "front": 0.5, "extent": 60}. A key with "front": {"nose": 1}
+sets it from there on.
+
+Parts of the drawing are stiffer or softer with
+
+   "stiff": [{"around": [530, 800], "radius": 250, "amount": 10},
+             {"from": "elbow", "to": "wrist", "amount": 30}]
+
+The first entry paints the outline within so many pixels of a point, as far as it is visible from
+there. The second entry is a bone: the limb between two handles without the joints at its ends.
+"amount" is from 1/30, soft, to 100. Above 1 the limits are tighter, too: k and the logarithms of
+sigma_a and sigma_b are divided by the square root of the amount.
+
+DRAWING may have layers (OpenRaster .ora, or .psd if psd-tools is installed). Coordinates are then
+pixels of the canvas. In place of anchor, handles, keys, tracks, springs, cycles and stiff, a script
+of several layers has
+
+   "layers": [{"layer": "body", "handles": {}, "keys": [{"frame": 0}]},
+               {"layer": "arm", "handles": {"hand": [310, 240]},
+                "keys": [{"frame": 0}, {"frame": 12, "targets": {"hand": [300, 330]}}],
+                "attach": {"to": "body", "at": [200, 260], "turn": true},
+                "visible": [[0, true], [40, false]]}],
+   "choices": [{"name": "mouth", "layers": ["closed", "ah"], "keys": [[0, "closed"], [8, "ah"]]}]
+
+Each layer may have its own variant, bounds, anchor, tracks, springs, cycles and stiff. An attached
+layer moves as a whole, so that in every frame its anchor is at the point "at" of its parent. With
+"turn", which is true by default, it turns with the parent there. "at" is a point of the undeformed
+parent. Without an anchor, "at" is the anchor, too, and must be on both layers. Handles and targets
+are those of the layer without its parent. A list changes the parent; each entry counts from its
+frame on. With "keep" nothing jumps then, and "at" may be left out. "to": null detaches the layer:
+
+   "attach": [{"to": "hand A", "at": [310, 240]}, {"frame": 80, "to": "hand B", "keep": true}]
+
+Layers without an entry stand still. "visible" lists the frames from which a layer is visible or
+not; it also shows layers that are hidden in DRAWING. "choices" are switches: exactly one of their
+layers is visible, from the frame on that the key names. A layer is in one switch only, and has no
+"visible" then.
+
+The camera and its canvas are at the top of the script:
+
+   "camera": {"keys": [{"frame": 0, "centre": [400, 300]},
+                       {"frame": 48, "centre": [520, 340], "zoom": 2, "turn": 10]}},
+   "canvas": [1280, 720]
+
+Every frame of an export then shows the camera's view. The point centre is in its middle. The view
+is zoom times enlarged (1 by default; blended by its logarithm), and turned by degrees,
+counter-clockwise as seen (0 by default). Its size is the canvas, by default as large as DRAWING.
+Before its first key and after its last key the camera stands still; in a loop the last key leads to
+the first key. A layer has
+
+   "movement": {"keys": [{"frame": 0}, {"frame": 24, "shift": [60, 0], "turn": 90}]},
+   "opacity": [[0, 1], [12, 0.2]],
+   "order": [[24, {"in_front_of": "arm"}], [36, {"behind": "body"}], [48, null]]
+
+"movement" shifts the posed layer as a whole, and turns it around its anchor, or else around the
+middle of its shape. Attached layers move with it. While the layer itself is attached it follows
+only its parent. "opacity" is a number, or changes evenly from key to key. "order" moves the layer
+right in front of or right behind another layer from a frame on; null returns it to its place in
+DRAWING. A layer that stands still has these too, with "handles": {} and "keys": [{"frame": 0}].
+Keys of the camera and of movements have ease and passing as those of poses. They start and end at
+rest, unless they have an ease.
+
+examples:
+  lissom pose giraffe.png nod.json --out nod.lissom
+  lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine
+  lissom pose photo.jpg nod.json --out nod.lissom --mask mask.png
+"""
 )
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("picture", metavar="DRAWING", type=input_file, help=_("the drawing"))
+    parser.add_argument(
+        "script", metavar="SCRIPT.json", type=input_file, help=_("handles and keys")
+    )
+    add_out(parser, "PROJECT.lissom")
+    add_meshing_options(parser)
+    add_cut_out_options(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Solve the keys of a script and write the project."""
+    from app.cli.drawings import open_drawing, save_drawing
+    from app.solving import load_pose_script, pose_document
+    from app.storage import check_writable
+
     read = arguments.picture, arguments.script, arguments.mask
     check_writable(arguments.out, sources=filter(None, read))
     script = load_pose_script(arguments.script)
-    meshing = Meshing(triangles=arguments.triangles, detail=arguments.detail)
-    cut_out = parse_cut_out(arguments)
-    if is_layered(arguments.picture):
-        opened = open_layered(arguments.picture, meshing)
-    else:
-        opened = open_picture(arguments.picture, meshing, cut_out)
-    print_notices((*opened.notices, *opened.document.import_log.lines))
+    opened = open_drawing(arguments, merges_layers=False)
     with StatusLine() as status:
-        document, lags = pose_document(opened.document, script, status.show)
-    print_notices(lags)
-    textures = {
-        layer.id: cut_picture(opened.pictures[layer.id], layer.cut_out).texture
-        for layer in document.layers
-    }
-    picture = flatten_layers(document, textures)
-    save_project(arguments.out, document, thumbnail=draw_thumbnail(picture))
+        document, notices = pose_document(opened.document, script, status.show)
+    print_notices(notices)
+    save_drawing(arguments.out, opened, document)
     posed = [layer for layer in document.layers if not layer.still]
-    keys = sum(len(layer.keys) for layer in posed)
-    handles = sum(len(layer.handles) for layer in posed)
-    layers = "" if len(document.layers) == 1 else f"{len(document.layers)} layers, "
-    print_line(f"{arguments.out}: {layers}{keys} keys, {handles} handles")
+    values = {
+        "path": arguments.out,
+        "layers": len(document.layers),
+        "keys": sum(len(layer.keys) for layer in posed),
+        "handles": sum(len(layer.handles) for layer in posed),
+    }
+    if len(document.layers) == 1:
+        print_line(_("{path}: {keys} keys, {handles} handles").format(**values))
+    else:
+        print_line(_("{path}: {layers} layers, {keys} keys, {handles} handles").format(**values))
     return 0

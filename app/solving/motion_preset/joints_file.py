@@ -1,22 +1,50 @@
-"""Files with the joints of a drawing, in JSON."""
+"""The joints of a drawing: from JSON files, or guessed."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
+from app.document import Layer
 from app.errors import LissomError
-from app.rigging import find_kind
+from app.rigging import Motion, find_kind, guess_kind, suggest_joints
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
+from app.texts import _
 
 SCHEMA = 1
 LARGEST = 1024 * 1024  # bytes
 FIELDS = ("schema", "kind", "joints")
+WHOLE = "anything"  # motions of the whole drawing suit any kind
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JointsFile:
     kind: str | None  # None lets the program guess
     joints: Mapping[str, complex]  # in pixels from the lower left corner, y up
+
+
+class LayerJoints(NamedTuple):
+    kind: str
+    joints: Mapping[str, complex]  # empty if the drawing moves as a whole
+
+
+def find_joints(layer: Layer, motion: Motion, given: JointsFile) -> LayerJoints:
+    """Return the kind and the joints of a drawing, guessed if not given."""
+    loops, kind = layer.domain.loops, given.kind
+    if kind is None:
+        if given.joints:
+            raise LissomError(_("the file of joints does not name their kind; add kind, or --kind"))
+        kind = guess_kind(loops).name
+        if kind not in motion.kinds and WHOLE in motion.kinds:
+            kind = WHOLE
+    joints = given.joints
+    if not joints and find_kind(kind).parents:
+        joints = suggest_joints(loops, find_kind(kind))
+        if not joints:
+            raise LissomError(
+                _("no joints of {kind!r} are found in the drawing; give --joints").format(kind=kind)
+            )
+    return LayerJoints(kind, joints)
 
 
 def load_joints(path: Path) -> JointsFile:

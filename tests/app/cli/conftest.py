@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import moderngl
 import pytest
 
-from app.cli.commands import export
+from app.cli import project_export
 from app.render.gpu.context import create_context
 
 
@@ -26,4 +26,4 @@ def one_context(kept_context: moderngl.Context, monkeypatch: pytest.MonkeyPatch)
         kept_context.__enter__()
         return kept_context
 
-    monkeypatch.setattr(export, "create_context", again)
+    monkeypatch.setattr(project_export, "create_context", again)

@@ -17,7 +17,7 @@ from messages import says
 from refusals import refusal
 
 from app.cli import process
-from app.cli.hole_arrays import HOLE_SIZES
+from app.cli.arrays.hole_arrays import HOLE_SIZES
 from app.cli.main import TOO_LITTLE_MEMORY, main
 from app.cli.process import LEAST_MEMORY
 from app.errors import MAX_TEXT_LENGTH
@@ -146,7 +146,7 @@ def run(*words, **how):
     return subprocess.run([*PROGRAM, *map(str, words)], check=False, **how)
 
 
-def test_a_full_standard_output_is_told_when_a_command_has_run(monkeypatch, capsys):
+def test_full_standard_output_is_reported_after_a_command(monkeypatch, capsys):
     with open("/dev/full", "w") as full:  # noqa: PTH123 - it is no file
         monkeypatch.setattr(sys, "stdout", full)
         said = refusal(capsys, "move", "--list")
@@ -154,7 +154,7 @@ def test_a_full_standard_output_is_told_when_a_command_has_run(monkeypatch, caps
 
 
 @pytest.mark.parametrize("words", [("--version",), ("domain", "--help")])
-def test_a_full_standard_output_is_told_in_one_line(words):
+def test_a_full_standard_output_is_reported_in_one_line(words):
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     with open("/dev/full", "w") as full:  # noqa: PTH123 - it is no file
         ended = run(
@@ -197,18 +197,18 @@ def test_poor_alphabets_stop_nothing():
         ("export", 1_200_000_000),
     ],
 )
-def test_too_little_memory_is_told_in_one_line(tmp_path, command, limit):
+def test_too_little_memory_is_reported_in_one_line(tmp_path, command, limit):
     def lessen():
         resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
     given = SAMPLE if command == "domain" else sample_images() / "friend.lissom"
     ended = run(command, given, "--out", tmp_path / "out", preexec_fn=lessen)
     assert ended.returncode == 2
-    assert ended.stderr.startswith("lissom: error: not enough memory")
+    assert ended.stderr.startswith(f"lissom: error: {TOO_LITTLE_MEMORY}")
     assert ended.stderr.count("\n") == 1
 
 
-def test_a_library_that_cannot_be_loaded_is_told_in_one_line(monkeypatch, capsys, tmp_path):
+def test_a_library_that_cannot_be_loaded_is_reported_in_one_line(monkeypatch, capsys, tmp_path):
     def missing(_):
         raise ImportError("libfine.so: failed to map segment")
 
@@ -281,6 +281,6 @@ def test_the_version_of_a_newer_project_is_shortened(tmp_path, capsys):
     with zipfile.ZipFile(project, "w") as archive:
         for name, data in members.items():
             archive.writestr(name, data)
-    told = refusal(capsys, "certify", project)
-    assert r"newer Lissom (9\n9\n" in told
-    assert told.count("9") < MAX_TEXT_LENGTH
+    reported = refusal(capsys, "certify", project)
+    assert r"newer Lissom (9\n9\n" in reported
+    assert reported.count("9") < MAX_TEXT_LENGTH

@@ -116,7 +116,7 @@ def test_where_every_layer_stands_still_there_is_nothing_to_certify(tmp_path, ca
     }
 
 
-def test_a_motion_that_is_not_known_here_is_told(tmp_path, capsys):
+def test_a_motion_that_is_not_known_here_is_reported(tmp_path, capsys):
     (drawn,) = load_project(SAMPLE).layers
     still = replace(new_layer(drawn.picture, drawn.domain, Meshing()), still=True)
     unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
@@ -134,9 +134,9 @@ def test_of_a_key_that_is_held_only_that_key_is_seen(giraffe, tmp_path, capsys):
     held = tuple(replace(key, easing=HOLD) for key in layer.keys)
     save_project(path, replace(document, layers=(replace(layer, keys=held),)))
     assert main(["certify", str(path), "--variant", "linear", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["verdict"] == "proven"
-    for own, key in zip(told["intervals"], told["keys"], strict=False):
+    content = json.loads(capsys.readouterr().out)
+    assert content["verdict"] == "proven"
+    for own, key in zip(content["intervals"], content["keys"], strict=False):
         assert own["proven"]["never_folds"]
         assert own["k"] == pytest.approx(key["k"], abs=2e-3)
         assert own["proven"]["k"] == pytest.approx(key["k"], abs=2e-3)
@@ -202,12 +202,12 @@ def test_an_interval_has_one_verdict(made, verdict, monkeypatch, capsys):
     assert Report(keys=((0, key),), segments=(interval(), made)).verdict == verdict
     assert Report(keys=((0, other),), segments=(made,)).verdict == "over"
     report = Report(keys=((0, key),), segments=(made,))
-    monkeypatch.setattr("app.cli.commands.certify.certify_clip", lambda *_: report)
+    monkeypatch.setattr("app.reports.certification.certify_clip", lambda *_: report)
     status, said = certified(capsys, "--json")
     assert status == {"proven": 0, "measured": 3, "over": 1}[verdict]
-    told = json.loads(said)
-    assert (told["verdict"], told["certified"]) == (verdict, verdict == "proven")
-    (own,) = told["intervals"]
+    content = json.loads(said)
+    assert (content["verdict"], content["certified"]) == (verdict, verdict == "proven")
+    (own,) = content["intervals"]
     # What is said of frames never contradicts what is said of the whole.
     assert bool(own["proven"]["unsettled_frames"]) == (not own["proven"]["never_folds"])
     assert own["proven"]["loose_frames"] == list(made.loose)
@@ -238,4 +238,4 @@ def test_certify_says_how_many_frames_it_looked_at(tmp_path, monkeypatch, capsys
     save_project(project, with_layer(replace(document, frames=FrameRange(0, 9)), tracks=(track,)))
     status, text = certified(capsys, project=project)
     assert status == 3
-    assert "act in 7 frames, repeats told once. 3 of them were looked at" in text
+    assert "act in 7 frames; a repeat counts once. 3 of them were examined" in text

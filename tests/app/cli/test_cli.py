@@ -8,13 +8,12 @@ from typing import get_args
 
 import pytest
 from documents import disc_document
+from engine.domain.picture.cut_out import Holes
 
-from app.cli import commands, options, usage
-from app.cli.commands import window
+from app.cli import commands, options, window_process
+from app.cli.commands import pose
 from app.cli.main import COMMANDS, EXIT_PIPE_CLOSED, main
-from app.cli.usage import pose
 from app.cut_out import CutOut
-from app.cut_out.cut_out import Holes
 from app.document import FRAMINGS, SPRING_PRESETS, VARIANTS, Meshing
 from app.editor.actions import saving
 from app.editor.work.jobs import Job
@@ -90,6 +89,8 @@ LIGHT = (
     ("domain no.png --out x.npz", 2),
     ("domain {here} --out x.npz --background blue", 2),
     ("domain {here} --out x.npz --background none --mask {here}", 2),
+    ("doctor --help", 0),
+    ("move {here} --speed fast", 2),
     ("pose no.png no.json --out x.lissom", 2),
     ("certify no.lissom", 2),
     ("certify {here} --variant mu", 2),
@@ -134,17 +135,15 @@ def test_the_words_to_choose_from_are_those_that_the_program_knows():
     assert defaults.detail == options.DEFAULT_DETAIL
     assert defaults.triangles == options.DEFAULT_TRIANGLES
     assert CutOut().tolerance == options.DEFAULT_TOLERANCE
-    told = pose.EPILOG.replace("\n", " ")
+    epilog = pose.EPILOG.replace("\n", " ")
     assert (
         f"The presets are {', '.join(list(SPRING_PRESETS)[:-1])} and {list(SPRING_PRESETS)[-1]}."
-        in told
+        in epilog
     )
 
 
 def test_every_command_says_what_it_understands_and_does_it():
-    for room in (commands, usage):
-        modules = {module.name for module in pkgutil.iter_modules(room.__path__)}
-        assert modules == set(COMMANDS)
+    assert {module.name for module in pkgutil.iter_modules(commands.__path__)} == set(COMMANDS)
 
 
 @pytest.fixture
@@ -226,9 +225,9 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
             farewell()
 
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    monkeypatch.setattr(window, "has_display", lambda: True)
-    monkeypatch.setattr(window, "Window", LeftWindow)
-    monkeypatch.setattr(window, "exit_within", lambda *_: None)
+    monkeypatch.setattr(window_process, "has_display", lambda: True)
+    monkeypatch.setattr(window_process, "Window", LeftWindow)
+    monkeypatch.setattr(window_process, "exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     assert main(["window"]) == 0
     assert left.is_set()
@@ -237,7 +236,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
 
 
 @pytest.mark.parametrize("command", ["export", "certify", "interpolate"])
-def test_the_variants_are_told_as_they_are_written(command, capsys):
+def test_the_variants_are_reported_as_they_are_written(command, capsys):
     with pytest.raises(SystemExit):
         main([command, str(SAMPLE), "--variant", "mu"])
     said = error_line(capsys.readouterr().err)

@@ -170,7 +170,7 @@ def test_the_systems_own_program_understands_it_and_nothing_is_left(home, monkey
     assert everything(home) == before
 
 
-def test_a_folder_that_cannot_be_written_is_told(home, capsys):
+def test_a_folder_that_cannot_be_written_is_reported(home, capsys):
     (home / "thumbnailers").write_bytes(b"")
     with pytest.raises(SystemExit) as leaving:
         main(["desktop", "--install"])
@@ -224,12 +224,12 @@ def test_an_installation_without_the_program_says_so(home, monkeypatch, tmp_path
 
 
 @pytest.mark.parametrize("system", ["win32", "darwin"])
-@pytest.mark.parametrize("wish", ["--install", "--remove"])
-def test_other_systems_are_told_what_to_do(home, monkeypatch, capsys, system, wish):
+@pytest.mark.parametrize("option", ["--install", "--remove"])
+def test_other_systems_are_refused_with_a_remedy(home, monkeypatch, capsys, system, option):
     before = everything(home)
     monkeypatch.setattr("app.cli.commands.desktop.sys.platform", system)
     with pytest.raises(SystemExit) as leaving:
-        main(["desktop", wish])
+        main(["desktop", option])
     assert leaving.value.code == 2
-    assert "for Linux and its kin" in capsys.readouterr().err
+    assert desktop.OTHER_SYSTEM in capsys.readouterr().err
     assert everything(home) == before

@@ -4,16 +4,16 @@ import shutil
 import pytest
 from drawings import BACKENDS, HAS_OSMESA
 
-from app.cli.commands import doctor
+from app.cli import machine_checks
 from app.cli.main import main
 from app.render.gpu.context import BackendReport
 from app.render.view import View
 
 
 def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatch):
-    monkeypatch.setattr(doctor.sys, "platform", "linux")
+    monkeypatch.setattr(machine_checks.sys, "platform", "linux")
     monkeypatch.setattr(shutil, "which", lambda _: None)
-    monkeypatch.setattr(doctor, "install_hint", lambda extra: f"install {extra}")
+    monkeypatch.setattr(machine_checks, "install_hint", lambda extra: f"install {extra}")
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     assert main(["doctor"]) == 0
@@ -30,7 +30,7 @@ def test_it_draws_with_every_backend_and_says_what_is_missing(capsys, monkeypatc
 
 
 def test_what_is_there_is_named(capsys, monkeypatch):
-    monkeypatch.setattr(doctor.sys, "platform", "linux")
+    monkeypatch.setattr(machine_checks.sys, "platform", "linux")
     monkeypatch.setattr(shutil, "which", lambda program: program == "kdialog" or None)
     monkeypatch.setenv("WAYLAND_DISPLAY", "wayland-7")
     main(["doctor"])
@@ -44,7 +44,7 @@ def test_what_is_there_is_named(capsys, monkeypatch):
 
 def test_without_a_backend_that_works_the_status_is_1(capsys, monkeypatch):
     monkeypatch.setattr(
-        doctor,
+        machine_checks,
         "probe_backend",
         lambda backend: BackendReport(backend=backend, problem="sudo apt install it"),
     )
@@ -56,9 +56,9 @@ def test_without_a_backend_that_works_the_status_is_1(capsys, monkeypatch):
 
 @pytest.mark.parametrize("backend", BACKENDS)
 def test_wrong_pictures_are_noticed(backend, monkeypatch):
-    assert doctor._draws_exactly(backend)
+    assert machine_checks._draws_exactly(backend)
     monkeypatch.setattr(
-        doctor, "canvas_view", lambda size: View(centre=8.5 + 6j, scale=1, size=size)
+        machine_checks, "canvas_view", lambda size: View(centre=8.5 + 6j, scale=1, size=size)
     )
-    assert not doctor._draws_exactly(backend)
-    assert not doctor._rendering(backend).works
+    assert not machine_checks._draws_exactly(backend)
+    assert not machine_checks._rendering(backend).works

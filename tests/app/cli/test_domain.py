@@ -118,7 +118,7 @@ def built(photo, tmp_path, *words):
         return file["outline"]
 
 
-def test_a_background_is_told_by_its_colour(photo, tmp_path, capsys):
+def test_a_background_is_reported_by_its_colour(photo, tmp_path, capsys):
     inside = np.array([50 + 60j, 20 + 20j, 130 + 60j])
     for words, expected, said in (
         ([], [True, True, True], "kept as a whole rectangle"),

@@ -179,7 +179,7 @@ def test_frames_go_where_one_is_and_files_have_a_name(project, tmp_path, monkeyp
 
 
 def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("app.cli.commands.export.create_context", None)
+    monkeypatch.setattr("app.cli.project_export.create_context", None)
     export(project, "--out", tmp_path / "{name}.glb", "--triangles", 600)
     out = tmp_path / f"{project.stem}.glb"
     assert out.read_bytes()[:4] == b"glTF"
@@ -242,7 +242,7 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "walk.gif", "--no-trim"], "no use for --trim"),
         (["--out", "walk.html", "--power-of-two"], "no use for --power-of-two"),
         (["--out", "frames", "--tolerance", "1"], "no use for --tolerance"),
-        (["--out", "walk.png"], "walk.png may be picture or apng or spritesheet"),
+        (["--out", "walk.png"], "(picture, apng, spritesheet)"),
         (["--out", "walk.png", "--frame", "7"], "0 to 6"),
         (["--out", "walk.obj", "--format", "gif"], "end in .gif"),
         (["--out", "walk.glb", "--format", "gif"], "end in .gif"),
@@ -303,7 +303,7 @@ def test_an_interrupted_export_leaves_whole_frames_only(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["html", "glb", "spritesheet", "gif", "picture"])
-def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys, kind):
+def test_names_that_are_not_utf_8_are_written_and_reported(project, tmp_path, capsys, kind):
     odd = os.fsdecode(b"caf\xe9")
     try:
         renamed = project.rename(tmp_path / f"{odd}.lissom")
@@ -314,8 +314,8 @@ def test_names_that_are_not_utf_8_are_written_and_told(project, tmp_path, capsys
     export(renamed, "--format", kind, "--out", tmp_path / f"{{name}}{ending}", *still)
     assert capsys.readouterr().out.startswith(f"{tmp_path}/caf\N{REPLACEMENT CHARACTER}{ending}: ")
     assert (tmp_path / f"{odd}{ending}").stat().st_size
-    told = error_of(capsys, tmp_path / f"{odd} too.lissom", "--out", tmp_path / odd)
-    assert "caf\N{REPLACEMENT CHARACTER} too.lissom" in told
+    reported = error_of(capsys, tmp_path / f"{odd} too.lissom", "--out", tmp_path / odd)
+    assert "caf\N{REPLACEMENT CHARACTER} too.lissom" in reported
 
 
 # An export whose in-betweens are never prepared.

@@ -6,7 +6,7 @@ from interpolation_shapes import inner_points, letter_l, random_map
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 
-from app.cli.keyframes import COEFFICIENT_SHAPE
+from app.cli.arrays.keyframes import COEFFICIENT_SHAPE
 from app.cli.main import main
 from engine.domain.meshing.triangulation import triangulate
 from engine.geometry import polygon
@@ -62,11 +62,11 @@ def test_a_terminal_tells_how_far_a_long_preparation_is(write, tmp_path, capsys,
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setattr("app.cli.console.PATIENCE", -1.0)
     assert interpolate(write(), tmp_path / "seen", variant="metric") == 0
-    told = capsys.readouterr().err.split("\r\x1b[K")
-    shares = [int(each[:-1].split()[-1]) for each in told if each]
+    lines = capsys.readouterr().err.split("\r\x1b[K")
+    shares = [int(each[:-1].split()[-1]) for each in lines if each]
     assert shares == sorted(shares)
     assert (shares[0], len(shares)) > (-1, 3)
-    assert told[-1] == ""
+    assert lines[-1] == ""
 
 
 @pytest.mark.parametrize("variant", ["nu", "eta", "scaled-eta", "metric", "linear"])
@@ -209,7 +209,7 @@ def test_motion_through_keyframes_and_round_a_loop(write, tmp_path):
         assert (file["tangents"] <= frames["tangents"]).all()
 
 
-def test_what_cannot_be_said_about_passing_is_told(write, capsys, tmp_path):
+def test_what_cannot_be_said_about_passing_is_reported(write, capsys, tmp_path):
     maps, out = write(), tmp_path / "out"
     said = error_of(capsys, maps, out, "--bounds", "0.5,2,0.5")
     assert "--through as well" in said

@@ -237,7 +237,7 @@ def test_a_mesh_with_a_hole_is_refused_by_the_method_that_cannot_flatten_it(
     ("variant", "option", "message"),
     [
         ("arap", ["--through"], "cannot pass through keyframes"),
-        ("arap", ["--bounds", "0.5,2,0.5"], "keeps no bounds"),
+        ("arap", ["--bounds", "0.5,2,0.5"], "keeps no limits"),
         ("ffmp", ["--principal"], "--principal is for arap and mesh-eta"),
         ("metric", ["--principal"], "--principal is for arap and mesh-eta"),
     ],
@@ -251,7 +251,7 @@ def test_options_that_do_not_fit_are_refused(write, tmp_path, capsys, *, variant
     ("texts", "message"),
     [
         (["v 0 0\nv 1 0\nv 0 1\nf 1 2 3"], "is one pose"),
-        (["v 0 0\nv 1 0\nv 0 1\nf 1 2 3", "v 0 0\nv 1 0\nv 0 1\nf 1 3 2"], "are not those of"),
+        (["v 0 0\nv 1 0\nv 0 1\nf 1 2 3", "v 0 0\nv 1 0\nv 0 1\nf 1 3 2"], "has other triangles"),
         (["v 0 0\nv 1 x\nf 1 2 3", ""], "line 2 is 'v 1 x'"),
         (["v 0 0\nv 1 0\nv 0 1\nf 1 2 0", ""], "line 4"),
         (["v 0 0\nv 1 0\nv 0 1\nf -4 2 3", ""], "line 4"),

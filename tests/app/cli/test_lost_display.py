@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.commands.window import DISPLAY_GONE, WORK_KEPT
+from app.cli.window_process import DISPLAY_GONE, WORK_KEPT
 from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from tests.campaigns.windows import lost_displays, screen
 
 ROOT = Path(__file__).parents[3]
 
 # The command of the window, with one that looks at a display as GLFW does, has unsaved work, and
-# speaks to the display once more when it is told to. Nothing is drawn.
+# speaks to the display once more after a line of input. Nothing is drawn.
 LOOKS = """
 import ctypes
 from documents import disc_document
-from app.cli.commands import window
+from app.cli import window_process
 from app.cli.main import main
 from app.document import History
 from app.document.commands import scene_commands
@@ -45,7 +45,7 @@ class Looks:
         x11.XSync(display, 0)
         print("went on", flush=True)
 
-window.Window = Looks
+window_process.Window = Looks
 raise SystemExit(main(["window"]))
 """
 
@@ -71,8 +71,8 @@ def test_unsaved_work_is_kept_when_the_display_goes(tmp_path):
         assert looks.stdout.readline() == "open\n", looks.communicate()
         shown.server.kill()
         shown.server.wait()
-        told, said = looks.communicate("\n")
-    assert (told, looks.returncode) == ("", 1), said
+        output, said = looks.communicate("\n")
+    assert (output, looks.returncode) == ("", 1), said
     assert DISPLAY_GONE in said
     assert WORK_KEPT in said
     (kept,) = find_recoverable_files(tmp_path / "lissom")

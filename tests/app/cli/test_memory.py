@@ -38,10 +38,10 @@ from pathlib import Path
 from app.cli.main import main
 status = main(sys.argv[1:])
 if sys.platform == "linux":
-    told = re.search(r"VmHWM:\\s*(\\d+) kB", Path("/proc/self/status").read_text())[1]
+    peak = re.search(r"VmHWM:\\s*(\\d+) kB", Path("/proc/self/status").read_text())[1]
 else:
-    told = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
-print(1024 * int(told))
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+print(1024 * int(peak))
 raise SystemExit(status)
 """
 
@@ -131,13 +131,13 @@ def test_opening_takes_little_beyond_what_is_decoded(tmp_path, kind):
         layer = {"layer": "0", "handles": {}, "keys": keys}
         script.write_text(json.dumps({"schema": 1, "layers": [layer]}))
         words[:2] = ["pose", path, script]
-    told = subprocess.run(
+    peak = subprocess.run(
         [sys.executable, "-c", RUN, *map(str, words)], capture_output=True, text=True, check=True
     ).stdout
     decoded = 4 * side * side * count
     # While some are decoded they are there twice; masks take four bytes a pixel.
     most = {"png": 1.1, "ora": 1.1, "scene.ora": 2.6}.get(kind, 1.6)
-    assert int(told.split()[-1]) <= BASE + decoded + most * 4 * side * side
+    assert int(peak.split()[-1]) <= BASE + decoded + most * 4 * side * side
 
 
 def wild_project(path, factor):
@@ -160,7 +160,7 @@ def test_a_map_beyond_all_pixels_is_refused(tmp_path, capsys, monkeypatch, facto
     assert "The coefficients of a pose are at most 1e+12" in refusal(capsys, "certify", path)
 
 
-def test_a_map_that_goes_far_is_told_to_be_over(tmp_path, capsys):
+def test_a_map_that_goes_far_is_reported_as_over(tmp_path, capsys):
     path = wild_project(tmp_path / "a.lissom", 2e4)
     assert main(["certify", str(path)]) == EXITS[Verdict.OVER]
     assert "OVER" in capsys.readouterr().out

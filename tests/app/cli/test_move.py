@@ -127,7 +127,7 @@ def test_what_cannot_be_done_is_refused_in_a_sentence(words, said, folder, tmp_p
     with pytest.raises(SystemExit) as ended:
         main(["move", str(folder / "chain.png"), *words, *with_joints, *out])
     assert ended.value.code == 2
-    told_line = capsys.readouterr().err
-    assert said in told_line
-    assert told_line.count("\n") == 1
+    error_text = capsys.readouterr().err
+    assert said in error_text
+    assert error_text.count("\n") == 1
     assert not (tmp_path / "out.lissom").exists()

@@ -140,7 +140,7 @@ def test_names_that_no_file_can_have_are_refused_in_words(capsys, name):
 @pytest.mark.parametrize("command", ["manual", "figures"])
 @pytest.mark.parametrize("name", ["other", "other/within"])
 @pytest.mark.usefixtures("here")
-def test_a_file_in_the_place_of_a_folder_is_told(capsys, command, name):
+def test_a_file_in_the_place_of_a_folder_is_reported(capsys, command, name):
     assert IS_FILE.format(file="other") in refusal(capsys, command, "--out", name)
 
 

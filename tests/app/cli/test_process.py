@@ -10,8 +10,10 @@ from pathlib import Path
 import pytest
 from documents import disc_document
 
-from app.cli.commands import doctor, window
+from app.cli import window_process
+from app.cli.commands import doctor
 from app.cli.main import EXIT_FAILED, main
+from app.cli.process import STILL_AT_WORK
 from app.document import History
 from app.document.commands import scene_commands
 from app.editor import error_reports
@@ -94,14 +96,14 @@ threading.Thread(target=meet, daemon=True).start()"""
     assert process.returncode == 143
 
 
-def test_what_hangs_after_a_signal_does_not_keep_the_process():
+def test_stuck_process_ends_after_a_signal():
     with listening(
         before="process.PATIENCE = 0.1", work="time.sleep(60)", after="time.sleep(60)"
     ) as process:
         process.send_signal(signal.SIGTERM)
         out, said = process.communicate()
     assert out == ""
-    assert said == "lissom: interrupted by SIGTERM, while something was still at work\n"
+    assert said == f"lissom: {STILL_AT_WORK.format(signal='SIGTERM')}\n"
     assert process.returncode == 143
 
 
@@ -163,7 +165,7 @@ def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
         raise LissomError("the disk is full")
 
     monkeypatch.setattr(saving, "autosave_now", refuse)
-    window._keep(None)
+    window_process._keep(None)
     assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
 
 
@@ -175,17 +177,17 @@ def test_what_was_not_saved_is_kept_however_the_window_ends(
 ):
     ended = []
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    monkeypatch.setattr(window, "has_display", lambda: True)
-    monkeypatch.setattr(window, "Window", EndedWindow)
+    monkeypatch.setattr(window_process, "has_display", lambda: True)
+    monkeypatch.setattr(window_process, "Window", EndedWindow)
     monkeypatch.setattr(EndedWindow, "error", error)
-    monkeypatch.setattr(window, "exit_within", lambda *_: None)
+    monkeypatch.setattr(window_process, "exit_within", lambda *_: None)
     monkeypatch.setattr("app.cli.process.exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
     assert main(["window"]) == status
     assert ended == [1] * (error is not None)
     said = capfd.readouterr().err
-    assert window.WORK_KEPT in said
+    assert window_process.WORK_KEPT in said
     assert error is None or f"{error}" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
     assert load_recoverable_file(kept)[0].markers[0].name == "unsaved"
@@ -229,9 +231,9 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
     # The handler as Python knows it: it returns here, where the process would have ended.
     monkeypatch.setattr("app.cli.process.ctypes.CFUNCTYPE", lambda *_: lambda handler: handler)
     monkeypatch.setattr("app.cli.process.ctypes.CDLL", lambda _: display)
-    monkeypatch.setattr(window, "has_display", lambda: True)
-    monkeypatch.setattr(window, "Window", LostWindow)
-    monkeypatch.setattr(window, "exit_within", lambda *_: None)
+    monkeypatch.setattr(window_process, "has_display", lambda: True)
+    monkeypatch.setattr(window_process, "Window", LostWindow)
+    monkeypatch.setattr(window_process, "exit_within", lambda *_: None)
     monkeypatch.setattr(sys, "setswitchinterval", lambda _: None)
     monkeypatch.setattr(os, "_exit", ended.append)
     main(["window"])
@@ -252,7 +254,7 @@ def test_where_a_process_crashed_is_kept_for_the_next_start(tmp_path):
     assert "Fatal Python error: Aborted" in load_report(tmp_path)
     error_reports.discard_report(session, ProblemReport(text="", is_kept=True))
     error_reports.keep_fault_report(session)
-    assert load_report(tmp_path) == "", "it is told once"
+    assert load_report(tmp_path) == "", "it is reported once"
 
 
 def test_a_command_that_fails_itself_tells_it_without_names_of_files(monkeypatch, capfd, tmp_path):

@@ -135,7 +135,7 @@ def test_certify_tells_of_each_layer(project, capsys):
     overview, *details = capsys.readouterr().out.split("\n\n")
     first, header, *lines, _ = overview.splitlines()
     assert first == (
-        "All in all: proven: all 3 layers are proven to keep their bounds at every moment."
+        "All in all: proven. All 3 layers are proven to keep their limits at every moment."
     )
     assert header.split() == ["k", "sigma_a", "sigma_b"]
     assert [line.split()[0] for line in lines] == ["body", "arm", "patch"]
@@ -156,7 +156,7 @@ def test_certify_names_what_is_over_first(project, capsys, tmp_path):
     save_project(tmp_path / "over.lissom", document.with_layer(narrow))
     assert main(["certify", str(tmp_path / "over.lissom")]) == 1
     first, _, _, line, _, more = capsys.readouterr().out.splitlines()
-    assert first == "All in all: OVER: 1 of 3 layers are beyond their bounds, or may fold."
+    assert first == "All in all: OVER. Layers that exceed their limits, or may fold: 1 of 3."
     assert line.split()[0] == "arm"
     assert "OVER at key 8" in line
     assert "--details" in more
@@ -270,20 +270,20 @@ def test_pose_writes_nothing_when_the_script_is_refused(folder, capsys):
     assert not out.exists()
 
 
-def test_script_of_one_layer_is_told_which_layer_it_took(drawing):
+def test_refusal_names_layer_when_script_is_of_one_layer(drawing):
     script = {"schema": 1, "handles": {"foot": [80, 40]}, "keys": [{"frame": 0}]}
-    told = refused(drawing, script)
-    assert "The handle 'foot' at (80, 40) lies outside" in told
-    assert "on 'patch', the one in front" in told
-    assert "also 'wall', 'body', 'arm'" in told
-    assert '"layers": [{"layer": "patch", ...}]' in told
+    notice = refused(drawing, script)
+    assert "The handle 'foot' at (80, 40) lies outside" in notice
+    assert "on 'patch', the one in front" in notice
+    assert "also 'wall', 'body', 'arm'" in notice
+    assert '"layers": [{"layer": "patch", ...}]' in notice
     # What is wrong with it on any layer says nothing of others.
     on_it = {**script, "handles": {"spot": {"at": [180, 120], "front": 3}}}
     assert "layers" not in refused(drawing, on_it)
 
 
 def test_layer_attached_by_another_anchor_comes_to_its_parent(drawing):
-    """Its targets are told as if it hung on nothing."""
+    """Its targets are those without the parent."""
     body, arm, _ = SCRIPT["layers"]
     elsewhere = {**arm, "anchor": [190, 120], "handles": {"hand": [100, 120]}}
     keys = [{"frame": 0}, {"frame": 8, "targets": {"hand": [104, 132]}}]
@@ -308,7 +308,7 @@ def test_a_short_colour_is_one(project):
     assert (short.reshape(-1, short.shape[-1])[:, :3] == (255, 170, 0)).all()
 
 
-def test_a_layer_that_is_not_there_is_told(project, folder, capsys):
+def test_a_layer_that_is_not_there_is_reported(project, folder, capsys):
     arguments = ["export", str(project), "--out", str(folder / "no"), "--layer", "leg"]
     with pytest.raises(SystemExit):
         main(arguments)
@@ -331,8 +331,8 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     out = folder / "hands.lissom"
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
     assert main(["pose", *arguments, *FEW]) == 0
-    told = " ".join(capsys.readouterr().err.split())
-    assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in told
+    notice = " ".join(capsys.readouterr().err.split())
+    assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in notice
     document = load_project(out)
     patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
     assert [joint.frame for joint in patch.attachments] == [0, 3, 6, 30]
@@ -370,8 +370,8 @@ def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
         document, notices = pose_document(drawing, parse_pose_script(script), str)
         return document, " ".join(notices)
 
-    document, told = posed(patch)
-    assert "repeat" not in told
+    document, notice = posed(patch)
+    assert "repeat" not in notice
     identity = next(each.id for each in document.layers if each.name == "patch")
     names = [
         [each.name for each in document.parent_chain(identity, frame)[1:2]]
@@ -384,11 +384,11 @@ def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
         assert abs(one.shift - other.shift) < 1e-6
     for frame in (12, 15, 21, 24, 27, 36):
         assert abs(placed(identity, frame - 1e-6).shift - placed(identity, frame).shift) < 1e-3
-    # Given away at the end, it does not come round, which is told.
+    # Given away at the end, it does not come round, and a notice says so.
     away = {"to": "body", "at": [95, 120], "keep": True}
     joints[1:] = [{**away, "frame": 3}, {**away, "frame": 12}]
-    _, told = posed({**patch, "attach": joints})
-    assert "what it hangs on changes in the repeats of frames 0 to 12, too, or is another" in told
+    _, notice = posed({**patch, "attach": joints})
+    assert "what it hangs on changes in the repeats of frames 0 to 12, too, or is another" in notice
 
 
 MOUTHS = "".join(
@@ -425,7 +425,7 @@ def face_script(**stage):
 
 
 def posed_face(opened, **stage):
-    """Return the head posed by a script, and what is told of it."""
+    """Return the head posed by a script, and its notices."""
     document, notices = pose_document(opened, parse_pose_script(face_script(**stage)), str)
     return document, " ".join(notices)
 
@@ -471,15 +471,17 @@ def test_choice_repeats_with_a_cycle_of_all_its_layers(opened):
     cycles, still = [{"from": 0, "to": 12}], {"handles": {}, "keys": [{"frame": 0}]}
     head = {"layer": "head", "handles": {}, "keys": [{"frame": 0}, {"frame": 30}]}
     mouths = [{"layer": name, **still, "cycles": cycles} for name in CHOICE["layers"]]
-    document, told = posed_face(opened, layers=[head, *mouths], choices=[CHOICE])
-    assert "repeat" not in told
+    document, notice = posed_face(opened, layers=[head, *mouths], choices=[CHOICE])
+    assert "repeat" not in notice
     names = [
         next(each.name for each in document.layers[1:] if is_visible(document, each, frame))
         for frame in (1, 5, 9, 11, 13, 17, 21, 23, 25, 29)
     ]
     assert names == [*["closed", "ah", "oh", "closed"] * 2, "closed", "ah"]
-    _, told = posed_face(opened, layers=[head, *mouths[1:]], choices=[CHOICE])
-    assert "its keys do not repeat, as frames 0 to 12 do not of closed; give all its layers" in told
+    _, notice = posed_face(opened, layers=[head, *mouths[1:]], choices=[CHOICE])
+    assert (
+        "its keys do not repeat, as frames 0 to 12 do not of closed; give all its layers" in notice
+    )
 
 
 def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
@@ -501,16 +503,16 @@ def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
         ),
     ],
 )
-def test_layer_is_told_of_when_it_is_never_seen(opened, visible, words):
+def test_layer_is_named_when_it_is_never_seen(opened, visible, words):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}], **visible}
     assert words in posed_face(opened, layers=[oh])[1]
 
 
-def test_layer_is_told_of_when_its_choice_never_shows_it(opened):
+def test_layer_is_named_when_its_choice_never_shows_it(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
     never = {**CHOICE, "keys": [[0, "closed"], [4, "ah"]]}
-    _, told = posed_face(opened, layers=[oh], choices=[never])
-    assert "oh is never seen: the choice 'mouth' never shows it" in told
+    _, notice = posed_face(opened, layers=[oh], choices=[never])
+    assert "oh is never seen: the choice 'mouth' never shows it" in notice
 
 
 def test_script_shows_layers_of_hidden_groups_and_no_others(tmp_path):
@@ -546,10 +548,10 @@ def test_script_that_names_no_layer_takes_the_front_visible_one(opened):
     assert "its handles are on 'closed', the one in front" in refused(opened, script)
 
 
-def test_choice_is_told_of_when_its_key_is_after_the_end(opened):
+def test_choice_is_named_when_its_key_is_after_the_end(opened):
     late = {**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}
-    _, told = posed_face(opened, choices=[late])
-    assert "choice 'mouth': ah from frame 99 on is never seen, as the animation ends" in told
+    _, notice = posed_face(opened, choices=[late])
+    assert "choice 'mouth': ah from frame 99 on is never seen, as the animation ends" in notice
 
 
 @pytest.mark.parametrize(
@@ -585,8 +587,8 @@ def test_choice_is_refused_when_it_cannot_be(opened, stage, words):
 
 def test_layer_of_a_choice_is_refused_when_it_has_visible(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}], "visible": [[0, True]]}
-    told = refused(opened, face_script(layers=[oh], choices=[CHOICE]))
-    assert "the layer 'oh' is in a choice, which alone decides" in told
+    notice = refused(opened, face_script(layers=[oh], choices=[CHOICE]))
+    assert "the layer 'oh' is in a choice, which alone decides" in notice
 
 
 STAGED = {
@@ -629,20 +631,22 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     assert last[5, 100].tolist() == [0, 0, 0, 0]
     capsys.readouterr()
     assert main(["export", str(out), "--out", str(folder / "staged.glb")]) == 0
-    told = capsys.readouterr().err
-    assert "do not change: the opacity of arm, the order of body, the camera" in told
+    notice = capsys.readouterr().err
+    assert "do not change: the opacity of arm, the order of body, the camera" in notice
 
 
-def test_movement_is_told_to_be_unseen_when_a_parent_carries(drawing):
+def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
     moved = {"keys": [{"frame": 0}, {"frame": 8, "shift": [5, 0]}]}
     body, arm, _ = SCRIPT["layers"]
-    for layers, is_told in (
+    for layers, is_reported in (
         ([{**body, "movement": moved}, arm], False),
         ([body, {**arm, "movement": moved}], True),
     ):
         _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
-        told = " ".join(notices)
-        assert ("arm hangs on body and goes with it: its own movement is not" in told) == is_told
+        notice = " ".join(notices)
+        assert (
+            "arm hangs on body and goes with it: its own movement is not" in notice
+        ) == is_reported
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):
@@ -661,5 +665,5 @@ def test_still_layer_is_refused_when_it_has_handles(drawing):
 
 def test_order_is_refused_beside_a_layer_that_is_not_there(drawing):
     body = {**STAGED["layers"][0], "order": [[4, {"behind": "hat"}]]}
-    told = refused(drawing, {**STAGED, "layers": [body]})
-    assert "layer 'body': order: there is no layer 'hat'" in told
+    notice = refused(drawing, {**STAGED, "layers": [body]})
+    assert "layer 'body': order: there is no layer 'hat'" in notice

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from PIL import ImageGrab
 
-from app.cli.commands.window import WORK_KEPT
+from app.cli.window_process import WORK_KEPT
 from app.editor.actions import saving, viewing
 from app.storage.assets import sample_images
 from app.storage.autosave import find_recoverable_files, load_recoverable_file

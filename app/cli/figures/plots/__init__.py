@@ -1,6 +1,0 @@
-"""The figures, one module each; figures that compare alike share one.
-
-In: a `FigureContext`.
-Out: `PaperFigure`s: a picture, a caption, and numbers.
-Imports: `app.cli.figures` without its page.
-"""
