@@ -35,4 +35,7 @@ from engine.deform.correction.solver import (
     PointTargets as PointTargets,
     solve_correction as solve_correction,
 )
-from engine.deform.correction.variables import Variables as Variables
+from engine.deform.correction.variables import (
+    Variables as Variables,
+    orthonormal_functions as orthonormal_functions,
+)
