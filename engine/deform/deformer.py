@@ -138,7 +138,8 @@ class Deformer(ConstrainedShape):
         if len(wish.positions) == 0 and self.allows(state):
             return replace(state, limits=self.bounds, status=Status.FREE, targets=wish)
         if not self._is_same_request(state, wish):
-            state = replace(state, search=None, outcome=None, starting_points=())
+            if state.search or state.outcome or state.starting_points:
+                state = replace(state, search=None, outcome=None, starting_points=())
         elif state.status.is_final:
             return state
         elif state.search is None and self._has_tracked(state):

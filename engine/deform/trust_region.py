@@ -125,7 +125,7 @@ def cut_to_radius(
     pull = wish.positions - positions
     cut = distance / np.maximum(np.abs(pull), distance)
     near, turning = wish.rotations.copy(), np.isfinite(wish.rotations)
-    leashed = bool(cut.min(initial=1.0) < 1.0)
+    leashed = bool((cut < 1.0).any())
     if turning.any():
         now = np.angle(jet.fz[turning])
         turn = np.angle(np.exp(1j * (wish.rotations[turning] - now)))

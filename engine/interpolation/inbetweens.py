@@ -206,14 +206,18 @@ class Inbetweens:
 
         The linear blend has zeros of f_z, where K would be infinite; there K = L.
         """
-        return np.exp(2.0 * plain_log_fz) / fz if self.blend.sign else np.exp(plain_log_fz)
+        if not self.blend.sign:
+            return np.exp(plain_log_fz)
+        squared = 2.0 * plain_log_fz
+        return np.divide(np.exp(squared, out=squared), fz, out=squared)
 
     def _mixed(self, time: float) -> tuple[Derivatives, Mixing]:
         """Return the derivatives of a frame after all corrections, and K."""
         blended = self._uncorrected(time)
         log_l, log_k_z = self.keyframe_blend.log_fz_without_residuals(time)
         if self.blend.sign:
-            log_k_z = 2.0 * log_k_z - blended.fzz / blended.fz
+            log_k_z *= 2.0
+            log_k_z -= blended.fzz / blended.fz
         mixing = Mixing(self._factor(log_l, blended.fz), log_k_z)
         for each in self.corrections:
             blended, mixing = each.changed(blended, mixing, self.sign, time)

@@ -28,11 +28,9 @@ class LocalBounds:
 
     def allow(self, *, k: float | Floats, sigma_a: float | Floats, sigma_b: float | Floats) -> bool:
         """Whether distortions up to these values are within the limits; never for NaN."""
-        return bool(
-            np.all(k <= self.k)
-            and np.all(sigma_a <= self.sigma_a)
-            and np.all(sigma_b >= self.sigma_b)
-        )
+        # One call of `np.all`, which takes longer than all comparisons of numbers.
+        within = (k <= self.k) & (sigma_a <= self.sigma_a) & (sigma_b >= self.sigma_b)
+        return bool(np.all(within))
 
     def include(self, limits: "LocalBounds") -> bool:
         """Whether maps within the other limits are within these."""
@@ -40,15 +38,14 @@ class LocalBounds:
 
     def at(self, boundary: Boundary) -> "LocalBounds":
         """Return the limits at all samples of a boundary, added samples included."""
-        if not any(map(np.ndim, (self.k, self.sigma_a, self.sigma_b))):
+        limits = self.k, self.sigma_a, self.sigma_b
+        if not any(isinstance(limit, np.ndarray) for limit in limits):
             return self
         own, ends = boundary.original_samples
         first = np.searchsorted(own, np.arange(len(boundary.points)), side="right") - 1
         is_own = boundary.weights > 0
         second = np.where(is_own, first, next_on_loop(np.array(ends[:-1]), len(own))[first])
-        k, sigma_a, sigma_b = (
-            np.broadcast_to(limit, len(own)) for limit in (self.k, self.sigma_a, self.sigma_b)
-        )
+        k, sigma_a, sigma_b = (np.broadcast_to(limit, len(own)) for limit in limits)
         return LocalBounds(
             k=np.maximum(k[first], k[second]),
             sigma_a=np.maximum(sigma_a[first], sigma_a[second]),

@@ -67,3 +67,10 @@ class Loops:
     def integrals(self, values: Complexes) -> Complexes:
         """Integrate over each loop: (..., c) to (..., holes)."""
         return np.asarray(np.add.reduceat(values * self.differentials, self.starts, axis=-1))
+
+    def products(self, values: Complexes, functions: Complexes) -> Complexes:
+        """Integrate values (t, c) times functions (i, c) over each loop, (t, holes, i)."""
+        values = values * self.differentials
+        ends = [*self.starts[1:].tolist(), len(self.nodes)]
+        parts = [slice(*pair) for pair in zip(self.starts.tolist(), ends, strict=True)]
+        return np.stack([values[:, part] @ functions[:, part].T for part in parts], axis=1)

@@ -194,8 +194,10 @@ def _by_both(a: Floats, g: Complexes, by_h: Complexes, by_q: Complexes) -> tuple
     return slopes, np.asarray(forms)
 
 
-def extremes(corrector: PointCorrector, base: BaseFrame, x: Floats) -> Floats:
-    """Return the largest ln σ_a, −ln σ_b and k of a corrected frame at the samples, (3,)."""
+def extremes(corrector: PointCorrector, base: BaseFrame, x: Floats | None = None) -> Floats:
+    """Return the largest ln σ_a, −ln σ_b and k at the samples, (3,); without x, of the base."""
+    if x is None:
+        return np.asarray(log_distortions(np.abs(base.fz), np.abs(base.g)).max(axis=1))
     values = corrector.variables.at_samples
     conformal, own, factor = base.apply_correction(values, x)
     a, b = np.abs(conformal), np.abs(own + factor * values.q_of(x))

@@ -80,11 +80,12 @@ class CorrectedFrame:
 
     def constraint_rows(self) -> Floats:
         """Return the derivatives of `places` by the unknowns: real parts, then imaginary ones."""
-        values, integrals = self.corrector.variables.at_nodes, self.corrector.paths.integrals
-        by_h = integrals(values.h, self.conformal)
-        by_h += integrals(values.h, self.base.sign * self.own + self.mixed).conj()
-        rows = np.vstack([by_h, integrals(values.q, self.factor).conj()]).T
-        return np.vstack([rows.real, rows.imag])
+        values, products = self.corrector.variables.at_nodes, self.corrector.paths.real_products
+        f, g = self.conformal, self.base.sign * self.own + self.mixed
+        by_h = products(np.stack([f + g, 1j * (g - f)]), values.h)
+        by_q = products(np.stack([self.factor, 1j * self.factor]), values.q)
+        rows = np.concatenate([by_h, by_q], axis=2)
+        return rows.reshape(-1, rows.shape[2])
 
     def curvature(self, pulls: Complexes) -> "Curvature":
         """Return the second derivative of Re Σ conj(pull_i) place_i by the unknowns."""

@@ -61,7 +61,7 @@ def solve_within(
         How far inside the bounds the samples end.
     """
     found = solve_correction(corrector, nodes, targets, throw=False)
-    own = extremes(corrector, samples, 0.0 * found.x)
+    own = extremes(corrector, samples)
     limits = frame_limits(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
@@ -95,7 +95,7 @@ def max_feasible_share(
     A base that exceeds a limit may exceed it a little more. `base` is at the samples of the
     boundary; `limits` are of ln σ_a, −ln σ_b and k, (3,).
     """
-    known = np.maximum(limits, extremes(corrector, base, 0.0 * x) + INSIDE)
+    known = np.maximum(limits, extremes(corrector, base) + INSIDE)
 
     def is_kept(share: float) -> bool:
         return bool((extremes(corrector, base, share * x) <= known).all())

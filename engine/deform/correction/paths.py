@@ -1,6 +1,7 @@
 """Short quadrature along straight legs from an anchor to a few points (Section 7)."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -78,10 +79,17 @@ class PointPaths:
             nodes=loops.nodes, steps=loops.differentials, starts=loops.starts, passes=np.eye(count)
         )
 
-    def integrals(self, values: Complexes, factors: Complexes | float = 1.0) -> Complexes:
-        """Integrate values (..., s) times factors along the paths and loops, (..., m + holes)."""
-        legs = np.add.reduceat(values * (factors * self.steps), self.starts, axis=-1)
+    def integrals(self, values: Complexes) -> Complexes:
+        """Integrate values (..., s) along the paths and loops, (..., m + holes)."""
+        legs = np.add.reduceat(values * self.steps, self.starts, axis=-1)
         return np.asarray(legs @ self.passes.T)
+
+    def real_products(self, values: Complexes, functions: Complexes) -> Floats:
+        """Integrate values (k, s) times functions (i, s); the real parts, (k, m + holes, i)."""
+        weights, parts = (values * self.steps).conj().view(np.float64), functions.view(np.float64)
+        ends = [*(2 * self.starts).tolist(), 2 * len(self.nodes)]
+        legs = [weights[:, a:b] @ parts[:, a:b].T for a, b in pairwise(ends)]
+        return np.tensordot(self.passes, np.array(legs), axes=1).swapaxes(0, 1)
 
     def spread(self, pulls: Complexes) -> Complexes:
         """Return dz times the sum of the pulls (m + holes,) whose paths pass each node, (s,)."""

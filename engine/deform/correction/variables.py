@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from typing import NamedTuple, Self
 
 import numpy as np
-import scipy.linalg
 
 from engine.arrays import Complexes, Floats, freeze
 from engine.maps import Boundary
@@ -64,30 +63,23 @@ class Variables:
     @classmethod
     def of(cls, boundary: Boundary, nodes: Complexes, points: Complexes) -> Self:
         """Make the functions of a domain orthonormal in the size of corrections."""
-        span, weights = boundary.span, boundary.weights
-        count = len(span.vertices)  # logarithms are not single-valued functions
-        samples = span.coordinates(boundary.points)[:, :count]
-        root = np.sqrt(weights)[:, None]
-        _, sizes, directions = scipy.linalg.svd(root * samples, full_matrices=False)
-        kept = sizes > RANK * sizes[0]
-        own = directions[kept].conj().T / sizes[kept]
+        span = boundary.span
+        samples, own = orthonormal_functions(boundary)
+        count = len(own)
+        root = np.sqrt(boundary.weights)[:, None]
         values = root * (samples @ own)
         slopes = boundary.size * root * (boundary.derivatives[:, :count] @ own)
-        of_values, of_slopes = _gram(values), OF_SLOPE * _gram(slopes)
+        of_values, of_slopes = np.eye(2 * len(own.T)), OF_SLOPE * _gram(slopes)
         stretch = np.hstack([values.real, -values.imag])
         to_h = _whitened(stretch.T @ stretch + OF_SIZE * of_values + of_slopes)
         to_q = _whitened(of_values + of_slopes)
-        places = [span.coordinates(each)[:, :count] for each in (nodes, points)]
         coefficients = [own @ to for to in (to_h, to_q)]
-        padded = [np.pad(each, ((0, len(span) - count), (0, 0))) for each in coefficients]
-        on = [
-            BasisValues(*(freeze(np.ascontiguousarray((rows @ each).T)) for each in coefficients))
-            for rows in (places[0], samples, places[1])
-        ]
-        of_q, of_h = padded[1], padded[0]
-        return cls(
-            h=freeze(of_h), q=freeze(of_q), at_nodes=on[0], at_samples=on[1], at_points=on[2]
+        h, q = (freeze(np.pad(each, ((0, len(span) - count), (0, 0)))) for each in coefficients)
+        places = [samples, *(span.coordinates(each)[:, :count] for each in (nodes, points))]
+        at_samples, at_nodes, at_points = (
+            BasisValues(*(freeze(each.T @ rows.T) for each in coefficients)) for rows in places
         )
+        return cls(h=h, q=q, at_nodes=at_nodes, at_samples=at_samples, at_points=at_points)
 
     def of_h(self, forms: Floats) -> Self:
         """Return only the unknowns of h, in combinations (N, M) of them."""
@@ -110,6 +102,23 @@ class Variables:
     def nothing(self) -> Floats:
         """The unknowns, of h and q, of the zero correction."""
         return np.zeros(self.h.shape[1] + self.q.shape[1])
+
+
+def orthonormal_functions(boundary: Boundary) -> tuple[Complexes, Complexes]:
+    """Return single-valued functions that are orthonormal in the boundary's weights.
+
+    Returns
+    -------
+    samples : complex128, shape (m, N)
+        The coordinates of the boundary's samples.
+    combinations : complex128, shape (N, r)
+    """
+    count = len(boundary.span.vertices)  # logarithms are not single-valued functions
+    samples = boundary.span.coordinates(boundary.points)[:, :count]
+    triangle = np.linalg.qr(np.sqrt(boundary.weights)[:, None] * samples, mode="r")
+    _, sizes, directions = np.linalg.svd(triangle)
+    kept = sizes > RANK * sizes[0]
+    return samples, directions[kept].conj().T / sizes[kept]
 
 
 def _gram(columns: Complexes) -> Floats:

@@ -45,7 +45,7 @@ def symmetric_dirichlet(a: Floats, b: Floats) -> Floats:
 
     Half of σ_a² + σ_b² + σ_a⁻² + σ_b⁻².
     """
-    if not np.all(a > b):
+    if not (a > b).all():
         return np.full(np.shape(a), np.inf)
     x, y = a * a, b * b
     # By multiplications: NumPy takes several times as long for powers other than the second.

@@ -109,8 +109,8 @@ class Objective:
     def is_within(self, jet: Evaluation) -> bool:
         """Whether the samples are strictly within the bounds."""
         if self.barrier is None:
-            return bool(np.all(jet.a > jet.b))
-        return bool(np.all(self.barrier.slacks(jet.a, jet.b) > 0))
+            return bool((jet.a > jet.b).all())
+        return bool(self.barrier.slacks(jet.a, jet.b).min() > 0)
 
     def radial_derivatives(self, jet: Evaluation) -> RadialDerivatives:
         """Return each sample's contribution to the derivatives of energy and barrier."""

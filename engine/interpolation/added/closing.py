@@ -21,24 +21,28 @@ Not in the paper, whose domains are simply connected.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import pairwise
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg
 
 from engine.arrays import Complexes, Floats, freeze
-from engine.deform.correction.barrier import LimitBarrier, extremes
+from engine.deform.correction.barrier import LimitBarrier, log_distortions
 from engine.deform.correction.corrector import PointCorrector
-from engine.deform.correction.frame import BaseFrame, CorrectedFrame
+from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.paths import PointPaths
 from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
-from engine.deform.correction.variables import Variables
+from engine.deform.correction.variables import Variables, orthonormal_functions
+    PiecewiseSeries,
+    combine_arrays,
+    separate_variables,
+)
 from engine.interpolation.series.chebyshev import PiecewiseSeries, separate_variables
-from engine.interpolation.series.residual import HoleConstants, Residual
+from engine.interpolation.series.residual import HoleConstants, Residual, combine_arrays
 from engine.maps import Boundary
 from engine.paths import Loops
 
@@ -46,6 +50,7 @@ MOMENTS = 3  # powers of z − c_j on either side, −3 to 2
 CLOSED = 1e-14  # the iteration ends after a step in the unknowns of at most this
 MOST_STEPS = 15
 RIDGE = 1e-12  # of the mean: it makes the size of real parts definite
+DISTINCT = 1e-7  # of the largest: smaller combinations of the few functions are rounding errors
 INDEPENDENT = 1e-13  # of the largest: smaller constraints depend on the others
 SHORTEST = 2.0**-5  # pieces of time are not halved below this
 TOLERANCE = 1e-11  # of the series in time
@@ -56,7 +61,9 @@ FAR = 0.3  # the same: a start of the solver may exceed limits by this
 # up for the rest.
 ROUGH, ROUGHLY_LEFT_OUT, DEGREES = 2e-5, 1e-5, (16, 32)
 
-Unclosed = Callable[[Floats], tuple[Complexes, Complexes]]
+# f_z and conj(f_z̄) of frames, or their moduli, (t, p) each.
+FrameParts = tuple[npt.NDArray[Any], npt.NDArray[Any]]
+Unclosed = Callable[[Floats], FrameParts]
 
 
 class Moduli(NamedTuple):
@@ -126,57 +133,71 @@ class Closing:
 
 
 class PeriodSearch(NamedTuple):
-    """Search for h among few functions (c,), in unknowns (i,); the sum of squares is its size."""
+    """Search for h among few functions (c,), in unknowns (i,); the sum of squares is its size.
 
-    corrector: PointCorrector
+    `values` (i, p) are the functions of the unknowns at the nodes of the loops.
+    """
+
+    loops: Loops
+    values: Complexes
     to_few: Floats
 
     @classmethod
-    def among(cls, few: PointCorrector, size: Floats, fixed: Floats) -> Self:
-        """Use a form (c, c) as the size, and keep the values of forms (f, c) at 0."""
+    def among(cls, loops: Loops, few: Complexes, size: Floats, fixed: Floats) -> Self:
+        """Use a form (c, c) as the size, and keep the values of forms (f, c) at 0.
+
+        `few` (c, p) are the few functions at the nodes.
+        """
         free = scipy.linalg.null_space(fixed)
         root = np.linalg.cholesky(free.T @ size @ free)
         to_few = np.asarray(scipy.linalg.solve_triangular(root, free.T, lower=True).T)
-        return cls(replace(few, variables=few.variables.of_h(to_few)), freeze(to_few))
+        return cls(loops, freeze(combine_arrays(to_few.T, few)), freeze(to_few))
 
-    def nearest(self, bases: Sequence[BaseFrame], goals: Floats | None = None) -> Floats:
-        """Close the periods of bases (t,) as near to goals (t, i), or to 0, as possible; (c, t)."""
-        goals = np.zeros((len(bases), self.corrector.variables.count)) if goals is None else goals
-        both = zip(bases, goals, strict=True)
-        found = np.transpose([_closed(self.corrector, *each) for each in both])
-        return np.asarray(self.to_few @ found)
+    def closest(self, parts: FrameParts, sign: int, goals: Floats | float = 0.0) -> Floats:
+        """Close the periods of frames (t,) as near to goals (t, i) as possible; (c, t)."""
+        goals = goals + np.zeros((len(parts[0]), len(self.values)))
+        x = goals
+        for _ in range(MOST_STEPS):
+            fz, g = _corrected(parts, sign, combine_arrays(x, self.values))
+            gaps = self.loops.integrals(fz) + self.loops.integrals(g).conj()
+            by_h = self.loops.products(fz, self.values)
+            by_h += sign * self.loops.products(g, self.values).conj()
+            rows = np.concatenate([by_h.real, by_h.imag], axis=1)
+            right = rows @ (x - goals)[..., None]
+            right -= np.concatenate([gaps.real, gaps.imag], axis=1)[..., None]
+            step = goals - x + (np.linalg.pinv(rows, rcond=INDEPENDENT) @ right)[..., 0]
+            x = x + step
+            if np.abs(step).max() < CLOSED:
+                break
+        return np.asarray(self.to_few @ x.T)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class HoleCloser:
     """The part of the corrections that all in-betweens of a domain with holes share.
 
-    Build it with `HoleCloser.of`.
+    Build it with `HoleCloser.of`. No h turns the anchor.
 
     Attributes
     ----------
-    corrector : PointCorrector
-        Without points: the periods around holes are its only rows. No h turns the anchor.
-    few : PointCorrector
-        The same, restricted to the few functions that usually suffice for h.
+    nodes : complex128, shape (s,)
+        Nodes of the paths; the first is the anchor.
+    few : complex128, shape (n, c)
+        The few functions that usually suffice for h.
     least, nearest : PeriodSearch
         Searches among these functions; the size is that of h, and that of its real part.
     toward : float64, shape (holes, i)
         The unknowns of `nearest` that come nearest to 1 on the boundary of one hole and to 0 on the
         others.
-    functions : Functions
-        The few functions.
-    nodes : complex128, shape (s,)
-        Nodes of the paths.
     """
 
-    corrector: PointCorrector
-    few: PointCorrector
+    boundary: Boundary
+    loops: Loops
+    nodes: Complexes
+    few: Complexes
     least: PeriodSearch
     nearest: PeriodSearch
     toward: Floats
-    functions: Functions
-    nodes: Complexes
 
     @classmethod
     def of(cls, boundary: Boundary, loops: Loops, nodes: Complexes) -> Self:
@@ -184,37 +205,69 @@ class HoleCloser:
 
         The first node is the anchor.
         """
-        paths = PointPaths.around(loops)
-        known = Variables.of(boundary, loops.nodes, nodes[:1])
-        known = known.of_h(scipy.linalg.null_space(known.at_points.h.imag.T))
-        corrector = PointCorrector(
-            boundary=boundary, points=nodes[:0], paths=paths, variables=known
+        span, weights = boundary.span, boundary.weights / boundary.weights.sum()
+        # Of functions h whose size is the sum of squares of their real coefficients (N,).
+        at_samples, own = orthonormal_functions(boundary)
+        count = len(own)
+        at_loops, at_anchor = (
+            span.coordinates(z)[:, :count] @ own for z in (loops.nodes, nodes[:1])
         )
-        values, weights = known.at_samples.h, boundary.weights / boundary.weights.sum()
-        size = ((values * weights) @ values.conj().T).real
-        of_reals = (values.real * weights) @ values.real.T
+        upright = scipy.linalg.null_space(_with_real(at_anchor).imag)
+        reals = _with_real(at_samples @ own).real @ upright
+        rooted = np.sqrt(weights)[:, None] * reals
+        of_reals = rooted.T @ rooted
         of_reals[np.diag_indices_from(of_reals)] += RIDGE * np.trace(of_reals) / len(of_reals)
-        away = loops.nodes - np.repeat(boundary.span.centres, loops.counts)
-        powers = [away**power for power in range(-MOMENTS, MOMENTS)]
-        moments = [paths.integrals(known.at_nodes.h * each).view(np.float64) for each in powers]
         ends = pairwise([*boundary.starts[1:], len(boundary.points)])
-        shares = np.transpose([values.real[:, a:b] @ weights[a:b] for a, b in ends])
-        constants = scipy.linalg.solve(of_reals, shares)
-        turned = ((values * weights) @ (1j * values.T @ constants).conj()).real
-        forms = np.hstack([known.at_points.h.real, *moments, turned])
-        columns = np.hstack([scipy.linalg.solve(size, forms), constants])
-        to_few, _ = np.linalg.qr(columns / np.linalg.norm(columns, axis=0))
-        few = replace(corrector, variables=known.of_h(to_few))
-        anchored = few.variables.at_points.h.real.T
-        nearest = PeriodSearch.among(few, to_few.T @ of_reals @ to_few, anchored[:0])
+        shares = np.transpose([weights[a:b] @ reals[a:b] for a, b in ends])
+        constants = scipy.linalg.solve(of_reals, shares, assume_a="pos")
+        away = loops.nodes - np.repeat(span.centres, loops.counts)
+        powers = [away**power for power in range(-MOMENTS, MOMENTS)]
+        moments = [_with_real(loops.integrals(at_loops.T * each).T) for each in powers]
+        # The coefficients of i h are those of h in another order.
+        turned = np.roll(upright @ constants, len(own.T), axis=0)
+        turned[: len(own.T)] *= -1.0
+        forms = [_with_real(at_anchor).real, *(part for m in moments for part in (m.real, m.imag))]
+        columns = np.hstack([upright.T @ np.vstack([*forms, turned.T]).T, constants])
+        to_few, sizes, _ = np.linalg.svd(
+            columns / np.linalg.norm(columns, axis=0), full_matrices=False
+        )
+        to_few = to_few[:, sizes > DISTINCT * sizes[0]]
+        first, second = np.split(upright @ to_few, 2)
+        to_own = first + 1j * second
+        few, anchored = to_own.T @ at_loops.T, (at_anchor @ to_own).real
+        size = np.eye(len(to_few.T)) / boundary.weights.sum()
+        nearest = PeriodSearch.among(loops, few, to_few.T @ of_reals @ to_few, anchored[:0])
         return cls(
-            corrector=corrector,
-            few=few,
-            least=PeriodSearch.among(few, to_few.T @ size @ to_few, anchored),
+            boundary=boundary,
+            loops=loops,
+            nodes=nodes,
+            few=freeze(np.pad(own @ to_own, ((0, len(span) - count), (0, 0)))),
+            least=PeriodSearch.among(loops, few, size, anchored),
             nearest=nearest,
             toward=freeze(shares.T @ to_few @ nearest.to_few),
-            functions=Functions.of(boundary, few.variables.h, nodes),
-            nodes=nodes,
+        )
+
+    @cached_property
+    def functions(self) -> Functions:
+        """The few functions, at the nodes of the paths."""
+        return Functions.of(self.boundary, self.few, self.nodes)
+
+    @cached_property
+    def few_at_samples(self) -> Complexes:
+        """The few functions at the samples of the boundary, (c, m)."""
+        (values,) = self.boundary.span.evaluate(self.few, self.boundary.points, orders=(0,))
+        return freeze(np.ascontiguousarray(values.T))
+
+    @cached_property
+    def corrector(self) -> PointCorrector:
+        """All functions that do not turn the anchor; the periods around holes are its only rows."""
+        anchor = self.nodes[:1]
+        known = Variables.of(self.boundary, self.loops.nodes, anchor)
+        return PointCorrector(
+            boundary=self.boundary,
+            points=anchor[:0],
+            paths=PointPaths.around(self.loops),
+            variables=known.of_h(scipy.linalg.null_space(known.at_points.h.imag.T)),
         )
 
     def close(self, unclosed: Unclosed, sign: int, moduli: Moduli | None = None) -> Closing:
@@ -231,16 +284,16 @@ class HoleCloser:
             Limits to keep, and constants to make up for.
         """
         if moduli is None:
-            return self._in_series(lambda times: self.least.nearest(_bases(unclosed(times), sign)))
+            return self._in_series(lambda times: self.least.closest(unclosed(times), sign))
         over = -np.inf
 
         def nearest(times: Floats) -> Floats:
             nonlocal over
             goals = moduli.constants.at(times) @ self.toward
-            x = self.nearest.nearest(_bases(unclosed(times), sign), goals)
-            for each, base in zip(x.T, _bases(moduli.at(times), sign), strict=True):
-                reached = extremes(self.few, base, each)
-                over = max(over, float((reached - moduli.limits).max()))
+            x = self.nearest.closest(unclosed(times), sign, goals)
+            real = x.T @ self.few_at_samples.real
+            reached = log_distortions(*_corrected(moduli.at(times), sign, real))
+            over = max(over, float((reached.max(axis=(1, 2)) - moduli.limits).max()))
             return x
 
         # The constants may have kinks in time at these breaks.
@@ -255,16 +308,14 @@ class HoleCloser:
             shortest=1.0,
             degrees=DEGREES,
         )
-        variables, boundary = self.corrector.variables, self.corrector.boundary
-        more = Functions.of(boundary, variables.h @ forms, self.nodes).joined(closing.functions)
-        (at_loops,) = boundary.span.evaluate(
-            more.coefficients, self.corrector.paths.nodes, orders=(0,)
-        )
+        h, boundary = self.corrector.variables.h @ forms, self.boundary
+        more = Functions.of(boundary, h, self.nodes).joined(closing.functions)
+        (at_loops,) = boundary.span.evaluate(more.coefficients, self.loops.nodes, orders=(0,))
 
         def within(times: Floats) -> Floats:
             found = np.vstack([series.at(times), closing.series.at(times)])
-            beside = _bases(unclosed(times), sign, found.T @ at_loops.T)
-            return np.vstack([self.least.nearest(beside), found])
+            beside = _corrected(unclosed(times), sign, found.T @ at_loops.T)
+            return np.vstack([self.least.closest(beside, sign), found])
 
         return self._in_series(within, breaks, functions=self.functions.joined(more))
 
@@ -273,8 +324,8 @@ class HoleCloser:
 
         def further(times: Floats) -> Floats:
             fz, g = unclosed(times)
-            alone, both = (_bases((fz, each), sign) for each in (0.0 * g, g))
-            return self.least.nearest(alone) - self.least.nearest(both)
+            alone, both = (self.least.closest((fz, each), sign) for each in (0.0 * g, g))
+            return alone - both
 
         return self._in_series(further, vanishing=False)
 
@@ -282,12 +333,12 @@ class HoleCloser:
         self, unclosed: Unclosed, sign: int, moduli: Moduli, closing: Closing
     ) -> Callable[[Floats], Floats]:
         """Return the unknowns (N, t) of the smallest addition to h that keeps the limits."""
-        corrector, span = self.corrector, self.corrector.boundary.span
+        corrector, span = self.corrector, self.boundary.span
         nothing, free = corrector.variables.nothing, np.zeros(0)
         targets = PointTargets(np.zeros(0, np.complex128), free, is_anchored=True)
         at_nodes, at_samples = (
             span.evaluate(closing.functions.coefficients, z, orders=(0,))[0]
-            for z in (corrector.paths.nodes, corrector.boundary.points)
+            for z in (self.loops.nodes, self.boundary.points)
         )
         # Divided by 4 t (1 − t): beside a key on its limits, h grows linearly in time.
         solved = {0.0: nothing, 1.0: nothing}
@@ -298,7 +349,7 @@ class HoleCloser:
                 return scale * solved[time]
             h = closing.series.at(times).T
             nodes, samples = (
-                _bases(parts, sign, h @ modes.T)[0]
+                _base(_corrected(parts, sign, h @ modes.T), sign)
                 for parts, modes in ((unclosed(times), at_nodes), (moduli.at(times), at_samples))
             )
             walls = partial(LimitBarrier.around, corrector, samples, moduli.limits, scale)
@@ -336,31 +387,25 @@ class HoleCloser:
             vanishing=vanishing,
         )
         found = functions.combined(forms)
-        (modes,) = self.corrector.boundary.span.evaluate(
-            found.coefficients, self.corrector.boundary.points, orders=(0,)
+        (modes,) = self.boundary.span.evaluate(
+            found.coefficients, self.boundary.points, orders=(0,)
         )
         largest = np.abs(modes @ series.at(np.linspace(0.0, 1.0, 33))).max()
         return Closing(series=series, functions=found, largest=float(largest))
 
 
-def _bases(
-    parts: tuple[Complexes | Floats, Complexes | Floats], sign: int, h: Complexes | complex = 0j
-) -> list[BaseFrame]:
-    """Return frames of f_z and conj(f_z̄), each (t, p), changed by h."""
+def _corrected(parts: FrameParts, sign: int, h: Complexes | Floats) -> FrameParts:
+    """Return frames of f_z and conj(f_z̄), or of their moduli, each (t, p), changed by h."""
     grown = np.exp(h)
-    fz, g = parts[0] * grown, parts[1] * (grown if sign > 0 else 1.0 / grown)
-    return [BaseFrame(*each, 0.0 * each[0], sign) for each in zip(fz, g, strict=True)]
+    return parts[0] * grown, parts[1] * (grown if sign > 0 else 1.0 / grown)
 
 
-def _closed(corrector: PointCorrector, base: BaseFrame, goal: Floats) -> Floats:
-    """Return the unknowns of h that close the periods, nearest to a goal (N,)."""
-    x = goal
-    for _ in range(MOST_STEPS):
-        frame = CorrectedFrame.of(corrector, base, x)
-        gap, rows = frame.places(), frame.constraint_rows()
-        right = rows @ (x - goal) - np.concatenate([gap.real, gap.imag])
-        step = goal - x + np.linalg.lstsq(rows, right, rcond=INDEPENDENT)[0]
-        x = x + step
-        if np.abs(step).max() < CLOSED:
-            break
-    return x
+def _base(parts: FrameParts, sign: int) -> BaseFrame:
+    """Return the only frame."""
+    (fz,), (g,) = parts
+    return BaseFrame(fz, g, 0.0 * fz, sign)
+
+
+def _with_real(rows: Complexes) -> Complexes:
+    """Return complex linear forms (p, n), of the real parts and the imaginary parts, (p, 2n)."""
+    return np.hstack([rows, 1j * rows])

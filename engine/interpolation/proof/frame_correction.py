@@ -66,7 +66,7 @@ def correct_frame(
     nodes, samples = base.nodes, base.samples
     found = solve_within(corrector, nodes, samples, targets, bounds)
     if found.is_limited:
-        own = extremes(corrector, samples, 0.0 * found.x)
+        own = extremes(corrector, samples)
         if (own > frame_limits(bounds)).any():
             own = _proven(inbetweens, time) + BEYOND
         limits = frame_limits(bounds, own, inside=-BEYOND)

@@ -47,10 +47,14 @@ class Residual:
 
     def add_to(self, logarithm: Complexes, logarithm_z: Complexes, time: float) -> None:
         """Add the residual to log f_z and its derivative, each (s,), in place."""
-        coefficients = self.series(time)
-        logarithm += combine_arrays(coefficients, self.modes)
-        single = coefficients.astype(np.float32)
-        logarithm_z.view(np.float64)[:] += single @ self.modes_z.view(np.float32)
+        value, slope = self.combined(self.series(time))
+        logarithm += value
+        logarithm_z += slope
+
+    def combined(self, coefficients: Floats) -> tuple[Complexes, npt.NDArray[np.complex64]]:
+        """Return the sum of the H_j times coefficients (j,), and its derivative, (s,) each."""
+        slope = coefficients.astype(np.float32) @ self.modes_z.view(np.float32)
+        return combine_arrays(coefficients, self.modes), slope.view(np.complex64)
 
     def at_times(self, times: Floats) -> Complexes:
         """Return the addition to log f_z at times (t,), (t, s)."""

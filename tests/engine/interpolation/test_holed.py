@@ -382,3 +382,17 @@ def test_a_motion_through_keys_is_closed_too():
                 )
             )
             assert abs(one - two) < 1e-9
+
+
+def test_closing_functions_turn_with_a_regular_ring():
+    """They depend on each other there, and rounding errors must not stand for what is missing."""
+    turn = np.exp(0.3j)
+    spans = []
+    for shape in (ring(), ring().moved(turn, 0.0)):
+        boundary = Boundary.sample(shape.domain)
+        sites = sample_domain(boundary, shape.outline, anchor=shape.anchor)
+        (values,) = boundary.span.evaluate(sites.closer.few, boundary.points, orders=(0,))
+        spans.append(np.linalg.qr(np.vstack([values.real, values.imag]))[0])
+    first, second = spans
+    assert first.shape == second.shape
+    assert_allclose(np.linalg.svd(first.T @ second, compute_uv=False), 1.0, rtol=0, atol=1e-9)

@@ -78,17 +78,22 @@ class EvaluatedCorrection:
         self, base: Derivatives, mixing: Mixing, sign: int, time: float
     ) -> tuple[Derivatives, Mixing]:
         """Return F e^h, G e^{σh} + q K e^h and K e^h with their derivatives."""
-        (h, h_z), (q, q_z) = (_both(each, time) for each in (self.h, self.q))
-        grown = np.exp(h)
+        coefficients = self.known.series(time)
+        (h, h_z), (q, q_z) = (each.combined(coefficients) for each in (self.h, self.q))
+        # In place: fresh memory for each term would take longer than the arithmetic.
+        grown = np.exp(h, out=h)
         k, log_k_z = mixing.k * grown, mixing.log_k_z + h_z
-        own = grown if sign > 0 else 1.0 / grown
-        after = Derivatives(
-            fz=base.fz * grown,
-            fzz=(base.fzz + base.fz * h_z) * grown,
-            g=base.g * own + q * k,
-            gz=(base.gz + sign * base.g * h_z) * own + (q_z + q * log_k_z) * k,
-        )
-        return after, Mixing(k, log_k_z)
+        fz, fzz = base.fz * grown, base.fzz * grown
+        term = fz * h_z
+        fzz += term
+        own = grown if sign > 0 else np.divide(1.0, grown, out=grown)
+        g, gz = base.g * own, np.multiply(base.gz, own, out=own)
+        gz += np.multiply(g, sign * h_z, out=term)
+        gz += np.multiply(k, q_z, out=term)
+        k_q = np.multiply(q, k, out=q)
+        gz += np.multiply(k_q, log_k_z, out=term)
+        g += k_q
+        return Derivatives(fz, fzz, g, gz), Mixing(k, log_k_z)
 
     def changed_values(
         self, fz: Complexes, g: Complexes, k: Complexes, sign: int, times: Floats
@@ -98,11 +103,3 @@ class EvaluatedCorrection:
         grown = np.exp(h)
         k = k * grown
         return fz * grown, g * (grown if sign > 0 else 1.0 / grown) + q * k, k
-
-
-def _both(function: Residual, time: float) -> tuple[Complexes, Complexes]:
-    """Return a function and its derivative at a time."""
-    value = np.zeros(function.modes.shape[1], dtype=np.complex128)
-    slope = np.zeros_like(value)
-    function.add_to(value, slope, time)
-    return value, slope

@@ -89,7 +89,7 @@ def fit_pin_corrections(
     known, size = corrector.variables, corrector.boundary.size
     solved: dict[float, PointSolution] = {}
     share = 1.0
-    ends = [extremes(corrector, base_at(time).samples, known.nothing) for time in (0.0, 1.0)]
+    ends = [extremes(corrector, base_at(time).samples) for time in (0.0, 1.0)]
     limits = frame_limits(bounds, *ends)
 
     def at(time: float) -> Floats:
