@@ -37,10 +37,6 @@ from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.paths import PointPaths
 from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
 from engine.deform.correction.variables import Variables, orthonormal_functions
-    PiecewiseSeries,
-    combine_arrays,
-    separate_variables,
-)
 from engine.interpolation.series.chebyshev import PiecewiseSeries, separate_variables
 from engine.interpolation.series.residual import HoleConstants, Residual, combine_arrays
 from engine.maps import Boundary
