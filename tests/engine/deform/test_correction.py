@@ -338,7 +338,7 @@ def test_others_stay_and_limits_hold_out_of_reach(name, sign):
     count, size = len(known.points), known.boundary.size
     forces = np.where(np.arange(count) == 1, 8 / size, np.inf)
     moves = moves_of(known.points, size * np.exp(2j))
-    targets = PointTargets(moves, np.ones(count), is_anchored=False, max_forces=forces)
+    targets = PointTargets(moves, np.ones(count), is_anchored=False, yield_forces=forces)
     found = solve_within(known, nodes, samples, targets, bounds)
     assert found.is_limited
     assert (extremes(known, samples, found.x) <= frame_limits(bounds)).all()
@@ -366,7 +366,7 @@ def test_points_outside_the_domain_are_refused(outside):
         {"weights": np.full(6, np.nan)},
         {"weights": np.full(6, 1.5)},
         {"weights": np.full(6, -0.1)},
-        {"max_forces": np.full(6, np.nan)},
+        {"yield_forces": np.full(6, np.nan)},
         {"rotations": np.full(6, np.inf)},
         {"compliances": np.full(6, -1.0)},
     ],
