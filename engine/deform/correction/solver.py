@@ -28,10 +28,11 @@ from engine.errors import EngineError
 SMALL = 1e-6  # step in h: where the iteration ends
 MET = 1e-9  # of the diameter: target error of points that have arrived
 LONGEST = 1.0  # longest step in h
-MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
+MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 12, 3
 # The barrier is lowered after a step of which so much was taken, if the step is no longer than
 # this.
 ENOUGH, CLOSE = 0.5, 0.15
+APART = 0.2  # of the distance from a limit: the least that a step leaves
 NEARER = 0.7  # of the gap: the largest remainder after a step back to the points
 CALM = 1e-4  # step in h: where the iteration ends with a barrier
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: the largest remainder after a part of a step
@@ -259,7 +260,7 @@ class _Problem:
             for _ in range(MOST_HALVINGS):
                 tried = self._tried(at, model, change * share, shift * share, share)
                 merit = self._merit(tried, rows.compliances, firm)
-                if merit <= now * (1 + 1e-12):
+                if merit <= now * (1 + 1e-12) and self._keeps_distance(at, tried):
                     break
                 share /= 2
             # Part of a step never reaches these targets.
@@ -310,6 +311,13 @@ class _Problem:
                 break
             tried = nearer
         return tried
+
+    def _keeps_distance(self, at: _State, tried: _State) -> bool:
+        """Return whether a step takes no more than a part of the way to a limit."""
+        if self.walls is None or at.barrier is None or tried.barrier is None:
+            return True
+        now = np.minimum(at.barrier.slacks, self.walls.width)
+        return bool((tried.barrier.slacks >= APART * now).all())
 
     def _merit(self, at: _State, soft: Floats, firm: float) -> float:
         """Return ½ |x|², the barrier and the work of the pulls; equalities pull with `firm`."""

@@ -60,8 +60,8 @@ def correct_frame(
     """Correct an in-between within bounds, or within its own distortion beyond them.
 
     Near a limit, a proof shows that the correction keeps the limit between the samples, too.
-    Without a proof the correction is solved again within limits that are tighter by about the proven
-    excess, so that nothing jumps from frame to frame, and at last shortened.
+    Without a proof the correction is solved again within limits that are tighter by about the
+    proven excess, so that nothing jumps between frames, and at last shortened.
     `inbetweens` are as in `evaluate_base`, and `base` is theirs at the time.
     """
     nodes, samples = base.nodes, base.samples
