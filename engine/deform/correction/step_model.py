@@ -55,8 +55,8 @@ class Rows(NamedTuple):
 class StepModel:
     """The quadratic model around unknowns x.
 
-    A barrier changes the metric, which is otherwise the identity, and the gradient of the objective,
-    which is otherwise x.
+    A barrier changes the metric, which is otherwise the identity, and the gradient of the
+    objective, which is otherwise x.
 
     Attributes
     ----------
