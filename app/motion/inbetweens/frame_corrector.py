@@ -24,7 +24,9 @@ from engine.deform.correction.solver import PointTargets
 from engine.interpolation import CorrectionBase, correct_frame, evaluate_base
 
 KEPT = 2**26  # bytes of cached corrections per outline
-FORCE = 8.0  # per L: the largest force of a track; within the limits hardly any track needs more
+# Per L: the pull of a track at which its target error is L. At a tenth of it, which within reach
+# hardly any track needs, the target error is a thousandth. A smaller force is calmer, and less exact.
+FORCE = 64.0
 # Number of outline points that hold the shape if a track's reach is small, and their largest and
 # smallest firmness. The smallest has no effect.
 HELD, HELD_BY, LEAST_HELD = 64, 75.0, 1e-9
@@ -183,7 +185,7 @@ class FrameCorrector:
             offsets=np.append(wanted.positions - base.places[:count], np.zeros(more)),
             weights=np.append(weights, np.ones(more)),
             is_anchored=self._is_anchored,
-            max_forces=np.append(
+            yield_forces=np.append(
                 np.where(wanted.has_target, FORCE / size, np.inf), np.full(more, np.inf)
             ),
             rotations=np.append(wanted.rotations, np.full(more, np.nan)),

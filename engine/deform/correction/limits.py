@@ -42,27 +42,21 @@ def solve_within(
     nodes: BaseFrame,
     samples: BaseFrame,
     targets: PointTargets,
-    bounds: Bounds,
-    inside: float = INSIDE,
+    limits: Floats,
 ) -> PointSolution:
-    """Find the correction of one frame within bounds, from zero.
+    """Find the correction of one frame that keeps limits at the samples, from zero.
 
-    Where the smallest correction comes near a limit, a barrier keeps it inside, and unreachable
-    targets are approached with their largest forces. A base beyond a limit stays within its own
-    distortion.
+    Where the smallest correction comes near a limit, a barrier keeps it inside. The base keeps the
+    limits.
 
     Parameters
     ----------
     nodes, samples : BaseFrame
         The frame at the nodes of the corrector's paths, and at the samples of the boundary.
-    targets : PointTargets
-        Without a largest force, a target is met even where that breaks a limit.
-    inside : float
-        How far inside the bounds the samples end.
+    limits : float64, shape (3,)
+        Of ln σ_a, −ln σ_b and k.
     """
     found = solve_correction(corrector, nodes, targets, throw=False)
-    own = extremes(corrector, samples)
-    limits = frame_limits(bounds, own + BEYOND, inside=inside)
     if (extremes(corrector, samples, found.x) <= limits - WIDTH).all():
         return found
     # At zero, points that need no correction are at their targets, and stay there.

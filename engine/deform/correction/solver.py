@@ -8,7 +8,9 @@ solves the model in which the rows J are linear, exactly, in the few dimensions 
 
     (J Jᵀ + C) μ + T t = −(r − J x),    Tᵀ μ = 0,    δ = Jᵀ μ − x,
 
-and then the correction by the rows' own curvature, by conjugate gradients.
+and then the correction by the rows' own curvature, by conjugate gradients. A point with a yield
+force F keeps the target error L (|pull| / F)³. Out of reach it thus stops smoothly: near limits the
+pull grows without bound, and the target error makes up for it.
 """
 
 from dataclasses import dataclass
@@ -20,21 +22,21 @@ from engine.arrays import Complexes, Floats, as_points
 from engine.deform.correction.barrier import BarrierState, LimitBarrier
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame, Curvature
-from engine.deform.correction.step_model import Rows, StepModel
+from engine.deform.correction.step_model import TINY, Rows, StepModel, pulls_against
 from engine.errors import EngineError
 
 SMALL = 1e-6  # step in h: where the iteration ends
 MET = 1e-9  # of the diameter: target error of points that have arrived
-LONGEST, LONGEST_AT_WALLS = 1.0, 0.3  # longest step in h
-MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 7, 3
+LONGEST = 1.0  # longest step in h
+MOST_STEPS, MOST_STEPS_AT_WALLS, MOST_HALVINGS, MOST_RETURNS = 25, 60, 12, 3
 # The barrier is lowered after a step of which so much was taken, if the step is no longer than
 # this.
 ENOUGH, CLOSE = 0.5, 0.15
+APART = 0.2  # of the distance from a limit: the least that a step leaves
 NEARER = 0.7  # of the gap: the largest remainder after a step back to the points
 CALM = 1e-4  # step in h: where the iteration ends with a barrier
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: the largest remainder after a part of a step
 LEVER = 0.25  # of the diameter: the distance at which a rotation is as firm as a point
-TINY = 1e-300
 UNFINISHED = (
     "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
     "target. Give targets nearer to the base, or take the correction as it is (throw=False)."
@@ -54,8 +56,10 @@ class PointTargets(NamedTuple):
         From 0, free, to 1, held.
     is_anchored : bool
         Whether the anchor stays where it is.
-    max_forces : float64, shape (m,), optional
-        Largest pull on each point; without, pulls are unlimited.
+    yield_forces : float64, shape (m,), optional
+        Pull on each point at which the target error is the diameter. The target error grows with
+        the cube of the pull, so that the point slows down smoothly where limits stop it. Without,
+        or with infinity, targets are met.
     rotations : float64, shape (m,), optional
         Prescribed rotation of the shape at each point, in radians; NaN where it is free.
     compliances : float64, shape (m,), optional
@@ -65,7 +69,7 @@ class PointTargets(NamedTuple):
     offsets: Complexes
     weights: Floats
     is_anchored: bool
-    max_forces: Floats | None = None
+    yield_forces: Floats | None = None
     rotations: Floats | None = None
     compliances: Floats | None = None
 
@@ -142,7 +146,7 @@ def _require_targets(targets: PointTargets, count: int) -> None:
     for name, values, fits in (
         ("moves", targets.offsets, True),
         ("weights", targets.weights, (targets.weights >= 0) & (targets.weights <= 1)),
-        ("forces", targets.max_forces, targets.max_forces is None or targets.max_forces >= 0),
+        ("forces", targets.yield_forces, targets.yield_forces is None or targets.yield_forces > 0),
         ("turns", targets.rotations, targets.rotations is None or ~np.isinf(targets.rotations)),
         ("give", targets.compliances, targets.compliances is None or targets.compliances >= 0),
     ):
@@ -170,7 +174,6 @@ class _Problem:
         walls: LimitBarrier | None,
     ) -> None:
         self.corrector, self.base, self.walls = corrector, base, walls
-        self.longest = LONGEST if walls is None else LONGEST_AT_WALLS
         self.gains = GAINS if walls is None else GAINS_AT_WALLS
         holes = len(corrector.boundary.holes)
         self.count = count = len(targets.offsets)
@@ -187,11 +190,10 @@ class _Problem:
         give = np.zeros(count) if targets.compliances is None else targets.compliances
         self.loose = np.concatenate([1.0 - weights, 1.0 - weights, 0 * self.turns])
         self.give = np.concatenate([give, np.zeros(holes), give, np.zeros(holes), 0 * self.turns])
-        forces = np.full(count, np.inf) if targets.max_forces is None else targets.max_forces
+        forces = np.full(count, np.inf) if targets.yield_forces is None else targets.yield_forces
         size = corrector.boundary.size
-        self.forces = np.concatenate(
-            [forces, np.full(holes, np.inf), LEVER * size * forces[self.turned]]
-        )
+        by_turn = (LEVER * size * forces[self.turned]) ** -3 / LEVER
+        self.yields = np.concatenate([size / forces**3, np.zeros(holes), by_turn])
         own = np.arange(count + holes)
         self.group = np.concatenate([own, own, count + holes + np.arange(len(self.turned))])
         self.is_asked = bool(
@@ -205,8 +207,8 @@ class _Problem:
         both = np.vstack([both, np.zeros((len(self.turned), 2))])
         is_free = not targets.is_anchored and bool(targets.weights.any())
         self.translations = both if is_free else both[:, :0]
-        # Rows without compliance and without a largest force.
-        self.held = (self.loose == 0) & (self.give == 0) & np.isinf(self.forces)[self.group]
+        # Rows without compliance that do not yield.
+        self.held = (self.loose == 0) & (self.give == 0) & (self.yields == 0)[self.group]
 
     def state(self, x: Floats, shift: complex, last: BarrierState | None = None) -> _State:
         """Evaluate the residuals."""
@@ -227,7 +229,7 @@ class _Problem:
             np.vstack([points, turning]),
             self.loose * scale + self.give,
             self.group,
-            self.forces,
+            self.yields,
             self.translations,
         )
 
@@ -253,12 +255,12 @@ class _Problem:
                 part = min(1.0, length / max(self._length(more), TINY))
                 change, shift = change + part * more, shift + part * along
             firm = max(firm, FIRMEST * float(rows.sizes(model.pulls).max()))
-            share = min(1.0, self.longest / max(self._length(change), TINY))
+            share = min(1.0, LONGEST / max(self._length(change), TINY))
             now = self._merit(at, rows.compliances, firm)
             for _ in range(MOST_HALVINGS):
                 tried = self._tried(at, model, change * share, shift * share, share)
                 merit = self._merit(tried, rows.compliances, firm)
-                if merit <= now * (1 + 1e-12):
+                if merit <= now * (1 + 1e-12) and self._keeps_distance(at, tried):
                     break
                 share /= 2
             # Part of a step never reaches these targets.
@@ -310,15 +312,22 @@ class _Problem:
             tried = nearer
         return tried
 
+    def _keeps_distance(self, at: _State, tried: _State) -> bool:
+        """Return whether a step takes no more than a part of the way to a limit."""
+        if self.walls is None or at.barrier is None or tried.barrier is None:
+            return True
+        now = np.minimum(at.barrier.slacks, self.walls.width)
+        return bool((tried.barrier.slacks >= APART * now).all())
+
     def _merit(self, at: _State, soft: Floats, firm: float) -> float:
-        """Return ½ |x|² and the target errors: by their compliance, and linear beyond some pull."""
-        squares = np.bincount(self.group, at.residual**2, minlength=len(self.forces))
-        lack, forces = np.sqrt(squares), np.minimum(firm, self.forces)
-        own = np.zeros(len(forces))
+        """Return ½ |x|², the barrier and the work of the pulls; equalities pull with `firm`."""
+        count = len(self.yields)
+        lacks = np.sqrt(np.bincount(self.group, at.residual**2, minlength=count))
+        own = np.zeros(count)
         own[self.group] = soft
-        give = forces * own
-        near = lack**2 / (2 * np.maximum(own, TINY))
-        pulled = np.where(lack <= give, near, forces * (lack - give / 2))
+        pulls = pulls_against(lacks, own, self.yields)
+        pulls = np.where(self.yields > 0, pulls, np.minimum(pulls, firm))
+        pulled = pulls * (lacks - pulls * (own / 2 + self.yields * pulls**2 / 4))
         total = 0.5 * float(at.frame.x @ at.frame.x) + float(pulled.sum())
         if self.walls is not None and at.barrier is not None:
             total += self.walls.energy(at.barrier)

@@ -13,9 +13,10 @@ RIDGE = 1e-13  # of the mean of the rows' products
 MOST_BENDS = 30  # steps of the conjugate gradients
 NEARLY = 1e-4  # of the curvature's change: largest remainder
 CURVED = 1e-2  # of the metric: the least curvature along which steps are taken
-# Rounds in which bounded pulls are found, and how exactly.
-ROUNDS, LEFT_TO_GO = 8, 1e-3
-LEAST_LACK = 1e-9
+# Rounds in which yielding pulls are found, and how exactly.
+ROUNDS, LEFT_TO_GO = 20, 1e-6
+CUBIC_ROUNDS = 6  # of Newton's method, from at most twice the residual
+TINY = 1e-300
 
 # A symmetric form of the unknowns, as its product with a vector (2N,).
 Form = Callable[[Floats], Floats]
@@ -32,8 +33,8 @@ class Rows(NamedTuple):
         The remaining residual over the pull.
     group : intp, shape (r,)
         The two coordinates of a point form one group.
-    forces : float64, shape (g,)
-        The largest pull of each group; infinite for an equality.
+    yields : float64, shape (g,)
+        The further remaining residual of each group over the cube of its pull.
     translations : float64, shape (r, 2) or (r, 0)
         Derivatives by a translation.
     """
@@ -42,22 +43,20 @@ class Rows(NamedTuple):
     jacobian: Floats
     compliances: Floats
     group: Indices
-    forces: Floats
+    yields: Floats
     translations: Floats
 
     def sizes(self, values: Floats) -> Floats:
         """Return the length of each group, (g,), of values (r,)."""
-        squares = np.bincount(self.group, values * values, minlength=len(self.forces))
+        squares = np.bincount(self.group, values * values, minlength=len(self.yields))
         return np.asarray(np.sqrt(squares))
 
 
 class StepModel:
     """The quadratic model around unknowns x.
 
-    A group that would pull with more than its largest force pulls with that force: its rows get the
-    compliance residual / force, by iteration (Holland and Welsch 1977). A barrier changes the
-    metric, which is otherwise the identity, and the gradient of the objective, which is otherwise
-    x.
+    A barrier changes the metric, which is otherwise the identity, and the gradient of the
+    objective, which is otherwise x.
 
     Attributes
     ----------
@@ -81,18 +80,22 @@ class StepModel:
         self._find_pulls()
 
     def _find_pulls(self) -> None:
+        """Find the pulls by Newton's method; only those that yield take several rounds."""
         rows, right = self._rows, self._slopes @ self._down - self._rows.residual
-        secant = np.maximum(rows.sizes(rows.residual), LEAST_LACK) / rows.forces
-        give = np.zeros(len(rows.forces))
+        by_cube = rows.yields[rows.group]
+        together = rows.group[:, None] == rows.group
+        lacks = np.maximum(rows.sizes(rows.residual), TINY)[rows.group]
+        pulls = -rows.residual / np.cbrt(np.maximum(by_cube, TINY)) / np.cbrt(lacks) ** 2
         for _ in range(ROUNDS):
-            self._factor(rows.compliances + give[rows.group])
-            self.pulls, self._shift = self._solve(right)
-            sizes = rows.sizes(self.pulls)
-            over = (give == 0) & (sizes > rows.forces)
-            share = np.where(give > 0, sizes / rows.forces, 1.0)
-            if (np.abs(share - 1.0) < LEFT_TO_GO).all() and not over.any():
+            last = np.where(by_cube > 0, pulls, 0.0)
+            bent = 2 * together * np.outer(by_cube * last, last)
+            soft = rows.compliances + by_cube * rows.sizes(last)[rows.group] ** 2
+            self._factor(np.diag(soft) + bent)
+            pulls, self._shift = self._solve(right + bent @ last)
+            change = np.where(by_cube > 0, pulls - last, 0.0)
+            if np.abs(change).max() <= LEFT_TO_GO * np.abs(last).max():
                 break
-            give = np.where(over, secant, give * share)
+        self.pulls = pulls
 
     def solve_step(self) -> tuple[Floats, complex]:
         return self._whole(self.pulls @ self._slopes - self._down), self._shift
@@ -146,15 +149,15 @@ class StepModel:
         return v if self._root is None else _solved(self._root, v, transposed=True)
 
     def _factor(self, soft: Floats) -> None:
-        """Factor the matrix of the multipliers."""
+        """Factor the matrix of the multipliers, with compliances (r, r)."""
         translations = self._rows.translations
         count, more = translations.shape
         matrix = np.zeros((count + more, count + more))
-        matrix[:count, :count] = self._products
+        matrix[:count, :count] = self._products + soft
         matrix[:count, count:] = translations
         matrix[count:, :count] = translations.T
         diagonal = np.arange(count)
-        matrix[diagonal, diagonal] += self._ridge + soft
+        matrix[diagonal, diagonal] += self._ridge
         self._factors = scipy.linalg.lu_factor(matrix, overwrite_a=True, check_finite=False)
 
     def _solve(self, right: Floats) -> tuple[Floats, complex]:
@@ -162,6 +165,18 @@ class StepModel:
         padded = np.append(right, np.zeros(more))
         found = scipy.linalg.lu_solve(self._factors, padded, check_finite=False)
         return found[:count], complex(*found[count:]) if more else 0j
+
+
+def pulls_against(lacks: Floats, compliances: Floats, yields: Floats) -> Floats:
+    """Return the pulls (g,) of groups whose remaining residuals have these lengths."""
+    pulls = np.minimum(
+        lacks / np.maximum(compliances, TINY), np.cbrt(lacks / np.maximum(yields, TINY))
+    )
+    for _ in range(CUBIC_ROUNDS):
+        squares = yields * pulls**2
+        over = np.maximum((compliances + squares) * pulls - lacks, 0.0)
+        pulls = pulls - over / np.maximum(compliances + 3 * squares, TINY)
+    return np.asarray(pulls)
 
 
 def _solved(root: Floats, v: Floats, *, transposed: bool) -> Floats:

@@ -9,7 +9,6 @@ from engine.deform.correction.barrier import extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.limits import (
     BEYOND,
-    INSIDE,
     frame_limits,
     log_limits,
     shorten_solution,
@@ -21,9 +20,9 @@ from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove
 from engine.maps import Bounds
 
-# Distances from the limits at the samples, tried in turn until the frame is proven. If all fail the
-# correction is multiplied by SHORTER, at most MOST_SHORTER times.
-INSIDES = (INSIDE, 4 * INSIDE, 16 * INSIDE)
+# The limits at the samples are tightened by so many times the proven excess, so often. If the
+# excess remains, the correction is multiplied by SHORTER, at most MOST_SHORTER times.
+TIGHTER, MOST_TIGHTER = 1.5, 2
 SHORTER, MOST_SHORTER = 0.95, 12
 
 
@@ -60,32 +59,34 @@ def correct_frame(
     """Correct an in-between within bounds, or within its own distortion beyond them.
 
     Near a limit, a proof shows that the correction keeps the limit between the samples, too.
-    Without a proof the correction is solved again farther inside the limits, and at last shortened.
+    Without a proof the correction is solved again within limits that are tighter by about the
+    proven excess, so that nothing jumps between frames, and at last shortened.
     `inbetweens` are as in `evaluate_base`, and `base` is theirs at the time.
     """
     nodes, samples = base.nodes, base.samples
-    found = solve_within(corrector, nodes, samples, targets, bounds)
+    own = extremes(corrector, samples)
+    inner, least = frame_limits(bounds, own + BEYOND), own + BEYOND / 2
+    found = solve_within(corrector, nodes, samples, targets, inner)
     if found.is_limited:
-        own = extremes(corrector, samples)
         if (own > frame_limits(bounds)).any():
             own = _proven(inbetweens, time) + BEYOND
         limits = frame_limits(bounds, own, inside=-BEYOND)
 
-        def is_kept(solution: PointSolution) -> bool:
+        def excess_of(solution: PointSolution) -> Floats:
             known = CorrectionSeries.of_frame(corrector, solution.x, solution.shift)
-            return bool((_proven(inbetweens.with_correction(known), time) <= limits).all())
+            proven = _proven(inbetweens.with_correction(known), time)
+            return np.maximum(proven - limits, 0.0)
 
-        kept = is_kept(found)
-        for inside in INSIDES[1:]:
-            if kept:
+        excess = excess_of(found)
+        for tries in range(MOST_TIGHTER + MOST_SHORTER):
+            if not excess.any():
                 break
-            found = solve_within(corrector, nodes, samples, targets, bounds, inside)
-            kept = is_kept(found)
-        for _ in range(MOST_SHORTER):
-            if kept:
-                break
-            found = shorten_solution(corrector, nodes, targets, found, SHORTER)
-            kept = is_kept(found)
+            if tries < MOST_TIGHTER:
+                inner = np.maximum(inner - TIGHTER * excess, least)
+                found = solve_within(corrector, nodes, samples, targets, inner)
+            else:
+                found = shorten_solution(corrector, nodes, targets, found, SHORTER)
+            excess = excess_of(found)
     reached = extremes(corrector, samples, found.x)
     return FrameCorrection(
         known=CorrectionSeries.of_frame(corrector, found.x, found.shift),

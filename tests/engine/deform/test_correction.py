@@ -16,6 +16,7 @@ from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.limits import frame_limits, max_feasible_share, solve_within
 from engine.deform.correction.paths import PointPaths
 from engine.deform.correction.solver import (
+    LEVER,
     UNFINISHED,
     PointSolution,
     PointTargets,
@@ -333,8 +334,8 @@ def test_others_stay_and_limits_hold_out_of_reach(name, sign):
     count, size = len(known.points), known.boundary.size
     forces = np.where(np.arange(count) == 1, 8 / size, np.inf)
     moves = moves_of(known.points, size * np.exp(2j))
-    targets = PointTargets(moves, np.ones(count), is_anchored=False, max_forces=forces)
-    found = solve_within(known, nodes, samples, targets, bounds)
+    targets = PointTargets(moves, np.ones(count), is_anchored=False, yield_forces=forces)
+    found = solve_within(known, nodes, samples, targets, frame_limits(bounds))
     assert found.is_limited
     assert (extremes(known, samples, found.x) <= frame_limits(bounds)).all()
     assert np.delete(found.target_errors, 1).max() < 1e-4 * size
@@ -342,6 +343,51 @@ def test_others_stay_and_limits_hold_out_of_reach(name, sign):
     free = solve_correction(known, nodes, targets)
     share = max_feasible_share(known, samples, free.x, frame_limits(bounds))
     assert size - found.target_errors[1] > share * (size - free.target_errors[1])
+
+
+@pytest.mark.parametrize("turn", [np.nan, 0.4])
+def test_target_error_grows_with_the_cube_of_the_pull(turn):
+    known = corrector("star")
+    base, size = bent(known.paths.nodes), known.boundary.size
+    moves, force = moves_of(known.points, 0.3 - 0.2j), 0.5 / size
+    at_point = np.arange(len(moves)) == 1
+    forces, turns = (
+        np.where(at_point, each, other) for each, other in ((force, np.inf), (turn, np.nan))
+    )
+    targets = PointTargets(
+        moves, np.ones(6), is_anchored=True, yield_forces=forces, rotations=turns
+    )
+    found = solve_correction(known, base, targets)
+    lack = lack_of(known, base, found, moves)
+    rows = CorrectedFrame.of(known, base, found.x).constraint_rows()
+    turning = np.append(known.variables.at_points.h[:, 1].imag, np.zeros(known.variables.count))
+    rows = np.vstack([rows, turning])
+    pulls, rest, *_ = np.linalg.lstsq(rows.T, -found.x)
+    assert rest == pytest.approx(0, abs=1e-9)
+    pull = pulls[1] + 1j * pulls[7]
+    assert lack[1] == pytest.approx(size * pull * abs(pull) ** 2 / force**3, rel=1e-4)
+    assert np.abs(np.delete(lack, 1)).max() < 1e-9 * size
+    if not np.isnan(turn):
+        error = turning @ found.x - turn
+        assert error == pytest.approx((pulls[-1] / (LEVER * size * force)) ** 3 / LEVER, rel=1e-4)
+
+
+def test_points_slow_down_smoothly_where_limits_stop_them():
+    known, limits = corrector("bar"), frame_limits(Bounds(k=0.4, sigma_a=1.5, sigma_b=0.6))
+    nodes, samples = (bent(z, amount=0.02) for z in (known.paths.nodes, known.boundary.points))
+    size = known.boundary.size
+    forces = np.where(np.arange(3) == 1, 6 / size, np.inf)
+    wanted = 0.5 * size * np.exp(2j) * np.sin(np.linspace(0, np.pi / 2, 13)[5:]) ** 2
+    places = []
+    for each in wanted:
+        moves = moves_of(known.points, each)
+        targets = PointTargets(moves, np.ones(3), is_anchored=False, yield_forces=forces)
+        found = solve_within(known, nodes, samples, targets, limits)
+        assert np.delete(found.target_errors, 1).max() < 1e-6 * size
+        places.append(each + lack_of(known, nodes, found, moves)[1])
+    assert found.target_errors[1] > 0.2 * size
+    assert (np.diff(np.abs(places)) > 0).all()
+    assert np.abs(np.diff(places, 2)).max() < 2 * np.abs(np.diff(wanted, 2)).max()
 
 
 @pytest.mark.parametrize("outside", [5 + 5j, np.nan])
@@ -361,7 +407,7 @@ def test_points_outside_the_domain_are_refused(outside):
         {"weights": np.full(6, np.nan)},
         {"weights": np.full(6, 1.5)},
         {"weights": np.full(6, -0.1)},
-        {"max_forces": np.full(6, np.nan)},
+        {"yield_forces": np.full(6, np.nan)},
         {"rotations": np.full(6, np.inf)},
         {"compliances": np.full(6, -1.0)},
     ],
