@@ -25,7 +25,7 @@ from engine.interpolation import CorrectionBase, correct_frame, evaluate_base
 
 KEPT = 2**26  # bytes of cached corrections per outline
 # Per L: the pull of a track at which its target error is L. At a tenth of it, which within reach
-# hardly any track needs, the target error is a thousandth. A smaller force is calmer, and less exact.
+# hardly any track needs, the target error is a thousandth. Less is calmer, and less exact.
 FORCE = 64.0
 # Number of outline points that hold the shape if a track's reach is small, and their largest and
 # smallest firmness. The smallest has no effect.
