@@ -12,6 +12,7 @@ from app.editor.actions.viewing import browse_files, choose_file, close_dialog
 from app.errors import display_name
 from app.render import Thumbnail
 from app.storage import home_folder
+from app.texts import _
 from app.ui.dialogs.browser_shortcuts import (
     BrowserShortcut,
     list_recent_shortcuts,
@@ -90,18 +91,19 @@ class FileBrowser:
         is_accepted |= any(imgui.is_key_pressed(key, repeat=False) for key in ENTER)
         folder, path = _folder_meant(now), _path_meant(now)
         possible = path is not None or (folder is not None and not now.writes)
-        text = now.verb if now.writes else "Open"
+        text = now.verb if now.writes else _("Open")
         if main_button(look, text, BUTTON * look.em, enabled=possible):
             is_accepted = True
             # A save uses the typed name, even if a folder is marked.
             folder = None if now.writes else folder
         imgui.same_line()
-        if imgui.button("Cancel", ImVec2(BUTTON * look.em, 0)):
+        if imgui.button(_("Cancel"), ImVec2(BUTTON * look.em, 0)):
             return [do(close_dialog)]
         if path is not None and now.writes and _is(Path.is_file, path):
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            imgui.text_colored(look.palette.warning, f"{display_name(path.name)} will be replaced.")
+            text = _("{name} will be replaced.").format(name=display_name(path.name))
+            imgui.text_colored(look.palette.warning, text)
         if is_accepted and folder is not None:
             now = _enter(now, folder)
         elif is_accepted and path is not None:
@@ -125,7 +127,7 @@ class FileBrowser:
     def _places(self, dialog: FileDialog, look: Look, height: float) -> FileDialog:
         """Draw the home folders, and the folders of recently opened files."""
         imgui.begin_child("places", ImVec2(PLACES * look.em, height))
-        for title, places in (("Places", self._usual), ("Recent", self._recent)):
+        for title, places in ((_("Places"), self._usual), (_("Recent"), self._recent)):
             if not places:
                 continue
             small_text(look, title)
@@ -156,9 +158,11 @@ class FileBrowser:
         is_opened = False
         if not imgui.begin_table("entries", 3, TABLE_FLAGS, size):
             return dialog, is_opened
-        imgui.table_setup_column("Name", imgui.TableColumnFlags_.width_stretch)
-        imgui.table_setup_column("Size", imgui.TableColumnFlags_.width_fixed, SIZE * look.em)
-        imgui.table_setup_column("Changed", imgui.TableColumnFlags_.width_fixed, CHANGED * look.em)
+        imgui.table_setup_column(_("Name"), imgui.TableColumnFlags_.width_stretch)
+        imgui.table_setup_column(_("Size"), imgui.TableColumnFlags_.width_fixed, SIZE * look.em)
+        imgui.table_setup_column(
+            _("Changed"), imgui.TableColumnFlags_.width_fixed, CHANGED * look.em
+        )
         imgui.table_setup_scroll_freeze(0, 1)
         imgui.table_headers_row()
         self._read(dialog)
@@ -205,10 +209,12 @@ class FileBrowser:
 def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     """Draw the buttons that leave the folder: up, home, and each parent folder."""
     start = imgui.get_cursor_pos_x()
-    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=format_chord(UP)):
+    if icon_button(
+        look, icons.ICON_FA_ARROW_UP, "up", _("The folder above"), keys=format_chord(UP)
+    ):
         return _enter(dialog, dialog.folder.parent)
     imgui.same_line(0, 0)
-    if icon_button(look, icons.ICON_FA_HOUSE, "home", "Your own folder"):
+    if icon_button(look, icons.ICON_FA_HOUSE, "home", _("Your home folder")):
         return _enter(dialog, home_folder())
     imgui.same_line()
     room = width - (imgui.get_cursor_pos_x() - start)
@@ -240,7 +246,7 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
     palette, em = look.palette, look.em
     name, height = display_name(entry.path.name), ROW * em
     corner = imgui.get_cursor_screen_pos()
-    clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))
+    clicked = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))[0]
     middle = corner.y + (height - imgui.get_text_line_height()) / 2
     draw_list = imgui.get_window_draw_list()
     image = None if entry.is_folder or entry.size > LARGEST_SHOWN else thumbnail(entry.path)
@@ -275,9 +281,9 @@ def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool)
         if state is not None:
             state.reload_user_buf_and_move_to_end()
     imgui.set_next_item_width(width)
-    hint = "Name of the folder" if dialog.wants_folder else "Name of the file"
+    hint = _("Name of the folder") if dialog.wants_folder else _("Name of the file")
     shown = display_name(dialog.name)
-    _, name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)
+    name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)[1]
     return dialog if name == shown else replace(dialog, name=name, marked="")
 
 

@@ -12,6 +12,7 @@ from app.editor.actions import playback, saving, viewing
 from app.motion import DisplayedFrame
 from app.render import heat_colormap
 from app.reports import TIMES, Curves, split_at_keys
+from app.texts import _
 from app.ui.methods import METHODS
 from app.ui.style.theme import SMALL, Look, colour_u32, with_alpha
 from app.ui.style.widgets import (
@@ -28,10 +29,15 @@ from engine.arrays import Floats
 from engine.domain.meshing.mesh import Mesh
 from engine.maps import Bounds
 
-HEAT_MAPS = (("none", "Off"), ("k", "Shear"), ("sigma_a", "Stretch"), ("sigma_b", "Squeeze"))
-NAMES = {"k": "Shear (k)", "sigma_a": "Stretch (σa)", "sigma_b": "Squeeze (σb)"}
-SPLITS = (("divider", "Divider"), ("beside", "Side by side"))
-KINDS = (("relative", "Relative"), ("absolute", "Absolute"))
+HEAT_MAPS = (
+    ("none", _("Off")),
+    ("k", _("Shear")),
+    ("sigma_a", _("Stretch")),
+    ("sigma_b", _("Squeeze")),
+)
+NAMES = {"k": _("Shear (k)"), "sigma_a": _("Stretch (σa)"), "sigma_b": _("Squeeze (σb)")}
+SPLITS = (("divider", _("Divider")), ("beside", _("Side by side")))
+KINDS = (("relative", _("Relative")), ("absolute", _("Absolute")))
 BINS = 48
 HISTOGRAM, STRIP = 4.6, 0.45  # em
 PLOT, LARGEST_PLOT = 4.2, 10.0  # em: smallest and largest height of a plot
@@ -53,18 +59,18 @@ def draw_distortion_panel(session: Session, look: Look, project: Project) -> lis
     if project.layer_runtime.shown is None:
         return []
     _style_plots(look)
-    heading(look, "On the drawing")
+    heading(look, _("On the drawing"))
     actions: list[Action] = []
     heat_map = session.overlays.heat_map
     match option_buttons(look, "heat map", HEAT_MAPS, heat_map):
         case "none" | "k" | "sigma_a" | "sigma_b" as chosen:
             actions.append(do(viewing.show_heat_map, chosen))
     _spread(look, project, project.layer_runtime.shown, "k" if heat_map == "none" else heat_map)
-    heading(look, "Compare")
+    heading(look, _("Compare"))
     actions += _compare(session, look)
-    heading(look, "Over time")
+    heading(look, _("Over time"))
     if len(project.layer.keys) < 2:
-        small_text(look, "Make a second key to see how the in-betweens distort.")
+        small_text(look, _("Make a second key to see how the in-betweens distort."))
         return actions
     return [*actions, *_over_time(session, look, project)]
 
@@ -74,9 +80,9 @@ def _compare(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     split = session.compare_view
     imgui.set_next_item_width(-1)
-    shown = "Nothing" if split is None else METHODS[split.method].name
+    shown = _("Nothing") if split is None else METHODS[split.method].name
     if imgui.begin_combo("##compared", shown):
-        if imgui.selectable("Nothing", split is None)[0]:
+        if imgui.selectable(_("Nothing"), split is None)[0]:
             actions.append(do(viewing.compare_with_method, None))
         for method, text in METHODS.items():
             is_chosen = split is not None and split.method == method
@@ -84,7 +90,7 @@ def _compare(session: Session, look: Look) -> list[Action]:
                 actions.append(do(viewing.compare_with_method, method))
             draw_tooltip(text.what)
         imgui.end_combo()
-    draw_tooltip("The same keys by another method, beside this drawing's own")
+    draw_tooltip(_("The same keys by another method, beside this drawing's own"))
     if split is not None:
         chosen = option_buttons(
             look, "split", SPLITS, "beside" if split.is_side_by_side else "divider"
@@ -164,8 +170,8 @@ def _spread(look: Look, project: Project, shown: DisplayedFrame, heat_map: HeatM
         _bars(look, histogram, _colours(edges[0], edges[-1], low, high))
         _rule("bound", [high], look.palette.danger, width=LIMIT * look.em)
         implot.end_plot()
-    name = NAMES[heat_map]
-    small_text(look, f"{name} over the area: {histogram.worst:.2f} at worst, limit {high:.2f}.")
+    text = _("{name} over the area: {worst:.2f} at worst, limit {limit:.2f}.")
+    small_text(look, text.format(name=NAMES[heat_map], worst=histogram.worst, limit=high))
 
 
 def _bars(look: Look, histogram: _Histogram, colours: tuple[int, ...]) -> None:
@@ -194,25 +200,26 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
             actions.append(do(viewing.show_curves, kind))
     curves = project.curves.value
     if curves is None:
-        small_text(look, "Measuring…")
+        small_text(look, _("Measuring…"))
         return actions
     height = _plot_height(look)
     bounds = project.layer.bounds
     upper, lower = _plots(session.curves, curves, bounds)
     other_upper, other_lower = None, None
-    twin, twin_curves = project.layer_runtime.comparison, project.comparison_curves
-    if twin is not None and twin_curves.value is not None:
-        if twin_curves.follows(twin.clip(project.document)):
-            other_upper, other_lower = _plots(session.curves, twin_curves.value, bounds)
-        _draw_comparison_tooltip(look, twin, curves, twin_curves.value)
+    comparison, other = project.layer_runtime.comparison, project.comparison_curves
+    if comparison is not None and other.value is not None:
+        if other.follows(comparison.clip(project.document)):
+            other_upper, other_lower = _plots(session.curves, other.value, bounds)
+        _draw_comparison_tooltip(look, comparison, curves, other.value)
     actions += _plot(session, look, curves, (upper, other_upper), height)
     actions += _plot(session, look, curves, (lower, other_lower), height + FRAMES * look.em)
     if session.curves == "relative":
-        small_text(look, "Each point relative to its larger key. Red: theoretical limit.")
+        small_text(look, _("Each point relative to its larger key. Red: theoretical limit."))
     else:
-        small_text(look, "Red: the limits of poses.")
+        small_text(look, _("Red: the limits of poses."))
     halves, is_new = split_line(2), curves.clip == project.clip
-    png, csv = f"{icons.ICON_FA_IMAGE}  Save as PNG…", f"{icons.ICON_FA_TABLE}  Save as CSV…"
+    png = f"{icons.ICON_FA_IMAGE}  {_('Save as PNG…')}"
+    csv = f"{icons.ICON_FA_TABLE}  {_('Save as CSV…')}"
     if text_button(f"{png}###png", next(halves), enabled=is_new):
         actions.append(do(saving.ask_curves_png))
     if text_button(f"{csv}###csv", next(halves), enabled=is_new):
@@ -271,18 +278,20 @@ def _lines(curves: Curves, values: Floats) -> tuple[Floats, Floats]:
 
 
 def _draw_comparison_tooltip(
-    look: Look, twin: ComparisonRuntime, own: Curves, other: Curves
+    look: Look, comparison: ComparisonRuntime, own: Curves, other: Curves
 ) -> None:
     """Show the name and the extremes of each method's curves."""
-    if (other.clip.layer, other.clip.baseline or twin.method) != (twin.layer, twin.method):
-        small_text(look, "Measuring the other method…")
+    method = other.clip.baseline or comparison.method
+    if (other.clip.layer, method) != (comparison.layer, comparison.method):
+        small_text(look, _("Measuring the other method…"))
         return
     palette = look.palette
     for curves, colour in ((own, palette.accent), (other, palette.warning)):
         name = METHODS[curves.clip.baseline or curves.clip.layer.variant].name
-        (k, sigma_a, _), (*_, sigma_b) = curves.extremes.max(0), curves.extremes.min(0)
-        limits = f"shear {k:.2f}, stretch {sigma_a:.2f}, squeeze {sigma_b:.2f}"
-        imgui.text_colored(colour, f"{name}: {limits}")
+        k, sigma_a = curves.extremes[:, :2].max(0)
+        text = _("{name}: shear {k:.2f}, stretch {sigma_a:.2f}, squeeze {sigma_b:.2f}")
+        sigma_b = curves.extremes[:, 2].min()
+        imgui.text_colored(colour, text.format(name=name, k=k, sigma_a=sigma_a, sigma_b=sigma_b))
 
 
 def _plot(
@@ -323,7 +332,7 @@ def _plot(
     if is_over and imgui.is_window_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left):
         actions.append(do(playback.seek, round(implot.get_plot_mouse_pos().x)))
     implot.end_plot()
-    draw_tooltip("Click to go to that frame")
+    draw_tooltip(_("Click to go to that frame"))
     return actions
 
 

@@ -12,6 +12,7 @@ from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS
 from app.motion import BoundingBox, bounding_box, extent_key
 from app.render import View
+from app.texts import _, message_of, ngettext
 from app.ui.panels.format_options import draw_format_options
 from app.ui.panels.sizes import LARGEST, draw_size_fields
 from app.ui.shortcuts.table import BINDINGS
@@ -32,14 +33,14 @@ from app.ui.style.widgets import (
     text_button,
 )
 
-BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
-FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
-RANGES = (("all", "All frames"), ("own", "From – to"))
+BACKGROUNDS = (("transparent", _("Transparent")), ("colour", _("Colour")))
+FRAMINGS = (("fit", _("All motion")), ("canvas", _("Canvas")))
+RANGES = (("all", _("All frames")), ("own", _("From – to")))
 WHITE = "#ffffff"
-MEASURES = "Measuring where the motion reaches…"
-LEAVES = "The motion leaves the frame; “All motion” shows all of it."
-CAMERA_HINT = "Each frame is what the camera shows then."
-KEEPS = "All of the motion is in the frame."
+MEASURES = _("Measuring where the motion reaches…")
+LEAVES = _("The motion leaves the frame. “All motion” shows all of it.")
+CAMERA_HINT = _("Each frame shows the camera's view.")
+KEEPS = _("All of the motion is in the frame.")
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: smallest and largest height
 
 
@@ -53,7 +54,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     box = find_shown_box(view)
     # The camera's frame is always visible.
     actions = [] if project.document.camera else [do(exporting.preview_export_frame, box)]
-    heading(look, "Picture")
+    heading(look, _("Picture"))
     chosen = _format(look, settings)
     if EXPORT_FORMATS[settings.format].has_frame:
         chosen = _picture(look, project, chosen)
@@ -64,48 +65,50 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     chosen = _details(look, chosen)
     if not project.document.camera:
         _preview(look, project, settings, box, motion)
-    heading(look, "Frames")
+    heading(look, _("Frames"))
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
-        small_text(look, f"Frame {now}, where the playhead is, with its pose as it is shown.")
+        text = _("Frame {frame}, at the playhead, with the pose as it is shown.")
+        small_text(look, text.format(frame=now))
     else:
         chosen = _frames(look, project, chosen)
     if chosen != settings:
         actions.append(do(exporting.set_export_settings, chosen))
-    heading(look, "Output")
+    heading(look, _("Output"))
     return actions + _output(session, look, project)
 
 
 def _format(look: Look, settings: ExportSettings) -> ExportSettings:
     """Draw the formats in groups, each with its use."""
-    label(look, "Format")
+    label(look, _("Format"))
     now = EXPORT_FORMATS[settings.format]
-    if imgui.begin_combo("##format", now.label, imgui.ComboFlags_.height_largest):
+    if imgui.begin_combo("##format", _(now.label), imgui.ComboFlags_.height_largest):
         group = ""
         for name, format_ in EXPORT_FORMATS.items():
             if format_.group != group:
                 group = format_.group
-                imgui.separator_text(group)
-            if imgui.selectable(format_.label, name == settings.format)[0]:
+                imgui.separator_text(_(group))
+            if imgui.selectable(_(format_.label), name == settings.format)[0]:
                 settings = _with_format(settings, name)
             imgui.indent()
-            small_text(look, format_.use)
+            small_text(look, _(format_.use))
             imgui.unindent()
         imgui.end_combo()
     look.note_place("format")
-    draw_tooltip(now.use)
+    draw_tooltip(_(now.use))
     if now.extra and (remedy := install_hint(now.extra)):
-        small_text(look, f"It needs {LIBRARIES[now.extra]}: {remedy}")
+        text = _("This format needs {library}: {remedy}")
+        small_text(look, text.format(library=LIBRARIES[now.extra], remedy=remedy))
     return settings
 
 
 def _picture(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
-    label(look, "Background")
+    label(look, _("Background"))
     settings = _background(look, settings)
     if project.document.camera:
         small_text(look, CAMERA_HINT)
         return settings
-    label(look, "Framing")
+    label(look, _("Framing"))
     match option_buttons(look, "framing", FRAMINGS, settings.framing):
         case "canvas" | "fit" as framing:
             settings = replace(settings, framing=framing)
@@ -124,15 +127,15 @@ def _details(look: Look, settings: ExportSettings) -> ExportSettings:
 
 
 def _names(look: Look, settings: ExportSettings) -> ExportSettings:
-    label(look, "File names")
-    _, names = imgui.input_text("##names", settings.names)
+    label(look, _("File names"))
+    names = imgui.input_text("##names", settings.names)[1]
     done = imgui.is_item_deactivated_after_edit()
-    draw_tooltip("One # for each digit of a frame's number; {name} is the project's name")
+    draw_tooltip(_("One # for each digit of a frame's number; {name} is the project's name"))
     try:
         entered = replace(settings, names=names) if names else settings
     except LissomError as error:
         # The error is visible during typing. Afterwards the field shows the valid value again.
-        small_text(look, str(error), look.palette.danger)
+        small_text(look, message_of(error), look.palette.danger)
         return settings
     return entered if done else settings
 
@@ -153,7 +156,7 @@ def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     )
     imgui.end_disabled()
     if not format_.is_transparent:
-        draw_tooltip(f"{format_.label} has no transparency")
+        draw_tooltip(_("{format} has no transparency").format(format=_(format_.label)))
     match chosen:
         case "transparent":
             return replace(settings, background="transparent")
@@ -171,21 +174,21 @@ def _size(
 ) -> tuple[ExportSettings, list[Action]]:
     """Draw width and height, a lock of their ratio, and a reset to the drawing's size."""
     actions: list[Action] = []
-    label(look, "Size")
+    label(look, _("Size"))
     gap = imgui.get_style().item_inner_spacing.x
     room = 2 * (1.15 * imgui.get_frame_height() + gap)
     entered = draw_size_fields("", view.size, room)
     imgui.same_line(0, gap)
     keeps = session.is_aspect_locked
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
-    if icon_button(look, icon, "keep ratio", "Keep the ratio of width and height", active=keeps):
+    if icon_button(look, icon, "keep ratio", _("Keep the ratio of width and height"), active=keeps):
         actions.append(do(exporting.set_aspect_locked, not keeps))
     imgui.same_line(0, gap)
     if icon_button(
         look,
         icons.ICON_FA_ARROW_ROTATE_LEFT,
         "own size",
-        "Back to the size of the drawing",
+        _("Back to the size of the drawing"),
         enabled=settings.size is not None,
     ):
         return replace(settings, size=None), actions
@@ -202,11 +205,11 @@ def _size(
 def _canvas(look: Look, project: Project) -> list[Action]:
     """Draw the size of the canvas, whose origin is fixed, and a reset to the picture's size."""
     document = project.document
-    label(look, "Canvas")
+    label(look, _("Canvas"))
     gap = imgui.get_style().item_inner_spacing.x
     entered = draw_size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
     imgui.same_line(0, gap)
-    hint = "Back to the size of the picture behind all others"
+    hint = _("Back to the size of the picture behind all others")
     is_own = document.canvas != document.layers[0].picture.size
     if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
         return [
@@ -220,20 +223,20 @@ def _canvas(look: Look, project: Project) -> list[Action]:
 def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
     document = project.document
     frames = export_frame_range(document)
-    label(look, "Range")
+    label(look, _("Range"))
     match option_buttons(look, "range", RANGES, "all" if settings.frames is None else "own"):
         case "all":
             settings = replace(settings, frames=None)
         case "own":
             settings = replace(settings, frames=frames)
-    label(look, "First, last")
+    label(look, _("First, last"))
     imgui.begin_disabled(settings.frames is None)
     ends = []
     widths = split_line(2, imgui.get_style().item_inner_spacing.x)
     both = zip(("first", "last"), (frames.first, frames.last), widths, strict=True)
     for name, frame, width in both:
         imgui.set_next_item_width(width)
-        _, entered = imgui.input_int(f"##{name} frame", frame, 0)
+        entered = imgui.input_int(f"##{name} frame", frame, 0)[1]
         done = imgui.is_item_deactivated_after_edit()
         ends.append(document.frames.clamp(entered) if done else frame)
     imgui.end_disabled()
@@ -241,43 +244,57 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
         first, last = sorted(ends)
         settings = replace(settings, frames=FrameRange(first, last))
     count = frames.last - frames.first + 1
-    text = "1 picture" if count == 1 else f"{count} pictures"
-    if EXPORT_FORMATS[settings.format].is_drawn:
-        small_text(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
-    else:
-        small_text(look, f"{count / document.fps:.1f} s, at any rate")
+    text = (
+        ngettext(
+            "{count} picture, {time:.1f} s at {rate:g} fps",
+            "{count} pictures, {time:.1f} s at {rate:g} fps",
+            count,
+        )
+        if EXPORT_FORMATS[settings.format].is_drawn
+        else _("{time:.1f} s, at any rate")
+    )
+    small_text(look, text.format(count=count, time=count / document.fps, rate=document.fps))
     return settings
 
 
 def _output(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     out = exporting.export_destination(project)
-    label(look, "File" if EXPORT_FORMATS[project.document.export.format].suffixes else "Folder")
+    label(
+        look, _("File") if EXPORT_FORMATS[project.document.export.format].suffixes else _("Folder")
+    )
     button = 1.15 * imgui.get_frame_height()
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
     imgui.begin_disabled(True)  # noqa: FBT003 - chosen by the button beside it
-    imgui.input_text("##out", display_name(out.name) if out else "not chosen yet")
+    imgui.input_text("##out", display_name(out.name) if out else _("not chosen yet"))
     imgui.end_disabled()
-    draw_tooltip(display_name(out) if out else "Choose where to")
+    draw_tooltip(display_name(out) if out else _("Choose the output"))
     imgui.same_line(0, gap)
-    if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
+    if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", _("Choose the output…")):
         actions.append(do(exporting.ask_export_destination))
     run = session.export
     if exporting.is_export_under_way(session):
         # A negative share animates the bar without a value.
-        share, text = -0.5 * imgui.get_time(), "Preparing…"
+        share, text = -0.5 * imgui.get_time(), _("Preparing…")
         if run is not None:
             total = len(run.plan.times)
             share = run.done / total
-            text = f"{run.done} of {total}" if run.done < total else "Finishing…"
+            text = (
+                _("{done} of {total}").format(done=run.done, total=total)
+                if run.done < total
+                else _("Finishing…")
+            )
         return [*actions, do(exporting.cancel_export)] if progress_bar(share, text) else actions
-    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
+    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  {_('Export')}###start", FILL):
         actions.append(do(exporting.repeat_export))
     look.note_place("start export")
-    draw_tooltip("Export now", BINDINGS["export again"].shown_keys)
+    draw_tooltip(_("Export now"), BINDINGS["export again"].shown_keys)
     if EXPORT_FORMATS[project.document.export.format].is_still:
-        text, hint = f"{icons.ICON_FA_COPY}  Copy###copy", "Put the picture on the clipboard"
+        text, hint = (
+            f"{icons.ICON_FA_COPY}  {_('Copy')}###copy",
+            _("Put the picture on the clipboard"),
+        )
         if text_button(text, FILL, hint, BINDINGS["copy picture"].shown_keys):
             actions.append(do(exporting.copy_picture))
     return actions
@@ -327,8 +344,10 @@ def _preview(
     draw_list.add_rect(*ends(frame), colour_u32(palette.accent), 0.0, 1.6)
     imgui.dummy(ImVec2(width, height))
     draw_tooltip(
-        "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
-        "Orange: where the motion reaches."
+        _(
+            "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
+            "Orange: where the motion reaches."
+        )
     )
     is_known = project.extent.follows(extent_key(project.document))
     if not is_known and not project.extent.has_failed(extent_key(project.document)):

@@ -34,6 +34,7 @@ from app.editor.layering.pictures import (
 )
 from app.editor.layering.switches import key_switch, rename_switch
 from app.render import Thumbnail
+from app.texts import _, ngettext
 from app.ui.panels.layers.dragging import drag_layer_row, scroll_while_dragged
 from app.ui.panels.layers.menus import draw_layer_menu
 from app.ui.style.drawing import draw_centred_text
@@ -99,20 +100,26 @@ def _bar(look: Look, project: Project) -> list[Action]:
         imgui.same_line()
 
     forward, back = (do(move_layer, active, index + by) for by in (1, -1))
-    replace = "Replace the layer's picture by another file: handles, keys and joints stay"
-    what = "the layer" if len(chosen) == 1 else f"the {len(chosen)} chosen layers"
-    delete = f"Delete {what}" if last else "A scene has at least one layer"
-    group = f"Put {what} in a group"
+    count = len(chosen)
+    replace = _("Replace the layer's picture by another file: handles, keys and parents stay")
+    delete = (
+        ngettext("Delete the layer", "Delete the {count} selected layers", count)
+        if last
+        else _("A scene has at least one layer")
+    ).format(count=count)
+    group = ngettext(
+        "Put the layer in a group", "Put the {count} selected layers in a group", count
+    )
     button(
         icons.ICON_FA_PLUS,
         "add layer",
-        "Add a picture as a layer",
+        _("Add a picture as a layer"),
         do(ask_pictures_to_add),
     )
     button(
         icons.ICON_FA_CLONE,
         "copy layer",
-        "Duplicate the layer",
+        _("Duplicate the layer"),
         do(duplicate_layer, active),
     )
     button(
@@ -122,10 +129,10 @@ def _bar(look: Look, project: Project) -> list[Action]:
         do(ask_replacement_picture, active),
     )
     button(
-        icons.ICON_FA_ARROW_UP, "raise", "Bring the layer forward", forward, enabled=index < last
+        icons.ICON_FA_ARROW_UP, "raise", _("Bring the layer forward"), forward, enabled=index < last
     )
-    button(icons.ICON_FA_ARROW_DOWN, "lower", "Send the layer back", back, enabled=index > 0)
-    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(group_layers))
+    button(icons.ICON_FA_ARROW_DOWN, "lower", _("Send the layer back"), back, enabled=index > 0)
+    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group.format(count=count), do(group_layers))
     button(
         icons.ICON_FA_TRASH,
         "delete layer",
@@ -158,15 +165,15 @@ def _row(
         actions.append(do(set_drop_target, layer.id))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     actions += drag_layer_row(look, project, row, low, high)
-    _tell(project.document, row)
+    _draw_tooltip(project.document, row)
     chosen, asks = draw_layer_menu(project, row)
     actions += chosen + _naming(session, look, project, row, low, asks=is_named or asks)
     middle = (low.y + high.y) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
     actions += _switches(look, project, row, frame)
-    hung, told = (0, "") if layer is None else parent_label(project.document, layer, frame)
-    depth = min(row.depth + hung, DEEPEST_INDENT)
+    level, detail = (0, "") if layer is None else parent_label(project.document, layer, frame)
+    depth = min(row.depth + level, DEEPEST_INDENT)
     left = imgui.get_item_rect_max().x + (GAP + INDENT * depth) * em
     is_seen = _is_seen(project, row, frame)
     shown = _shown(project.document, row, frame)
@@ -186,8 +193,8 @@ def _row(
     start = left + (WIDE + GAP) * em
     if layer is None:
         # The visible layer of a switch, or the number of layers in a group.
-        told = shown.name if row.switch_group is not None else f"{len(row.layers)}"
-    _text(look, project, row, told, start, ImVec2(high.x, middle), is_seen=is_seen)
+        detail = shown.name if row.switch_group is not None else f"{len(row.layers)}"
+    _text(look, project, row, detail, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
 
@@ -232,13 +239,13 @@ def _naming(
         actions.append(do(ask_layer_name, None))
     imgui.set_next_window_pos(low)
     taken: Sequence[str] = ()
-    kind = "layer"
+    refusal = _("Another layer has this name.")
     if layer is not None:
         taken = [other.name for other in document.layers if other is not layer]
     elif row.switch_group is not None:
-        kind = "choice"
+        refusal = _("Another switch has this name.")
         taken = [other.name for other in document.switch_groups if other is not row.switch_group]
-    name = name_popup(look, f"name {row.key}", row.name, taken, kind)
+    name = name_popup(look, f"name {row.key}", row.name, taken, refusal)
     if name is None:
         return actions
     if layer is not None:
@@ -250,28 +257,39 @@ def _naming(
     return actions
 
 
-def _tell(document: Document, row: TreeRow) -> None:
+def _draw_tooltip(document: Document, row: TreeRow) -> None:
     """Show the tooltip of the last item, a row, with its full name."""
     if imgui.get_drag_drop_payload_py_id() is not None or not begin_tooltip():
         return
     imgui.text_unformatted(row.name)
     if row.layer is not None:
         for joint in row.layer.attachments:
-            to = "nothing" if joint.parent is None else document.layer(joint.parent).name
-            since = f" from frame {joint.frame} on" if len(row.layer.attachments) > 1 else ""
-            imgui.text_unformatted(f"Hangs on {to}{since}")
+            name = _("nothing") if joint.parent is None else document.layer(joint.parent).name
+            text = (
+                _("Attached to {name} from frame {frame} on")
+                if len(row.layer.attachments) > 1
+                else _("Attached to {name}")
+            )
+            imgui.text_unformatted(text.format(name=name, frame=joint.frame))
         imgui.text_disabled(
-            "Drag it to change the order, or onto another row to hang it there, double-click to "
-            "rename it, right click for more"
+            _(
+                "Drag it to change the order, or onto another row to attach it there. Double-click "
+                "to rename it. Right-click for more."
+            )
         )
     elif row.switch_group is not None:
         imgui.text_disabled(
-            "These layers take turns: open it, and a click on a circle shows one from here on"
+            _(
+                "Exactly one of these layers is visible. Open the switch and click on a circle to "
+                "show that layer from here on."
+            )
         )
     else:
         imgui.text_disabled(
-            "Click to choose all layers in it, drag it to move or hang them together, right click "
-            "for more"
+            _(
+                "Click to select all layers in it. Drag it to move or attach them together. "
+                "Right-click for more."
+            )
         )
     imgui.end_tooltip()
 
@@ -293,11 +311,12 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     actions = []
     document = project.document
     layers = [document.layer(each) for each in row.layers]
-    choice = None if row.layer is None else document.switch_group_of(row.layer.id)
-    if choice is not None:
-        is_on = with_repeats(document, choice).layer_at(frame) == row.layers[0]
+    switch_group = None if row.layer is None else document.switch_group_of(row.layer.id)
+    if switch_group is not None:
+        is_on = with_repeats(document, switch_group).layer_at(frame) == row.layers[0]
         icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
-        hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
+        text = _("Show from frame {frame} on, in place of the other layers of {name}")
+        hint = text.format(frame=frame, name=switch_group.name)
         if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
             actions.append(do(key_switch, row.layers[0]))
         if not is_on:
@@ -308,8 +327,10 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
         group = row.group
         hidden = layers[0].hidden if group is None else group.hidden
         eye = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
-        what = "the layer" if group is None else "the group"
-        hint = f"Show {what}" if hidden else f"Hide {what}, also in exports"
+        if group is None:
+            hint = _("Show the layer") if hidden else _("Hide the layer, also in exports")
+        else:
+            hint = _("Show the group") if hidden else _("Hide the group, also in exports")
         if icon_button(look, eye, f"eye {row.key}", hint, active=hidden):
             actions.append(
                 do(toggle_layers_hidden, *_of_chosen(project, row))
@@ -319,7 +340,9 @@ def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Ac
     imgui.same_line(0, 0)
     locked = all(layer.locked for layer in layers)
     key = icons.ICON_FA_LOCK if locked else icons.ICON_FA_LOCK_OPEN
-    hint = "Let clicks reach it" if locked else "Let clicks pass through it"
+    hint = (
+        _("Unlock: clicks reach the layer") if locked else _("Lock: clicks pass through the layer")
+    )
     if icon_button(look, key, f"lock {row.key}", hint, active=locked):
         actions.append(do(toggle_layers_locked, *_of_chosen(project, row)))
     return actions
@@ -384,7 +407,7 @@ def _text(
     look: Look,
     project: Project,
     row: TreeRow,
-    told: str,
+    detail: str,
     left: float,
     end: ImVec2,
     *,
@@ -407,7 +430,7 @@ def _text(
     )
     left += imgui.calc_text_size(name).x + 2 * GAP * em
     with push_text_size(SMALL):
-        size = imgui.calc_text_size(told)
-        if told and right - left > 2 * em:
-            told = shorten_text(told, right - left)
-            draw_list.add_text(ImVec2(left, middle - size.y / 2), colour_u32(palette.dim), told)
+        size = imgui.calc_text_size(detail)
+        if detail and right - left > 2 * em:
+            detail = shorten_text(detail, right - left)
+            draw_list.add_text(ImVec2(left, middle - size.y / 2), colour_u32(palette.dim), detail)
