@@ -28,7 +28,7 @@ class Panel:
 
     @property
     def labels(self) -> tuple[str, str, str]:
-        """The tab's texts, the longest first, the icon alone last; the English title is their id."""
+        """The tab's texts, from the longest to the icon alone. The title is their ImGui id."""
         title = _(self.title)
         texts = (f"{self.icon}  {title}", title, self.icon)
         full, short, icon = (f"{text}###{self.title}" for text in texts)

@@ -13,18 +13,17 @@ from app.document import (
     TargetErrors,
     handle_commands,
     measure_target_errors,
-    shape_commands,
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, viewing
-from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
+from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import free_rotation, set_targets
 from app.texts import _, ngettext
 from app.ui.panels import depth
+from app.ui.panels.anchor import draw_anchor
 from app.ui.panels.handle_motion.auto_pin import draw_auto_pin
 from app.ui.panels.handle_motion.spring import draw_spring
 from app.ui.panels.handle_motion.track import draw_track
-from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
 from app.ui.style.sliders import Scale, number_field, slider
@@ -41,7 +40,6 @@ from app.ui.style.widgets import (
     shorten_text,
     small_text,
     split_line,
-    text_button,
 )
 from app.ui.viewport.marks import find_auto_pinned
 
@@ -81,7 +79,7 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
     if len(chosen) != 1 and session.tint == "depth":
         actions.append(do(viewing.set_tint, None))
     heading(look, _("Anchor"))
-    return actions + _anchor(look, project, chosen)
+    return actions + draw_anchor(look, project, chosen)
 
 
 def _heading_with_delete(session: Session, look: Look, project: Project) -> list[Action]:
@@ -284,32 +282,3 @@ def _point(project: Project, name: str, place: complex, hint: str) -> complex | 
     if x is None and y is None:
         return None
     return complex(place.real if x is None else x, place.imag if y is None else height - y)
-
-
-def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
-    """Describe the anchor, the reference point of the in-betweens, and let it be set."""
-    layer = project.layer
-    holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
-    if layer.anchor is None:
-        small_text(look, _("Automatic: the middle of the shape stays calm between keys."))
-    elif holder is not None:
-        name = shorten_text(holder, 12 * look.em)
-        small_text(
-            look,
-            _("“{name}” stays calm between keys: it goes the straightest way.").format(name=name),
-        )
-    else:
-        anchor = layer.anchor
-        y = project.document.canvas[1] - anchor.imag
-        text = _("The point {x:.0f}, {y:.0f} stays calm between keys.")
-        small_text(look, text.format(x=anchor.real, y=y))
-    is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
-    halves, actions = split_line(2), list[Action]()
-    text = f"{icons.ICON_FA_ANCHOR}  {_('Follow this handle')}###anchor here"
-    hint, keys = _("Let this point stay calm between keys"), format_modified(CTRL, "click")
-    if text_button(text, next(halves), hint, keys, enabled=is_chosen):
-        actions.append(do(toggle_anchor_at_handle, chosen[0].id))
-    has_own = layer.anchor is not None
-    if text_button(_("Automatic anchor") + "###clear anchor", next(halves), enabled=has_own):
-        actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))
-    return actions

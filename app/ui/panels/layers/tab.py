@@ -10,8 +10,9 @@ from app.editor.layering.switches import create_switch, dismiss_switch_suggestio
 from app.errors import few_notices
 from app.texts import _, message_of
 from app.ui.panels.layers.menus import explain_unswitchable_groups
+from app.ui.panels.layers.row import SmallPictures
 from app.ui.panels.layers.settings import draw_layer_settings
-from app.ui.panels.layers.tree import SmallPictures, draw_layer_tree
+from app.ui.panels.layers.tree import draw_layer_tree
 from app.ui.style.theme import Look
 from app.ui.style.widgets import heading, progress_bar, shorten_text, small_text
 
