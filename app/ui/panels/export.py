@@ -13,9 +13,9 @@ from app.export_formats import EXPORT_FORMATS
 from app.motion import bounding_box
 from app.render import View
 from app.texts import _, message_of, ngettext
-from app.ui.panels.export_preview import draw_export_preview
-from app.ui.panels.format_options import draw_format_options
-from app.ui.panels.sizes import LARGEST, draw_size_fields
+from app.ui.panels.export_settings.format_options import draw_format_options
+from app.ui.panels.export_settings.preview import draw_export_preview
+from app.ui.panels.export_settings.sizes import LARGEST, draw_size_fields
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (

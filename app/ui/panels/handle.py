@@ -19,11 +19,11 @@ from app.editor.actions import editing, viewing
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import free_rotation, set_targets
 from app.texts import _, ngettext
-from app.ui.panels import depth
-from app.ui.panels.anchor import draw_anchor
-from app.ui.panels.handle_motion.auto_pin import draw_auto_pin
-from app.ui.panels.handle_motion.spring import draw_spring
-from app.ui.panels.handle_motion.track import draw_track
+from app.ui.panels.handle_settings.anchor import draw_anchor
+from app.ui.panels.handle_settings.auto_pin import draw_auto_pin
+from app.ui.panels.handle_settings.depth import draw_depth_settings
+from app.ui.panels.handle_settings.spring import draw_spring
+from app.ui.panels.handle_settings.track import draw_track
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
 from app.ui.style.sliders import Scale, number_field, slider
@@ -173,7 +173,7 @@ def _details(session: Session, look: Look, project: Project, handle: Handle) -> 
     actions += draw_auto_pin(look, project, handle)
     actions += draw_track(session, look, project, handle)
     actions += draw_spring(look, project, handle)
-    return actions + depth.draw_depth_settings(session, look, project, handle)
+    return actions + draw_depth_settings(session, look, project, handle)
 
 
 def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
