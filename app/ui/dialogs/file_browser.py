@@ -128,13 +128,16 @@ class FileBrowser:
     def _places(self, dialog: FileDialog, look: Look, height: float) -> FileDialog:
         """Draw the home folders, and the folders of recently opened files."""
         imgui.begin_child("places", ImVec2(PLACES * look.em, height))
-        for title, places in ((_("Places"), self._usual), (_("Recent"), self._recent)):
+        for name, title, places in (
+            ("Places", _("Places"), self._usual),
+            ("Recent", _("Recent"), self._recent),
+        ):
             if not places:
                 continue
             small_text(look, title)
             for index, place in enumerate(places):
                 is_here = place.folder == dialog.folder
-                if imgui.selectable(f"###{title} {index}", is_here, PLACE_FLAGS)[0]:
+                if imgui.selectable(f"###{name} {index}", is_here, PLACE_FLAGS)[0]:
                     dialog = enter_folder(dialog, place.folder)
                 draw_tooltip(display_name(place.folder))
                 imgui.same_line(0.3 * look.em)

@@ -20,9 +20,8 @@ def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
     imgui.text_unformatted(
         _(
             "Lissom ended unexpectedly, and kept this report. Nothing is sent. The report leaves "
-            "out "
-            "paths and names of files. Look through it, change what you like, and save it to pass "
-            "it on yourself."
+            "out paths and names of files. Look through it, change what you like, and save it to "
+            "pass it on yourself."
         )
         if report.is_kept
         else _(

@@ -208,8 +208,7 @@ def _solver(session: Session, look: Look, project: Project) -> None:
             if missed.at_limits
             else _(
                 "Held back by the other handles and the shape's stiffness. More weight lets a "
-                "handle "
-                "come nearer."
+                "handle come nearer."
             ),
         )
     else:

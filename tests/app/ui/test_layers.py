@@ -424,7 +424,7 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
     window.settle()
     assert scene.document.layer(arm).still
     assert len(scene.document.layer(arm).domain.mesh.triangles) == 2
-    window.run(lambda robot: robot.item_click("Layers/Let it be posed"))
+    window.run(lambda robot: robot.item_click("Layers/Make posable"))
     window.settle()
     assert not scene.document.layer(arm).still
     assert scene.layer.name == "arm"

@@ -80,7 +80,7 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     before = project.document
     # Whatever tab was in front, the motion's own comes there.
     window.show_tab("Handle")
-    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Give it a motion…"))
+    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Apply motion preset…"))
     window.frames(4)
     assert is_in_front("Motion")
     assert (project.motion_setup.kind, project.motion_setup.motion) == ("biped-side", "walk")

@@ -364,7 +364,7 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
 @pytest.mark.usefixtures("project")
 @pytest.mark.parametrize("name", ["bar.glb", "bar.gif", "pose.png"])
 def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
-    """Until the disk has all of a file it can be cancelled; then a message says that it is there."""
+    """Until the disk has all of a file it can be cancelled; then a message says it is there."""
     session, out = window.session, tmp_path / name
     format_ = "picture" if name == "pose.png" else name[4:]
     exporting.set_export_settings(session, ExportSettings(format=format_, size=SIZE))

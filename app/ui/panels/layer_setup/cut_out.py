@@ -118,8 +118,7 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
             look,
             _(
                 "Parts inside have the background's colour and stay. They are tinted blue while a "
-                "tool "
-                "is active."
+                "tool is active."
             ),
         )
     if cut_out.mask is not None:
