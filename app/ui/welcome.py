@@ -147,11 +147,11 @@ def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
     _show_sample(sample, pictures, corner + ImVec2(0.7 * em, 0.7 * em), room)
     draw_list, opposite = imgui.get_window_draw_list(), corner + size
     text = ImVec2(corner.x + 0.9 * em, opposite.y - (FOOT - 0.45) * em)
-    draw_list.add_text(text, colour_u32(palette.text), sample.name)
-    end = ImVec2(opposite.x - 0.9 * em - imgui.calc_text_size(_(sample.what)).x, text.y)
-    draw_list.add_text(end, colour_u32(palette.dim), _(sample.what))
+    draw_list.add_text(text, colour_u32(palette.text), _(sample.name))
+    end = ImVec2(opposite.x - 0.9 * em - imgui.calc_text_size(sample.what).x, text.y)
+    draw_list.add_text(end, colour_u32(palette.dim), sample.what)
     with push_text_size(SMALL):
-        draw_list.add_text(text + ImVec2(0, 1.4 * em), colour_u32(palette.dim), _(sample.story))
+        draw_list.add_text(text + ImVec2(0, 1.4 * em), colour_u32(palette.dim), sample.story)
     return pressed
 
 

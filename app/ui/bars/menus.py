@@ -33,6 +33,15 @@ BACKDROPS = {
     _("Black"): BLACK,
 }
 
+# By the name in the table of presets.
+EASINGS = {
+    "linear": _("Linear"),
+    "in": _("In"),
+    "out": _("Out"),
+    "in-out": _("In-out"),
+    "hold": _("Hold"),
+}
+
 
 def draw_main_menu(
     session: Session, _look: Look, *, title: str, panels: Sequence[Panel]
@@ -99,7 +108,7 @@ def _new_keys(session: Session) -> list[Action]:
     actions = [
         do(keys.set_default_easing, preset)
         for name, preset in PRESETS.items()
-        if imgui.menu_item(_(name).capitalize(), "", preset == session.preferences.easing)[0]
+        if imgui.menu_item(EASINGS[name], "", preset == session.preferences.easing)[0]
     ]
     imgui.end_menu()
     return actions

@@ -19,6 +19,7 @@ SLOW = 0.3  # seconds after which a job is reported; reports of shorter jobs wou
 ENDLESS = 5.0  # seconds after which a job can be cancelled
 SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key: below these, the status bar reports it
 MOST_LISTED = 3  # keys
+LIMIT_NAMES = {"k": _("Shear"), "σa": _("Stretch"), "σb": _("Squeeze")}  # by symbol
 
 
 class WarningAction(NamedTuple):
@@ -241,13 +242,13 @@ def _distortion(project: Project) -> StatusItem | None:
     most = max(uses, key=lambda use: use.share)
     return StatusItem(
         _("{name} {value:.2f}, limit {limit:.2f}").format(
-            name=_(most.word).capitalize(), value=most.value, limit=most.limit
+            name=LIMIT_NAMES[most.name], value=most.value, limit=most.limit
         ),
         "\n".join(
             [_("Largest distortion of the whole shape, and its limit"), ""]
             + [
                 _("{name} ({symbol}) {value:.3f}, limit {limit:.3f}").format(
-                    name=_(use.word).capitalize(),
+                    name=LIMIT_NAMES[use.name],
                     symbol=use.name,
                     value=use.value,
                     limit=use.limit,

@@ -78,20 +78,20 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
     """Draw the formats in groups, each with its use."""
     label(look, _("Format"))
     now = EXPORT_FORMATS[settings.format]
-    if imgui.begin_combo("##format", _(now.label), imgui.ComboFlags_.height_largest):
+    if imgui.begin_combo("##format", now.label, imgui.ComboFlags_.height_largest):
         group = ""
         for name, format_ in EXPORT_FORMATS.items():
             if format_.group != group:
                 group = format_.group
-                imgui.separator_text(_(group))
-            if imgui.selectable(_(format_.label), name == settings.format)[0]:
+                imgui.separator_text(group)
+            if imgui.selectable(format_.label, name == settings.format)[0]:
                 settings = _with_format(settings, name)
             imgui.indent()
-            small_text(look, _(format_.use))
+            small_text(look, format_.use)
             imgui.unindent()
         imgui.end_combo()
     look.note_place("format")
-    draw_tooltip(_(now.use))
+    draw_tooltip(now.use)
     if now.extra and (remedy := install_hint(now.extra)):
         text = _("This format needs {library}: {remedy}")
         small_text(look, text.format(library=LIBRARIES[now.extra], remedy=remedy))
@@ -152,7 +152,7 @@ def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     )
     imgui.end_disabled()
     if not format_.is_transparent:
-        draw_tooltip(_("{format} has no transparency").format(format=_(format_.label)))
+        draw_tooltip(_("{format} has no transparency").format(format=format_.label))
     match chosen:
         case "transparent":
             return replace(settings, background="transparent")

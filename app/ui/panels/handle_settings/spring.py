@@ -29,6 +29,13 @@ DAMPINGS = Scale(left=0.0, right=1.5)
 LAGS = Scale(left=0.0, right=12.0)
 STRENGTHS = Scale(left=0.0, right=2.0)
 STRETCHES = Scale(left=0.0, right=1.0)
+PRESET_NAMES = {
+    "tail": _("Tail"),
+    "ear": _("Ear"),
+    "hair": _("Hair"),
+    "cloth": _("Cloth"),
+    "jelly": _("Jelly"),
+}
 LEAST_FREQUENCY = 0.01  # Hz
 NEAREST = _("Nearest handle")
 NO_ROOT = _("It swings freely. Add a handle at its root, and it keeps its length.")
@@ -51,7 +58,7 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
             command = track_commands.remove_springs
             actions.append(do(editing.edit_layer, command, (handle.id,)))
     label(look, _("Like"))
-    names = [(name, _(name).capitalize()) for name in SPRING_PRESETS]
+    names = [(name, PRESET_NAMES[name]) for name in SPRING_PRESETS]
     taken = option_buttons(look, "preset", names, "" if spring is None else _preset(spring))
     draw_tooltip(_("Let the handle follow late and swing, like one of these"))
     if taken is not None:

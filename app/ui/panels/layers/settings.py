@@ -52,6 +52,7 @@ from app.ui.style.widgets import (
 )
 
 PERCENT = Scale(left=0, right=100)
+BLEND_NAMES = {"normal": _("normal"), "multiply": _("multiply"), "screen": _("screen")}
 NOTHING = _("nothing")
 
 
@@ -66,11 +67,11 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
         actions.append(do(rename_layer, identity, name))
     actions += draw_opacity_channel(project.document, look, layer, frame)
     label(look, _("Blend"))
-    if imgui.begin_combo("##blend", _(layer.blend)):
+    if imgui.begin_combo("##blend", BLEND_NAMES[layer.blend]):
         actions += [
             do(set_blend_mode, identity, blend)
             for blend in BLENDS
-            if imgui.selectable(f"{_(blend)}###{blend}", blend == layer.blend)[0]
+            if imgui.selectable(BLEND_NAMES[blend], blend == layer.blend)[0]
         ]
         imgui.end_combo()
     draw_tooltip(_("How its colours mix with the layers behind: multiply darkens, screen lightens"))

@@ -129,7 +129,7 @@ def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Act
                 )
             )
         text = _("{name}: click to leave it out") if is_there else _("{name}: click to add it")
-        draw_tooltip(text.format(name=_(name)))
+        draw_tooltip(text.format(name=name))
         radius = DOT * (1.25 if is_hot or name == draft.selected_joint else 1.0)
         colour = joint_colour(look, name)
         if is_there:

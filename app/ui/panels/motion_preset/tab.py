@@ -41,7 +41,7 @@ def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Ac
     """Draw the motion setup or its progress; otherwise the layer's applied motions."""
     job, draft = project.motion_job, project.motion_setup
     if job is not None:
-        heading(look, _("Applying “{preset}”").format(preset=_(job.setup.preset.label)))
+        heading(look, _("Applying “{preset}”").format(preset=job.setup.preset.label))
         return (
             [do(apply_motion.cancel_motion_job)]
             if progress_bar(job.progress, job.step_label)
@@ -87,7 +87,7 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
 
 def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
     actions: list[Action] = []
-    name = _(MOTIONS[given.motion].label) if given.motion in MOTIONS else given.motion
+    name = MOTIONS[given.motion].label if given.motion in MOTIONS else given.motion
     text = _("{name}, frames {first} – {last}")
     imgui.text_unformatted(text.format(name=name, first=given.first, last=given.last))
     if not is_motion_unedited(project.layer, given):
@@ -115,12 +115,12 @@ def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
         if imgui.button(f"###{name} kind", size):
             actions.append(do(preset_setup.set_body_kind, name))
         imgui.pop_style_color()
-        draw_tooltip(_("{label}. {hint}").format(label=_(kind.label), hint=_(kind.hint)))
+        draw_tooltip(_("{label}. {hint}").format(label=kind.label, hint=kind.hint))
         colour = colour_u32(palette.on_accent if is_chosen else palette.text)
         inset = ImVec2(0.2 * look.em, 0.4 * look.em)
         draw_body_diagram(look, kind, low + inset, size - inset * 2, colour)
     kind = draft.body_kind
-    small_text(look, _("{label}. {hint}.").format(label=_(kind.label), hint=_(kind.hint)))
+    small_text(look, _("{label}. {hint}.").format(label=kind.label, hint=kind.hint))
     return actions
 
 
@@ -165,11 +165,11 @@ def _motions(look: Look, draft: MotionSetup) -> list[Action]:
     rows = -(-len(fitting) // IN_A_ROW)
     width = -(-len(fitting) // rows)
     for row in range(0, len(fitting), width):
-        options = [(motion.name, _(motion.label)) for motion in fitting[row : row + width]]
+        options = [(motion.name, motion.label) for motion in fitting[row : row + width]]
         chosen = option_buttons(look, f"motions {row}", options, draft.motion)
         if chosen is not None:
             actions.append(do(preset_setup.set_motion_preset, chosen))
-    small_text(look, _("{hint}.").format(hint=_(draft.preset.hint)))
+    small_text(look, _("{hint}.").format(hint=draft.preset.hint))
     return actions
 
 
