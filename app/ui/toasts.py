@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, Toast, do
 from app.editor.actions.viewing import dismiss_toast
+from app.texts import _
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import TOAST, small_text
 
@@ -68,10 +69,10 @@ def _contents(toast: Toast, look: Look) -> list[Action]:
     imgui.push_text_wrap_pos(imgui.get_window_width() - 2.6 * look.em)
     imgui.text_unformatted(toast.text)
     imgui.pop_text_wrap_pos()
-    details = f"Details##{toast.born}"  # other messages may have a popup open
+    details = f"{_('Details')}##{toast.born}"  # other messages may have a popup open
     if toast.details and imgui.tree_node_ex(details, imgui.TreeNodeFlags_.no_tree_push_on_open):
         small_text(look, toast.details.strip()[-1500:])
-    if toast.details and imgui.small_button("Copy"):
+    if toast.details and imgui.small_button(_("Copy")):
         imgui.set_clipboard_text(f"{toast.text}\n\n{toast.details}")
     if toast.action is not None:
         if toast.details:

@@ -16,6 +16,7 @@ from app.editor import Action, Session, do
 from app.editor.actions import files, tutorials
 from app.errors import display_name
 from app.render import Thumbnail
+from app.texts import _
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import LARGE, SMALL, TITLE, Look, colour_u32
 from app.ui.style.widgets import bold_text, main_button, push_text_size, show_picture, text_button
@@ -71,18 +72,22 @@ def draw_welcome(session: Session, look: Look, pictures: Previews) -> list[Actio
 def _greeting(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     with push_text_size(TITLE, look.bold):
-        imgui.text("Lissom")
-    told = "Pose a drawing with a few handles, and get in-betweens that never fold."
+        imgui.text(_("Lissom"))
+    text = _("Pose a drawing with a few handles, and get in-betweens that never fold.")
     with push_text_size(LARGE):
-        imgui.text_colored(look.palette.dim, told)
+        imgui.text_colored(look.palette.dim, text)
     imgui.dummy(ImVec2(0, 0.8 * look.em))
     binding = BINDINGS["open"]
-    if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  Open image or project…", 16 * look.em):
+    text = f"{icons.ICON_FA_FOLDER_OPEN}  {_('Open image or project…')}"
+    if main_button(look, text, 16 * look.em):
         actions.append(binding.action)
     imgui.same_line(0, look.em)
     imgui.align_text_to_frame_padding()
     busy = next((kind for kind in session.jobs.kinds), None)
-    imgui.text_colored(look.palette.dim, f"{busy.label}…" if busy else "or drop a picture here")
+    imgui.text_colored(
+        look.palette.dim,
+        _("{job}…").format(job=busy.label) if busy else _("or drop a picture here"),
+    )
     imgui.dummy(ImVec2(0, 1.0 * look.em))
     return actions
 
@@ -104,13 +109,15 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
     draw_list, left = imgui.get_window_draw_list(), corner.x + (FIRST + 2.2) * em
     with push_text_size(LARGE, look.bold):
         draw_list.add_text(
-            ImVec2(left, corner.y + 0.9 * em), colour_u32(palette.text), "Make this giraffe bow"
+            ImVec2(left, corner.y + 0.9 * em), colour_u32(palette.text), _("Make this giraffe bow")
         )
-    told = "Five steps to a first animation, from a handle to a GIF. It takes about a minute."
-    draw_list.add_text(ImVec2(left, corner.y + 2.5 * em), colour_u32(palette.dim), told)
+    text = _("Five steps to a first animation, from a handle to a GIF. It takes about a minute.")
+    draw_list.add_text(ImVec2(left, corner.y + 2.5 * em), colour_u32(palette.dim), text)
     below = imgui.get_cursor_pos()
     imgui.set_cursor_screen_pos(ImVec2(left, corner.y + 4.1 * em))
-    if text_button("…or with your own drawing", hint="Open it, and go through the same steps"):
+    if text_button(
+        _("…or with your own drawing"), hint=_("Open it, and go through the same steps")
+    ):
         actions.append(do(tutorials.begin_tutorial_with_own_drawing))
     imgui.set_cursor_pos(below)
     imgui.dummy(ImVec2(0, 0.4 * em))
@@ -119,7 +126,7 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
 
 def _samples(look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
-    bold_text(look, "Try one of these")
+    bold_text(look, _("Try one of these"))
     imgui.dummy(ImVec2(0, 0.2 * look.em))
     for index, sample in enumerate(files.sample_files()):
         if index % 4:
@@ -140,7 +147,7 @@ def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
     _show_sample(sample, pictures, corner + ImVec2(0.7 * em, 0.7 * em), room)
     draw_list, opposite = imgui.get_window_draw_list(), corner + size
     text = ImVec2(corner.x + 0.9 * em, opposite.y - (FOOT - 0.45) * em)
-    draw_list.add_text(text, colour_u32(palette.text), sample.name)
+    draw_list.add_text(text, colour_u32(palette.text), _(sample.name))
     end = ImVec2(opposite.x - 0.9 * em - imgui.calc_text_size(sample.what).x, text.y)
     draw_list.add_text(end, colour_u32(palette.dim), sample.what)
     with push_text_size(SMALL):
@@ -180,7 +187,7 @@ def _recent(session: Session, look: Look, pictures: Previews) -> list[Action]:
     recent = files.recent_files(session)[:MOST_RECENT]
     if not recent:
         return actions
-    bold_text(look, "Recent")
+    bold_text(look, _("Recent"))
     for index, (path, is_there) in enumerate(recent):
         if index % 2:
             imgui.same_line(0, GAP * look.em)
@@ -199,14 +206,14 @@ def _row(look: Look, path: Path, index: int, image: Thumbnail | None, *, is_ther
     em, corner = look.em, imgui.get_cursor_screen_pos()
     size = ImVec2((WIDTH - GAP) / 2 * em, ROW * em)
     end = corner + size
-    clicked, _ = imgui.selectable(f"###recent {index}", False, 0, size)  # noqa: FBT003
+    clicked = imgui.selectable(f"###recent {index}", False, 0, size)[0]  # noqa: FBT003
     imgui.push_clip_rect(corner, end, True)  # noqa: FBT003 - within the window's own
     if image is None:
         _write(icons.ICON_FA_CLOCK_ROTATE_LEFT, corner.x + em, corner.y + 0.5 * size.y)
     else:
         show_picture(image.texture, image.size, corner, ImVec2(3 * em, size.y))
     _write(display_name(path.name), corner.x + 3.6 * em, corner.y + 0.3 * size.y)
-    where = str(path.parent) if is_there else f"not found in {path.parent}"
+    where = str(path.parent) if is_there else _("not found in {folder}").format(folder=path.parent)
     with push_text_size(SMALL), imgui_ctx.push_style_color(imgui.Col_.text, look.palette.dim):
         _write(display_name(where), corner.x + 3.6 * em, corner.y + 0.72 * size.y)
     imgui.pop_clip_rect()

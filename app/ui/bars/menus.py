@@ -10,6 +10,7 @@ from app.editor.actions import files, viewing
 from app.editor.actions.timing import keys
 from app.errors import display_name
 from app.storage import CHECKER
+from app.texts import _
 from app.ui.bars.methods import draw_method_menu
 from app.ui.panel import Panel, is_in_front
 from app.ui.shortcuts.table import MENUS
@@ -17,12 +18,33 @@ from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look
 from app.ui.style.widgets import colour_field, draw_tooltip
 
-PATH_REACHES = {0: "All that play", 6: "6 around the playhead", 12: "12", 24: "24", 48: "48"}
-BACKDROPS = {"Checker": CHECKER, "White": "#ffffff", "Grey": "#808080", "Black": "#000000"}
+PATH_REACHES = {
+    0: _("All that play"),
+    6: _("6 around the playhead"),
+    12: "12",
+    24: "24",
+    48: "48",
+}
+BLACK = "#000000"
+BACKDROPS = {
+    _("Checker"): CHECKER,
+    _("White"): "#ffffff",
+    _("Grey"): "#808080",
+    _("Black"): BLACK,
+}
+
+# By the name in the table of presets.
+EASINGS = {
+    "linear": _("Linear"),
+    "in": _("In"),
+    "out": _("Out"),
+    "in-out": _("In-out"),
+    "hold": _("Hold"),
+}
 
 
 def draw_main_menu(
-    session: Session, _: Look, *, title: str, panels: Sequence[Panel]
+    session: Session, _look: Look, *, title: str, panels: Sequence[Panel]
 ) -> list[Action]:
     """Draw the entries of a menu from the table of actions; `panels` are the window's."""
     actions: list[Action] = []
@@ -38,7 +60,7 @@ def draw_main_menu(
 
 
 def _backdrops(session: Session) -> list[Action]:
-    if not imgui.begin_menu("Backdrop"):
+    if not imgui.begin_menu(_("Backdrop")):
         return []
     current = session.preferences.backdrop
     actions = [
@@ -46,7 +68,7 @@ def _backdrops(session: Session) -> list[Action]:
         for name, backdrop in BACKDROPS.items()
         if imgui.menu_item(name, "", backdrop == current)[0]
     ]
-    colour = colour_field("own colour", BACKDROPS["Black"] if current == CHECKER else current)
+    colour = colour_field("own colour", BLACK if current == CHECKER else current)
     if colour is not None:
         actions.append(do(viewing.set_backdrop, colour))
     imgui.end_menu()
@@ -55,7 +77,7 @@ def _backdrops(session: Session) -> list[Action]:
 
 def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
     """Draw the menu of panels by name, because their tabs may be out of view."""
-    if not imgui.begin_menu("Tabs", session.project is not None):
+    if not imgui.begin_menu(_("Tabs"), session.project is not None):
         return []
     actions = [
         do(viewing.show_tab, panel.title)
@@ -67,7 +89,7 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
 
 
 def _path_reaches(session: Session) -> list[Action]:
-    if not imgui.begin_menu("Frames of motion paths"):
+    if not imgui.begin_menu(_("Frames of motion paths")):
         return []
     current = session.preferences.path_reach
     actions = [
@@ -81,12 +103,12 @@ def _path_reaches(session: Session) -> list[Action]:
 
 def _new_keys(session: Session) -> list[Action]:
     """Draw the menu of the tangent and easing of new keys."""
-    if not imgui.begin_menu("Easing of new keys"):
+    if not imgui.begin_menu(_("Easing of new keys")):
         return []
     actions = [
         do(keys.set_default_easing, preset)
         for name, preset in PRESETS.items()
-        if imgui.menu_item(name.capitalize(), "", preset == session.preferences.easing)[0]
+        if imgui.menu_item(EASINGS[name], "", preset == session.preferences.easing)[0]
     ]
     imgui.end_menu()
     return actions
@@ -95,7 +117,7 @@ def _new_keys(session: Session) -> list[Action]:
 def _methods(session: Session) -> list[Action]:
     """Draw the menu of interpolation methods. A narrow timeline has no space for it."""
     project = session.project
-    if not imgui.begin_menu("In-betweens", project is not None):
+    if not imgui.begin_menu(_("In-betweens"), project is not None):
         return []
     actions = draw_method_menu(project) if project is not None else []
     imgui.end_menu()
@@ -104,14 +126,14 @@ def _methods(session: Session) -> list[Action]:
 
 def _recent(session: Session) -> list[Action]:
     recent = files.recent_files(session)
-    if not imgui.begin_menu("Open recent", bool(recent)):
+    if not imgui.begin_menu(_("Open recent"), bool(recent)):
         return []
     actions = []
     for index, (path, is_there) in enumerate(recent):
         # The text is grey but the entry is not disabled: a click removes the file from the list.
         colour = imgui.Col_.text if is_there else imgui.Col_.text_disabled
         imgui.push_style_color(imgui.Col_.text, imgui.get_style_color_vec4(colour))
-        note = "" if is_there else "not found"
+        note = "" if is_there else _("not found")
         if imgui.menu_item(f"{display_name(path.name)}###recent {index}", note, False)[0]:  # noqa: FBT003
             actions.append(do(files.open_recent_file, path))
         imgui.pop_style_color()

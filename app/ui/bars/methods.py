@@ -6,6 +6,7 @@ from app.document import shape_commands
 from app.editor import Action, Project, do
 from app.editor.actions import editing
 from app.editor.actions.timing import keys
+from app.texts import _
 from app.ui.methods import VARIANTS
 from app.ui.style.widgets import draw_tooltip
 
@@ -19,8 +20,8 @@ def draw_method_menu(project: Project) -> list[Action]:
         draw_tooltip(text.what)
     imgui.separator()
     stays = project.layer.has_auto_pins
-    if imgui.menu_item("Handles stay between keys", "", stays)[0]:
+    if imgui.menu_item(_("Handles stay between keys"), "", stays)[0]:
         command = shape_commands.set_auto_pins(project.active, stillness=not stays)
         actions.append(do(editing.edit_document, command))
-    draw_tooltip("Handles stay in between where two keys have them at one place")
+    draw_tooltip(_("Handles stay in place between two keys with equal targets"))
     return actions

@@ -10,6 +10,7 @@ from app.editor import Action, JobKind, Project, Session, do, pending_changes
 from app.editor.actions import exporting, upkeep
 from app.editor.actions.layer_setup import resolving
 from app.errors import display_name
+from app.texts import _, ngettext
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, shorten_text
 
@@ -18,6 +19,7 @@ SLOW = 0.3  # seconds after which a job is reported; reports of shorter jobs wou
 ENDLESS = 5.0  # seconds after which a job can be cancelled
 SLOWED, STOPPED = 0.5, 0.05  # of the velocity at a key: below these, the status bar reports it
 MOST_LISTED = 3  # keys
+LIMIT_NAMES = {"k": _("Shear"), "σa": _("Stretch"), "σb": _("Squeeze")}  # by symbol
 
 
 class WarningAction(NamedTuple):
@@ -27,11 +29,14 @@ class WarningAction(NamedTuple):
 
 RELAX_POSE_LIMITS = WarningAction(
     resolving.relax_limits_and_solve,
-    "Let this drawing stretch further, and pull the handles again",
+    _("Let this drawing stretch further, and pull the handles again"),
 )
 RELAX_MOTION_LIMITS = WarningAction(
     resolving.relax_motion_limits,
-    "Let this drawing stretch further between its keys, so that the motion can go on through them",
+    _(
+        "Let this drawing stretch further between its keys, so that the motion can go on through "
+        "them"
+    ),
 )
 
 
@@ -46,8 +51,8 @@ class StatusItem(NamedTuple):
 def draw_status_bar(session: Session, look: Look) -> list[Action]:
     """Draw the status bar: running jobs, warnings, and the state of project and window."""
     gap = 1.6 * look.em
-    told = list_status_items(session)
-    width = sum(imgui.calc_text_size(fact.text).x + gap for fact in told)
+    items = list_status_items(session)
+    width = sum(imgui.calc_text_size(item.text).x + gap for item in items)
     end = imgui.get_window_width() - width + gap - look.em
     actions: list[Action] = []
     held_back, slowed = describe_pose_limit(session), describe_motion_limit(session)
@@ -58,7 +63,7 @@ def draw_status_bar(session: Session, look: Look) -> list[Action]:
     elif slowed:
         actions += _warn(session, look, slowed, RELAX_MOTION_LIMITS)
         imgui.same_line(0, gap)
-    hint = session.hint if held_back or slowed else session.hint or "Ready"
+    hint = session.hint if held_back or slowed else session.hint or _("Ready")
     room = end - imgui.get_cursor_pos_x() - gap
     waiting = pending_changes.deferred_label(session.project) if session.project else ""
     exported = _export(session)
@@ -66,21 +71,21 @@ def draw_status_bar(session: Session, look: Look) -> list[Action]:
         _spinner(look)
         imgui.text_unformatted(shorten_text(exported, max(room - 6 * look.em, 0.0)))
         imgui.same_line(0, 0.8 * look.em)
-        if imgui.small_button("Cancel"):
+        if imgui.small_button(_("Cancel")):
             actions.append(do(exporting.cancel_export))
-        draw_tooltip("Give the export up")
+        draw_tooltip(_("Cancel the export"))
     elif slow or waiting:
         _spinner(look)
         share = session.jobs.share_of(slow[0]) if slow else None
-        how_far = "" if share is None else f" {share:.0%}"
-        imgui.text_unformatted(f"{waiting or slow[0].label}…{how_far}")
+        job = _("{job}…") if share is None else _("{job}… {share:.0%}")
+        imgui.text_unformatted(job.format(job=waiting or slow[0].label, share=share))
         actions += _cancel(session, look, slow)
     elif room > LEAST_ROOM * look.em:
         imgui.text_disabled(shorten_text(hint, room))
     imgui.same_line(end)
-    for fact in told:
-        imgui.text_colored(look.palette.warning if fact.is_warning else look.palette.dim, fact.text)
-        draw_tooltip(fact.hint)
+    for item in items:
+        imgui.text_colored(look.palette.warning if item.is_warning else look.palette.dim, item.text)
+        draw_tooltip(item.hint)
         imgui.same_line(0, gap)
     imgui.new_line()
     return actions
@@ -97,17 +102,22 @@ def describe_pose_limit(session: Session) -> str:
         return ""
     layer, correction, lags = shown.clip.layer, shown.correction, dict[int, float]()
     if shown.pose is not None:
-        shortfall = measure_target_errors(layer, shown.pose)
-        lags |= shortfall.errors if shortfall.at_limits else {}
+        missed = measure_target_errors(layer, shown.pose)
+        lags |= missed.errors if missed.at_limits else {}
     if correction is not None and correction.is_limited:
         own = correction.target_errors.items()
         lags |= {handle: miss for handle, miss in own if misses_target(layer, miss)}
     if not lags:
         return ""
     farthest = max(lags, key=lags.__getitem__)
-    text = f"{layer.handle(farthest).name} is {lags[farthest]:.0f} px short"
-    others = len(lags) - 1
-    return f"Stretch limit reached – {text}" + (f", {others} more too" if others else "")
+    name, lag, others = layer.handle(farthest).name, lags[farthest], len(lags) - 1
+    if not others:
+        return _("Stretch limit reached – {name} is {lag:.0f} px short").format(name=name, lag=lag)
+    return ngettext(
+        "Stretch limit reached – {name} is {lag:.0f} px short, {count} more too",
+        "Stretch limit reached – {name} is {lag:.0f} px short, {count} more too",
+        others,
+    ).format(name=name, lag=lag, count=others)
 
 
 def describe_motion_limit(session: Session) -> str:
@@ -124,13 +134,28 @@ def describe_motion_limit(session: Session) -> str:
     stopped = [frame for frame in slowed if known.value[frame] < STOPPED]
     if not slowed:
         return ""
-    verb, frames = ("stops", stopped) if stopped else ("slows down", slowed)
-    told = [f"{frame}" for frame in frames[:MOST_LISTED]]
+    frames = stopped or slowed
+    listed = [f"{frame}" for frame in frames[:MOST_LISTED]]
     if len(frames) > MOST_LISTED:
-        told.append(f"{len(frames) - MOST_LISTED} more")
-    where = f"{', '.join(told[:-1])} and {told[-1]}" if len(told) > 1 else told[0]
-    noun = "frame" if len(frames) == 1 else "frames"
-    return f"The motion {verb} at {noun} {where} to keep within the stretch limit"
+        rest = len(frames) - MOST_LISTED
+        listed.append(ngettext("{count} more", "{count} more", rest).format(count=rest))
+    where = listed[0]
+    if len(listed) > 1:
+        where = _("{names} and {last}").format(names=", ".join(listed[:-1]), last=listed[-1])
+    text = (
+        ngettext(
+            "The motion stops at frame {frames} to keep within the stretch limit",
+            "The motion stops at frames {frames} to keep within the stretch limit",
+            len(frames),
+        )
+        if stopped
+        else ngettext(
+            "The motion slows down at frame {frames} to keep within the stretch limit",
+            "The motion slows down at frames {frames} to keep within the stretch limit",
+            len(frames),
+        )
+    )
+    return text.format(frames=where)
 
 
 def _export(session: Session) -> str:
@@ -139,20 +164,22 @@ def _export(session: Session) -> str:
     if run is None:
         return ""
     if run.for_clipboard:
-        return "Copying the picture…"
+        return _("Copying the picture…")
     total, name = len(run.plan.times), display_name(run.plan.out.name)
-    return f"Exporting {name}: {run.done} of {total}" if run.done < total else f"Finishing {name}…"
+    if run.done == total:
+        return _("Finishing {name}…").format(name=name)
+    return _("Exporting {name}: {done} of {total}").format(name=name, done=run.done, total=total)
 
 
 def _cancel(session: Session, look: Look, slow: Sequence[JobKind]) -> list[Action]:
     """Draw the cancel button of jobs that may never end or report progress."""
-    telling = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
-    endless = session.jobs.running_for(ENDLESS) or telling
+    measured = tuple(kind for kind in slow if session.jobs.share_of(kind) is not None)
+    endless = session.jobs.running_for(ENDLESS) or measured
     if not endless:
         return []
     imgui.same_line(0, 0.8 * look.em)
-    is_pressed = imgui.small_button("Cancel")
-    draw_tooltip(f"Give this up: {endless[0].label}")
+    is_pressed = imgui.small_button(_("Cancel"))
+    draw_tooltip(_("Cancel: {job}").format(job=endless[0].label))
     return [do(upkeep.give_up, endless[0])] if is_pressed else []
 
 
@@ -163,7 +190,7 @@ def _warn(session: Session, look: Look, text: str, remedy: WarningAction) -> lis
     if project is None or relax_limits(project.layer.bounds) is None:
         return []
     imgui.same_line(0, 0.8 * look.em)
-    is_pressed = imgui.small_button("Loosen")
+    is_pressed = imgui.small_button(_("Loosen"))
     draw_tooltip(remedy.hint)
     return [do(remedy.verb)] if is_pressed else []
 
@@ -177,13 +204,26 @@ def list_status_items(session: Session) -> list[StatusItem]:
         facts += [distortion] if distortion else []
         count = len(project.layer.handles)
         facts.append(
-            StatusItem(f"{count} handle{'' if count == 1 else 's'}", "Handles of this drawing")
+            StatusItem(
+                ngettext("{count} handle", "{count} handles", count).format(count=count),
+                _("Handles of this drawing"),
+            )
         )
     if session.solver_seconds:
         milliseconds = 1e3 * session.solver_seconds
-        facts.append(StatusItem(f"pose {milliseconds:.0f} ms", "What the last step of a pose took"))
+        facts.append(
+            StatusItem(
+                _("pose {time:.0f} ms").format(time=milliseconds),
+                _("What the last step of a pose took"),
+            )
+        )
     if project is not None and project.playhead.since is not None:
-        facts.append(StatusItem(f"{imgui.get_io().framerate:.0f} fps", "Frames drawn in a second"))
+        facts.append(
+            StatusItem(
+                _("{rate:.0f} fps").format(rate=imgui.get_io().framerate),
+                _("Frames drawn in a second"),
+            )
+        )
     return facts
 
 
@@ -201,11 +241,18 @@ def _distortion(project: Project) -> StatusItem | None:
     uses = extremes.uses(project.layer.bounds)
     most = max(uses, key=lambda use: use.share)
     return StatusItem(
-        f"{most.word.capitalize()} {most.value:.2f}, limit {most.limit:.2f}",
+        _("{name} {value:.2f}, limit {limit:.2f}").format(
+            name=LIMIT_NAMES[most.name], value=most.value, limit=most.limit
+        ),
         "\n".join(
-            ["Largest distortion of the whole shape, and its limit", ""]
+            [_("Largest distortion of the whole shape, and its limit"), ""]
             + [
-                f"{use.word.capitalize()} ({use.name}) {use.value:.3f}, limit {use.limit:.3f}"
+                _("{name} ({symbol}) {value:.3f}, limit {limit:.3f}").format(
+                    name=LIMIT_NAMES[use.name],
+                    symbol=use.name,
+                    value=use.value,
+                    limit=use.limit,
+                )
                 for use in uses
             ]
         ),

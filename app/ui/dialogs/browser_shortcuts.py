@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from app.errors import display_name
 from app.storage import home_folder
+from app.texts import _
 
 MOST_RECENT = 5
 # Default folder name, and key in the desktop's file user-dirs.dirs.
@@ -32,7 +33,7 @@ def list_standard_shortcuts() -> tuple[BrowserShortcut, ...]:
     """Return the home folder and its usual subfolders, if they exist."""
     home = home_folder()
     named = _named_by_desktop(home)
-    places = [BrowserShortcut(home, "Home", icons.ICON_FA_HOUSE)]
+    places = [BrowserShortcut(home, _("Home"), icons.ICON_FA_HOUSE)]
     for name, key, icon in FOLDERS:
         folder = named.get(key, home / name)
         if folder != home and _is_there(folder):

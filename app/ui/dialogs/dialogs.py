@@ -24,6 +24,7 @@ from app.editor.actions.viewing import (
     use_own_file_browser,
 )
 from app.errors import display_name
+from app.texts import N_, _
 from app.ui.dialogs.file_browser import FileBrowser, LookUp
 from app.ui.dialogs.native_dialog import NativeDialog
 from app.ui.dialogs.problem import draw_problem_dialog
@@ -112,11 +113,11 @@ class Dialogs:
 def _title(dialog: Dialog) -> str:
     match dialog:
         case RecoveryDialog():
-            return "Unsaved work"
+            return _("Unsaved work")
         case ProblemReport():
-            return "Report a problem"
+            return _("Report a problem")
         case ShortcutSheet():
-            return "Keys and mouse"
+            return _("Keys and mouse")
     return dialog.title
 
 
@@ -134,12 +135,12 @@ def _use_keyboard(*, is_used: bool) -> None:
 
 
 def _waiting(look: Look) -> list[Action]:
-    imgui.text_unformatted("Choose in the dialog of the system, which has a window of its own.")
+    imgui.text_unformatted(_("Choose in the dialog of the system. It has a window of its own."))
     imgui.dummy(ImVec2(0, 0.4 * look.em))
-    if imgui.button("Use Lissom's own dialog"):
+    if imgui.button(_("Use Lissom's own dialog")):
         return [do(use_own_file_browser)]
     imgui.same_line()
-    if imgui.button("Cancel"):
+    if imgui.button(_("Cancel")):
         return [do(close_dialog)]
     return []
 
@@ -161,7 +162,7 @@ def _question(question: Question, look: Look) -> list[Action]:
         if is_main:
             imgui.set_item_default_focus()
     imgui.same_line()
-    if imgui.button("Cancel"):
+    if imgui.button(_("Cancel")):
         actions.append(do(close_dialog))
     return actions
 
@@ -175,7 +176,7 @@ def _shortcuts(look: Look) -> None:
         ]
         for menu, bindings in MENUS.items()
     }
-    rows["Pointer"] = [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
+    rows[N_("Pointer")] = [(gesture.effect, gesture.gesture) for gesture in POINTER_HELP]
     style = imgui.get_style()
     # Tighter than elsewhere, so that all shortcuts are visible at once.
     imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(style.item_spacing.x, 0.2 * look.em))
@@ -183,10 +184,10 @@ def _shortcuts(look: Look) -> None:
     if imgui.begin_table("sheet", len(columns), imgui.TableFlags_.sizing_fixed_fit):
         for column in columns:
             imgui.table_next_column()
-            names = [text for group in column for text, _ in rows[group]]
+            names = [text for group in column for text, *_keys in rows[group]]
             keys_at = max(imgui.calc_text_size(name).x for name in names) + 1.6 * look.em
             for group in column:
-                heading(look, group)
+                heading(look, _(group))
                 for text, keys in rows[group]:
                     imgui.text_unformatted(text)
                     imgui.same_line(keys_at)

@@ -12,11 +12,13 @@ from app.editor.actions.viewing import browse_files, choose_file, close_dialog
 from app.errors import display_name
 from app.render import Thumbnail
 from app.storage import home_folder
+from app.texts import _
 from app.ui.dialogs.browser_shortcuts import (
     BrowserShortcut,
     list_recent_shortcuts,
     list_standard_shortcuts,
 )
+from app.ui.dialogs.browsing import chosen_folder, chosen_path, enter_folder, is_there, mark_entry
 from app.ui.dialogs.folder_listing import Entry, Listing, read_folder
 from app.ui.shortcuts.keys import ALT, format_chord
 from app.ui.style.theme import Look, colour_u32
@@ -88,22 +90,23 @@ class FileBrowser:
         now, is_accepted = self._list(now, look, thumbnail, room, shows_marked=by_key or appears)
         now = _name_field(now, size.x, is_new=appears, is_set=now.name != dialog.name)
         is_accepted |= any(imgui.is_key_pressed(key, repeat=False) for key in ENTER)
-        folder, path = _folder_meant(now), _path_meant(now)
+        folder, path = chosen_folder(now), chosen_path(now)
         possible = path is not None or (folder is not None and not now.writes)
-        text = now.verb if now.writes else "Open"
+        text = now.verb if now.writes else _("Open")
         if main_button(look, text, BUTTON * look.em, enabled=possible):
             is_accepted = True
             # A save uses the typed name, even if a folder is marked.
             folder = None if now.writes else folder
         imgui.same_line()
-        if imgui.button("Cancel", ImVec2(BUTTON * look.em, 0)):
+        if imgui.button(_("Cancel"), ImVec2(BUTTON * look.em, 0)):
             return [do(close_dialog)]
-        if path is not None and now.writes and _is(Path.is_file, path):
+        if path is not None and now.writes and is_there(Path.is_file, path):
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            imgui.text_colored(look.palette.warning, f"{display_name(path.name)} will be replaced.")
+            text = _("{name} will be replaced.").format(name=display_name(path.name))
+            imgui.text_colored(look.palette.warning, text)
         if is_accepted and folder is not None:
-            now = _enter(now, folder)
+            now = enter_folder(now, folder)
         elif is_accepted and path is not None:
             return [do(choose_file, now, path)]
         return [] if now is dialog else [do(browse_files, now)]
@@ -112,7 +115,7 @@ class FileBrowser:
         """Move the marked entry by the arrow keys. Return whether they were used."""
         down, up = (imgui.is_key_pressed(key) for key in (imgui.Key.down_arrow, imgui.Key.up_arrow))
         if up and imgui.get_io().key_alt:
-            return _enter(dialog, dialog.folder.parent), False
+            return enter_folder(dialog, dialog.folder.parent), False
         if not self._entries or down == up:
             return dialog, False
         names = [entry.path.name for entry in self._entries]
@@ -120,19 +123,22 @@ class FileBrowser:
             index = names.index(dialog.marked) + (1 if down else -1)
         else:
             index = 0 if down else len(names) - 1
-        return _mark(dialog, self._entries[min(max(index, 0), len(names) - 1)]), True
+        return mark_entry(dialog, self._entries[min(max(index, 0), len(names) - 1)]), True
 
     def _places(self, dialog: FileDialog, look: Look, height: float) -> FileDialog:
         """Draw the home folders, and the folders of recently opened files."""
         imgui.begin_child("places", ImVec2(PLACES * look.em, height))
-        for title, places in (("Places", self._usual), ("Recent", self._recent)):
+        for name, title, places in (
+            ("Places", _("Places"), self._usual),
+            ("Recent", _("Recent"), self._recent),
+        ):
             if not places:
                 continue
             small_text(look, title)
             for index, place in enumerate(places):
                 is_here = place.folder == dialog.folder
-                if imgui.selectable(f"###{title} {index}", is_here, PLACE_FLAGS)[0]:
-                    dialog = _enter(dialog, place.folder)
+                if imgui.selectable(f"###{name} {index}", is_here, PLACE_FLAGS)[0]:
+                    dialog = enter_folder(dialog, place.folder)
                 draw_tooltip(display_name(place.folder))
                 imgui.same_line(0.3 * look.em)
                 imgui.text_colored(look.palette.dim, place.icon)
@@ -156,9 +162,11 @@ class FileBrowser:
         is_opened = False
         if not imgui.begin_table("entries", 3, TABLE_FLAGS, size):
             return dialog, is_opened
-        imgui.table_setup_column("Name", imgui.TableColumnFlags_.width_stretch)
-        imgui.table_setup_column("Size", imgui.TableColumnFlags_.width_fixed, SIZE * look.em)
-        imgui.table_setup_column("Changed", imgui.TableColumnFlags_.width_fixed, CHANGED * look.em)
+        imgui.table_setup_column(_("Name"), imgui.TableColumnFlags_.width_stretch)
+        imgui.table_setup_column(_("Size"), imgui.TableColumnFlags_.width_fixed, SIZE * look.em)
+        imgui.table_setup_column(
+            _("Changed"), imgui.TableColumnFlags_.width_fixed, CHANGED * look.em
+        )
         imgui.table_setup_scroll_freeze(0, 1)
         imgui.table_headers_row()
         self._read(dialog)
@@ -174,7 +182,7 @@ class FileBrowser:
                 entry = self._entries[index]
                 imgui.push_id(index)  # two names may look the same
                 if _row(entry, look, thumbnail, is_marked=index == marked):
-                    dialog = _mark(dialog, entry)
+                    dialog = mark_entry(dialog, entry)
                     is_opened = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
                 imgui.pop_id()
                 if index == marked and shows_marked:
@@ -205,11 +213,13 @@ class FileBrowser:
 def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     """Draw the buttons that leave the folder: up, home, and each parent folder."""
     start = imgui.get_cursor_pos_x()
-    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", "The folder above", keys=format_chord(UP)):
-        return _enter(dialog, dialog.folder.parent)
+    if icon_button(
+        look, icons.ICON_FA_ARROW_UP, "up", _("The folder above"), keys=format_chord(UP)
+    ):
+        return enter_folder(dialog, dialog.folder.parent)
     imgui.same_line(0, 0)
-    if icon_button(look, icons.ICON_FA_HOUSE, "home", "Your own folder"):
-        return _enter(dialog, home_folder())
+    if icon_button(look, icons.ICON_FA_HOUSE, "home", _("Your home folder")):
+        return enter_folder(dialog, home_folder())
     imgui.same_line()
     room = width - (imgui.get_cursor_pos_x() - start)
     style = imgui.get_style()
@@ -224,7 +234,7 @@ def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     for folder in shown:
         imgui.push_style_color(imgui.Col_.button, (0, 0, 0, 0))
         if imgui.button(f"{display_name(folder.name or folder.anchor)}###in {len(folder.parts)}"):
-            dialog = _enter(dialog, folder)
+            dialog = enter_folder(dialog, folder)
         imgui.pop_style_color()
         if folder is not shown[-1]:
             imgui.same_line(0, 0)
@@ -240,7 +250,7 @@ def _row(entry: Entry, look: Look, thumbnail: LookUp, *, is_marked: bool) -> boo
     palette, em = look.palette, look.em
     name, height = display_name(entry.path.name), ROW * em
     corner = imgui.get_cursor_screen_pos()
-    clicked, _ = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))
+    clicked = imgui.selectable(f"###entry {name}", is_marked, ROW_FLAGS, ImVec2(0, height))[0]
     middle = corner.y + (height - imgui.get_text_line_height()) / 2
     draw_list = imgui.get_window_draw_list()
     image = None if entry.is_folder or entry.size > LARGEST_SHOWN else thumbnail(entry.path)
@@ -275,50 +285,7 @@ def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool)
         if state is not None:
             state.reload_user_buf_and_move_to_end()
     imgui.set_next_item_width(width)
-    hint = "Name of the folder" if dialog.wants_folder else "Name of the file"
+    hint = _("Name of the folder") if dialog.wants_folder else _("Name of the file")
     shown = display_name(dialog.name)
-    _, name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)
+    name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)[1]
     return dialog if name == shown else replace(dialog, name=name, marked="")
-
-
-def _mark(dialog: FileDialog, entry: Entry) -> FileDialog:
-    name = entry.path.name
-    if entry.is_folder:
-        return replace(dialog, marked=name, name=dialog.name if dialog.writes else "")
-    return replace(dialog, marked=name, name=name)
-
-
-def _enter(dialog: FileDialog, folder: Path) -> FileDialog:
-    """Go to another folder. Keep the name of a file to save, unless the name was this folder."""
-    left = dialog.folder.name if folder == dialog.folder.parent else ""
-    is_path = Path(dialog.name).name != dialog.name
-    name = dialog.name if dialog.writes and not is_path else ""
-    return replace(dialog, folder=folder, name=name, marked=left)
-
-
-def _folder_meant(dialog: FileDialog) -> Path | None:
-    """Return the marked or typed folder, if it exists."""
-    name = dialog.marked or dialog.name.strip()
-    is_path = Path(name).name != name
-    if not name or (dialog.writes and not dialog.marked and not is_path):
-        return None
-    folder = (dialog.folder / name).resolve()
-    return folder if _is(Path.is_dir, folder) else None
-
-
-def _path_meant(dialog: FileDialog) -> Path | None:
-    """Return the path of the typed name, if the dialog accepts it."""
-    name = dialog.name.strip()
-    if not name:
-        return None
-    path = dialog.path_of(name)
-    return path if dialog.writes or _is(Path.is_file, path) else None
-
-
-def _is(kind: Callable[[Path], bool], path: Path) -> bool:
-    """Return whether a typed path is a file or a folder, as `kind` tests."""
-    try:
-        return kind(path)
-    except OSError:
-        # The name is too long, or a folder before it may not be entered.
-        return False

@@ -5,7 +5,9 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-UNITS = ("bytes", "kB", "MB", "GB")
+from app.texts import _
+
+UNITS = (_("bytes"), _("kB"), _("MB"), _("GB"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +61,7 @@ def read_folder(folder: Path, suffixes: tuple[str, ...]) -> Listing:
         with os.scandir(folder) as found:
             visible = [_entry(entry) for entry in found if not entry.name.startswith(".")]
     except OSError as error:
-        problem = f"This folder cannot be read: {error.strerror or error}"
+        problem = _("This folder cannot be read: {reason}").format(reason=error.strerror or error)
         return Listing(folder=folder, suffixes=suffixes, version=version, problem=problem)
     entries = tuple(
         entry

@@ -11,6 +11,7 @@ from app.editor import Action, FileDialog, Question, do
 from app.editor.actions.viewing import choose_file, close_dialog, show_dialog, use_own_file_browser
 from app.errors import display_name
 from app.export import choose_frame_folder
+from app.texts import _
 
 # Each of these programs shows the file dialogs of a Linux desktop.
 PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
@@ -18,13 +19,13 @@ PROGRAMS: Final = ("zenity", "kdialog", "matedialog", "qarma")
 # reports in both cases only that nothing was chosen.
 TOO_SOON = 0.5  # seconds
 MOST_NAMED = 4  # suffixes in the name of a filter
-REPLACE = "Replace the file?"
+REPLACE = _("Replace the file?")
 
 
 def find_system_dialogs() -> str | None:
     """Return the name of the program that shows the system's file dialogs, or None."""
     if sys.platform in {"win32", "darwin"}:
-        return "the system's own"
+        return _("the system's own")
     return next(filter(shutil.which, PROGRAMS), None)
 
 
@@ -90,7 +91,7 @@ def _follow(dialog: FileDialog, chosen: Path) -> Action:
     # The system has asked only about the name without its suffix.
     question = Question(
         title=REPLACE,
-        text=f"{path.name} is there already.",
-        answers=(("Replace", do(choose_file, dialog, path)),),
+        text=_("{name} is there already.").format(name=path.name),
+        answers=((_("Replace"), do(choose_file, dialog, path)),),
     )
     return do(show_dialog, question)

@@ -4,6 +4,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, ProblemReport, do, error_reports
 from app.editor.actions.viewing import close_dialog
+from app.texts import _
 from app.ui.style.theme import Look
 from app.ui.style.widgets import main_button
 
@@ -16,27 +17,33 @@ def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
     room = imgui.get_main_viewport().size
     width = min(WIDTH * look.em, 0.9 * room.x - MARGIN * look.em)
     imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
-    told = "Nothing is sent. Paths and names of files are left out. "
-    if report.is_kept:
-        told = f"Lissom ended unexpectedly, and kept this report. {told}"
     imgui.text_unformatted(
-        f"{told}Look through it, change what you like, and save it to pass it on yourself."
+        _(
+            "Lissom ended unexpectedly, and kept this report. Nothing is sent. The report leaves "
+            "out paths and names of files. Look through it, change what you like, and save it to "
+            "pass it on yourself."
+        )
+        if report.is_kept
+        else _(
+            "Nothing is sent. The report leaves out paths and names of files. Look through it, "
+            "change what you like, and save it to pass it on yourself."
+        )
     )
     imgui.pop_text_wrap_pos()
     height = min(HEIGHT * look.em, 0.9 * room.y - 2.5 * MARGIN * look.em)
     changed, text = imgui.input_text_multiline("##report", report.text, ImVec2(width, height))
     if changed:
         actions.append(do(error_reports.edit_report_text, report, text))
-    if main_button(look, "Save as…"):
+    if main_button(look, _("Save as…")):
         actions.append(do(error_reports.ask_report_path, report))
     imgui.same_line()
-    if imgui.button("Copy"):
+    if imgui.button(_("Copy")):
         imgui.set_clipboard_text(report.text)
     imgui.same_line()
     if report.is_kept:
-        if imgui.button("Discard"):
+        if imgui.button(_("Discard")):
             actions.append(do(error_reports.discard_report, report))
         imgui.same_line()
-    if imgui.button("Close"):
+    if imgui.button(_("Close")):
         actions.append(do(close_dialog))
     return actions

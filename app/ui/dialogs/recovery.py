@@ -6,6 +6,7 @@ from app.editor import Action, RecoverableFile, RecoveryDialog, do, error_report
 from app.editor.actions import files
 from app.editor.actions.viewing import answer_dialog, close_dialog
 from app.errors import display_name
+from app.texts import _
 from app.ui.dialogs.folder_listing import Entry
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, main_button, shorten_text
@@ -20,8 +21,10 @@ def draw_recovery_dialog(recovery: RecoveryDialog, look: Look) -> list[Action]:
     actions: list[Action] = []
     imgui.push_text_wrap_pos(30 * look.em)
     imgui.text_unformatted(
-        "Lissom ended unexpectedly. Your unsaved work was kept; what you do not open or discard "
-        "stays here, and is in the menu File under Unsaved work."
+        _(
+            "Lissom ended unexpectedly, and kept your unsaved work. Work that you do not open or "
+            "discard stays here. The menu File lists it under Unsaved work."
+        )
     )
     imgui.pop_text_wrap_pos()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
@@ -34,10 +37,10 @@ def draw_recovery_dialog(recovery: RecoveryDialog, look: Look) -> list[Action]:
         imgui.pop_id()
     imgui.end_child()
     imgui.dummy(ImVec2(0, 0.4 * look.em))
-    if imgui.button("Later"):
+    if imgui.button(_("Later")):
         actions.append(do(close_dialog))
     imgui.same_line()
-    if imgui.button("Report a problem…"):
+    if imgui.button(_("Report a problem…")):
         actions.append(do(error_reports.show_kept_or_new_report))
     return actions
 
@@ -48,15 +51,15 @@ def _row(leftover: RecoverableFile, look: Look, *, is_main: bool) -> list[Action
     imgui.align_text_to_frame_padding()
     origin = leftover.origin
     imgui.text_unformatted(shorten_text(origin.name, WIDEST * look.em))
-    draw_tooltip(display_name(origin.path) if origin.path else "Never saved")
+    draw_tooltip(display_name(origin.path) if origin.path else _("Never saved"))
     imgui.same_line(SUMMARY_AT * look.em)
     imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
     imgui.same_line(BUTTONS_AT * look.em)
-    if main_button(look, "Open") if is_main else imgui.button("Open"):
+    if main_button(look, _("Open")) if is_main else imgui.button(_("Open")):
         actions.append(do(answer_dialog, do(files.recover_file, leftover.path)))
     if is_main:
         imgui.set_item_default_focus()
     imgui.same_line()
-    if imgui.button("Discard"):
+    if imgui.button(_("Discard")):
         actions.append(do(answer_dialog, do(files.discard_recoverable_file, leftover.path)))
     return actions

@@ -15,6 +15,7 @@ from app.document import (
 from app.editor import Action, Project, Session, do
 from app.editor.actions import playback
 from app.editor.actions.layer_setup import resolving
+from app.texts import _, ngettext
 from app.ui.style.sliders import FIELD, Scale, number_field, slider_track
 from app.ui.style.theme import SMALL, Look
 from app.ui.style.widgets import (
@@ -50,24 +51,24 @@ class LimitRow:
 LIMITS = (
     LimitRow(
         "k",
-        "Shear",
+        _("Shear"),
         "k",
-        "How far angles change: 0 keeps them, 1 is a collapse",
+        _("How far angles change: 0 keeps them, 1 is a collapse"),
         Scale(left=0.0, right=0.98),
     ),
     LimitRow(
         "sigma_a",
-        "Stretch",
+        _("Stretch"),
         "σa",
-        "The largest stretch in any direction",
+        _("The largest stretch in any direction"),
         Scale(left=1.0, right=20.0, logarithmic=True),
         " ×",
     ),
     LimitRow(
         "sigma_b",
-        "Squeeze",
+        _("Squeeze"),
         "σb",
-        "The smallest stretch in any direction",
+        _("The smallest stretch in any direction"),
         Scale(left=1.0, right=0.05, logarithmic=True),
         " ×",
     ),
@@ -81,14 +82,19 @@ def draw_deform_panel(session: Session, look: Look, project: Project) -> list[Ac
         return []
     bounds = _wanted_bounds(project)
     actions = _stretch(look, bounds)
-    if imgui.tree_node_ex("Details", _DETAILS):
-        reached, what = _reached(project)
-        small_text(look, f"Poses never exceed these limits. Bars: what {what} uses.")
+    if imgui.tree_node_ex(_("Details"), _DETAILS):
+        reached = _reached(project)
+        small_text(
+            look,
+            _("Poses never exceed these limits. Bars: what this pose uses.")
+            if _is_pose(project)
+            else _("Poses never exceed these limits. Bars: what the keys around it use."),
+        )
         for limit in LIMITS:
             actions += _limit(look, limit, bounds, reached)
-    heading(look, "Pose")
+    heading(look, _("Pose"))
     _solver(session, look, project)
-    heading(look, "Keys")
+    heading(look, _("Keys"))
     actions += _keys(session, look, project)
     return actions + _solving(project)
 
@@ -99,22 +105,33 @@ def _wanted_bounds(project: Project) -> Bounds:
     return project.layer.bounds if project.key_resolver is None else project.key_resolver.bounds
 
 
-def _reached(project: Project) -> tuple[tuple[Certificate, ...], str]:
+def _reached(project: Project) -> tuple[Certificate, ...]:
     """Return the certificates of the shown pose, or of the two keys around an in-between."""
     shown, clip = project.layer_runtime.shown, project.clip
     if shown is not None and shown.pose is not None:
-        return (shown.pose.certificate,), "this pose"
+        return (shown.pose.certificate,)
     pair = segment_keys(clip)[segment_time_at(clip, shown.frame if shown else 0).segment]
-    return tuple(clip.keys[index].pose.certificate for index in pair), "the keys around it"
+    return tuple(clip.keys[index].pose.certificate for index in pair)
+
+
+def _is_pose(project: Project) -> bool:
+    """Return whether a pose is shown, and not an in-between."""
+    shown = project.layer_runtime.shown
+    return shown is not None and shown.pose is not None
 
 
 def _stretch(look: Look, bounds: Bounds) -> list[Action]:
     """Draw the presets for all three limits, and the hint of the chosen preset."""
-    heading(look, "Stretch")
+    heading(look, _("Stretch"))
     present = find_limit_preset(bounds)
-    words = [(stretch.name, stretch.name) for stretch in LIMIT_PRESETS]
+    words = [(stretch.name, _(stretch.name)) for stretch in LIMIT_PRESETS]
     chosen = option_buttons(look, "stretch", words, present.name if present else "")
-    small_text(look, f"{present.hint}." if present else "Limits of your own, under “Details”.")
+    hint = (
+        _("{hint}.").format(hint=_(present.hint))
+        if present
+        else _("Your own limits, under “Details”.")
+    )
+    small_text(look, hint)
     return [do(resolving.set_limits, s.bounds) for s in LIMIT_PRESETS if s.name == chosen]
 
 
@@ -130,7 +147,7 @@ def _limit(
     imgui.same_line(0, 0.35 * look.em)
     imgui.text_colored(palette.dim, limit.symbol)
     draw_tooltip(limit.hint)
-    text = f"{used:.2f}{limit.unit}  of"
+    text = _("{used:.2f}{unit}  of").format(used=used, unit=limit.unit)
     room = FIELD * look.em + imgui.get_style().item_inner_spacing.x
     align_right(room + imgui.calc_text_size(text).x)
     colour = _colour(look, limit, used, bound)
@@ -138,7 +155,7 @@ def _limit(
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
     imgui.set_next_item_width(FILL)
     entered = number_field(f"bound {limit.field}", bound)
-    draw_tooltip(f"{limit.hint}: type its limit")
+    draw_tooltip(_("{hint}: type its limit").format(hint=limit.hint))
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     moved = slider_track(
         look,
@@ -149,7 +166,7 @@ def _limit(
         colour=colour,
         used=used,
     )
-    draw_tooltip(f"{limit.hint}: drag its limit")
+    draw_tooltip(_("{hint}: drag its limit").format(hint=limit.hint))
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * imgui.get_style().item_spacing.y)
     if entered is not None:
         return [do(resolving.set_limit, bounds, limit.field, entered)]
@@ -171,32 +188,42 @@ def _solver(session: Session, look: Look, project: Project) -> None:
     palette, shown = look.palette, project.layer_runtime.shown
     pose = None if shown is None else shown.pose
     if project.pull is not None and not project.pull.is_at_rest:
-        _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, "Following the handles")
-        small_text(look, f"{1000 * session.solver_seconds:.0f} ms for the last steps")
+        _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, _("Following the handles"))
+        time = 1000 * session.solver_seconds
+        small_text(look, _("{time:.0f} ms for the last steps").format(time=time))
         return
     if shown is None or pose is None:
-        _status(look, icons.ICON_FA_FILM, palette.dim, "An in-between")
-        small_text(look, "It stays within the distortion of its two keys.")
+        _status(look, icons.ICON_FA_FILM, palette.dim, _("An in-between"))
+        small_text(look, _("It stays within the distortion of its two keys."))
         return
-    shortfall = measure_target_errors(shown.clip.layer, pose)
+    missed = measure_target_errors(shown.clip.layer, pose)
     is_proven = shown.clip.layer.is_proven(pose)
     if not is_proven:
-        _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, "Beyond the limits")
-    elif shortfall.errors:
-        _status(look, icons.ICON_FA_HAND, palette.warning, _lag_in_words(shortfall))
-        remedy = "A looser stretch lets" if shortfall.at_limits else "More weight lets"
-        small_text(look, f"{shortfall.reason.capitalize()}. {remedy} a handle come nearer.")
+        _status(look, icons.ICON_FA_TRIANGLE_EXCLAMATION, palette.danger, _("Beyond the limits"))
+    elif missed.errors:
+        _status(look, icons.ICON_FA_HAND, palette.warning, _describe_target_errors(missed))
+        small_text(
+            look,
+            _("Held back by the limits. A looser stretch lets a handle come nearer.")
+            if missed.at_limits
+            else _(
+                "Held back by the other handles and the shape's stiffness. More weight lets a "
+                "handle come nearer."
+            ),
+        )
     else:
-        _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, "Every handle is in its place")
+        _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, _("Every handle is in its place"))
     if is_proven:
-        small_text(look, "Proven: nothing folds, and no point exceeds the limits.")
+        small_text(look, _("Proven: nothing folds, and no point exceeds the limits."))
 
 
-def _lag_in_words(shortfall: TargetErrors) -> str:
-    count, most = len(shortfall.errors), max(shortfall.errors.values())
-    if count == 1:
-        return f"1 handle is {most:.0f} px short of its target"
-    return f"{count} handles are up to {most:.0f} px short"
+def _describe_target_errors(missed: TargetErrors) -> str:
+    count, most = len(missed.errors), max(missed.errors.values())
+    return ngettext(
+        "{count} handle is {error:.0f} px short of its target",
+        "{count} handles are up to {error:.0f} px short",
+        count,
+    ).format(count=count, error=most)
 
 
 def _status(look: Look, icon: str, colour: imgui.ImVec4, text: str) -> None:
@@ -214,7 +241,7 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
         return actions
     with push_text_size(SMALL):
         imgui.table_next_row()
-        for title in ("Frame", *(limit.symbol for limit in LIMITS)):
+        for title in (_("Frame"), *(limit.symbol for limit in LIMITS)):
             imgui.table_next_column()
             imgui.text_colored(palette.dim, title)
         now = playback.current_frame(session, project)
@@ -222,12 +249,11 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
             certificate = key.pose.certificate
             imgui.table_next_row()
             imgui.table_next_column()
-            clicked, _ = imgui.selectable(
+            if imgui.selectable(
                 f"{key.frame}###key {key.frame}",
                 key.frame == now,
                 imgui.SelectableFlags_.span_all_columns,
-            )
-            if clicked:
+            )[0]:
                 actions.append(do(playback.seek, key.frame))
             for limit in LIMITS:
                 imgui.table_next_column()
@@ -241,14 +267,14 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
 
 
 def _solving(project: Project) -> list[Action]:
-    renewal = project.key_resolver
-    if renewal is not None and renewal.new_layer is None:
+    resolver = project.key_resolver
+    if resolver is not None and resolver.new_layer is None:
         return (
             [do(resolving.cancel_solving_keys)]
-            if progress_bar(renewal.progress, renewal.status_text)
+            if progress_bar(resolver.progress, resolver.status_text)
             else []
         )
-    is_possible = renewal is None and bool(project.layer.handles)
-    hint = "Pull the handles of every key to their targets again, within the limits"
-    is_pressed = text_button("Pose all keys again", FILL, hint, enabled=is_possible)
+    is_possible = resolver is None and bool(project.layer.handles)
+    hint = _("Pull the handles of every key to their targets again, within the limits")
+    is_pressed = text_button(_("Pose all keys again"), FILL, hint, enabled=is_possible)
     return [do(resolving.solve_keys_again)] if is_pressed else []

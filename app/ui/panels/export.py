@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
+from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import ExportSettings, FrameRange, export_frame_range, scene_commands
 from app.editor import Action, Project, Session, do
@@ -10,12 +10,14 @@ from app.editor.actions import editing, exporting
 from app.errors import LIBRARIES, LissomError, display_name, install_hint
 from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS
-from app.motion import BoundingBox, bounding_box, extent_key
+from app.motion import bounding_box
 from app.render import View
-from app.ui.panels.format_options import draw_format_options
-from app.ui.panels.sizes import LARGEST, draw_size_fields
+from app.texts import _, message_of, ngettext
+from app.ui.panels.export_settings.format_options import draw_format_options
+from app.ui.panels.export_settings.preview import draw_export_preview
+from app.ui.panels.export_settings.sizes import LARGEST, draw_size_fields
 from app.ui.shortcuts.table import BINDINGS
-from app.ui.style.theme import SMALL, Look, colour_u32, rgb
+from app.ui.style.theme import Look
 from app.ui.style.widgets import (
     FILL,
     colour_field,
@@ -26,21 +28,16 @@ from app.ui.style.widgets import (
     main_button,
     option_buttons,
     progress_bar,
-    push_text_size,
     small_text,
     split_line,
     text_button,
 )
 
-BACKGROUNDS = (("transparent", "Transparent"), ("colour", "Colour"))
-FRAMINGS = (("fit", "All motion"), ("canvas", "Canvas"))
-RANGES = (("all", "All frames"), ("own", "From – to"))
+BACKGROUNDS = (("transparent", _("Transparent")), ("colour", _("Colour")))
+FRAMINGS = (("fit", _("All motion")), ("canvas", _("Canvas")))
+RANGES = (("all", _("All frames")), ("own", _("From – to")))
 WHITE = "#ffffff"
-MEASURES = "Measuring where the motion reaches…"
-LEAVES = "The motion leaves the frame; “All motion” shows all of it."
-CAMERA_HINT = "Each frame is what the camera shows then."
-KEEPS = "All of the motion is in the frame."
-PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: smallest and largest height
+CAMERA_HINT = _("Each frame shows the camera's view.")
 
 
 def draw_export_panel(session: Session, look: Look, project: Project) -> list[Action]:
@@ -53,7 +50,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     box = find_shown_box(view)
     # The camera's frame is always visible.
     actions = [] if project.document.camera else [do(exporting.preview_export_frame, box)]
-    heading(look, "Picture")
+    heading(look, _("Picture"))
     chosen = _format(look, settings)
     if EXPORT_FORMATS[settings.format].has_frame:
         chosen = _picture(look, project, chosen)
@@ -63,22 +60,23 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
             actions += _canvas(look, project)
     chosen = _details(look, chosen)
     if not project.document.camera:
-        _preview(look, project, settings, box, motion)
-    heading(look, "Frames")
+        draw_export_preview(look, project, settings, box, motion)
+    heading(look, _("Frames"))
     if EXPORT_FORMATS[settings.format].is_still:
         now = project.playhead.frame_at(project.document, session.clock())
-        small_text(look, f"Frame {now}, where the playhead is, with its pose as it is shown.")
+        text = _("Frame {frame}, at the playhead, with the pose as it is shown.")
+        small_text(look, text.format(frame=now))
     else:
         chosen = _frames(look, project, chosen)
     if chosen != settings:
         actions.append(do(exporting.set_export_settings, chosen))
-    heading(look, "Output")
+    heading(look, _("Output"))
     return actions + _output(session, look, project)
 
 
 def _format(look: Look, settings: ExportSettings) -> ExportSettings:
     """Draw the formats in groups, each with its use."""
-    label(look, "Format")
+    label(look, _("Format"))
     now = EXPORT_FORMATS[settings.format]
     if imgui.begin_combo("##format", now.label, imgui.ComboFlags_.height_largest):
         group = ""
@@ -95,17 +93,18 @@ def _format(look: Look, settings: ExportSettings) -> ExportSettings:
     look.note_place("format")
     draw_tooltip(now.use)
     if now.extra and (remedy := install_hint(now.extra)):
-        small_text(look, f"It needs {LIBRARIES[now.extra]}: {remedy}")
+        text = _("This format needs {library}: {remedy}")
+        small_text(look, text.format(library=LIBRARIES[now.extra], remedy=remedy))
     return settings
 
 
 def _picture(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
-    label(look, "Background")
+    label(look, _("Background"))
     settings = _background(look, settings)
     if project.document.camera:
         small_text(look, CAMERA_HINT)
         return settings
-    label(look, "Framing")
+    label(look, _("Framing"))
     match option_buttons(look, "framing", FRAMINGS, settings.framing):
         case "canvas" | "fit" as framing:
             settings = replace(settings, framing=framing)
@@ -124,15 +123,15 @@ def _details(look: Look, settings: ExportSettings) -> ExportSettings:
 
 
 def _names(look: Look, settings: ExportSettings) -> ExportSettings:
-    label(look, "File names")
-    _, names = imgui.input_text("##names", settings.names)
+    label(look, _("File names"))
+    names = imgui.input_text("##names", settings.names)[1]
     done = imgui.is_item_deactivated_after_edit()
-    draw_tooltip("One # for each digit of a frame's number; {name} is the project's name")
+    draw_tooltip(_("One # for each digit of a frame's number; {name} is the project's name"))
     try:
         entered = replace(settings, names=names) if names else settings
     except LissomError as error:
         # The error is visible during typing. Afterwards the field shows the valid value again.
-        small_text(look, str(error), look.palette.danger)
+        small_text(look, message_of(error), look.palette.danger)
         return settings
     return entered if done else settings
 
@@ -153,7 +152,7 @@ def _background(look: Look, settings: ExportSettings) -> ExportSettings:
     )
     imgui.end_disabled()
     if not format_.is_transparent:
-        draw_tooltip(f"{format_.label} has no transparency")
+        draw_tooltip(_("{format} has no transparency").format(format=format_.label))
     match chosen:
         case "transparent":
             return replace(settings, background="transparent")
@@ -171,21 +170,21 @@ def _size(
 ) -> tuple[ExportSettings, list[Action]]:
     """Draw width and height, a lock of their ratio, and a reset to the drawing's size."""
     actions: list[Action] = []
-    label(look, "Size")
+    label(look, _("Size"))
     gap = imgui.get_style().item_inner_spacing.x
     room = 2 * (1.15 * imgui.get_frame_height() + gap)
     entered = draw_size_fields("", view.size, room)
     imgui.same_line(0, gap)
     keeps = session.is_aspect_locked
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
-    if icon_button(look, icon, "keep ratio", "Keep the ratio of width and height", active=keeps):
+    if icon_button(look, icon, "keep ratio", _("Keep the ratio of width and height"), active=keeps):
         actions.append(do(exporting.set_aspect_locked, not keeps))
     imgui.same_line(0, gap)
     if icon_button(
         look,
         icons.ICON_FA_ARROW_ROTATE_LEFT,
         "own size",
-        "Back to the size of the drawing",
+        _("Back to the size of the drawing"),
         enabled=settings.size is not None,
     ):
         return replace(settings, size=None), actions
@@ -202,11 +201,11 @@ def _size(
 def _canvas(look: Look, project: Project) -> list[Action]:
     """Draw the size of the canvas, whose origin is fixed, and a reset to the picture's size."""
     document = project.document
-    label(look, "Canvas")
+    label(look, _("Canvas"))
     gap = imgui.get_style().item_inner_spacing.x
     entered = draw_size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
     imgui.same_line(0, gap)
-    hint = "Back to the size of the picture behind all others"
+    hint = _("Back to the size of the picture behind all others")
     is_own = document.canvas != document.layers[0].picture.size
     if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
         return [
@@ -220,20 +219,20 @@ def _canvas(look: Look, project: Project) -> list[Action]:
 def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSettings:
     document = project.document
     frames = export_frame_range(document)
-    label(look, "Range")
+    label(look, _("Range"))
     match option_buttons(look, "range", RANGES, "all" if settings.frames is None else "own"):
         case "all":
             settings = replace(settings, frames=None)
         case "own":
             settings = replace(settings, frames=frames)
-    label(look, "First, last")
+    label(look, _("First, last"))
     imgui.begin_disabled(settings.frames is None)
     ends = []
     widths = split_line(2, imgui.get_style().item_inner_spacing.x)
     both = zip(("first", "last"), (frames.first, frames.last), widths, strict=True)
     for name, frame, width in both:
         imgui.set_next_item_width(width)
-        _, entered = imgui.input_int(f"##{name} frame", frame, 0)
+        entered = imgui.input_int(f"##{name} frame", frame, 0)[1]
         done = imgui.is_item_deactivated_after_edit()
         ends.append(document.frames.clamp(entered) if done else frame)
     imgui.end_disabled()
@@ -241,109 +240,57 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
         first, last = sorted(ends)
         settings = replace(settings, frames=FrameRange(first, last))
     count = frames.last - frames.first + 1
-    text = "1 picture" if count == 1 else f"{count} pictures"
-    if EXPORT_FORMATS[settings.format].is_drawn:
-        small_text(look, f"{text}, {count / document.fps:.1f} s at {document.fps:g} fps")
-    else:
-        small_text(look, f"{count / document.fps:.1f} s, at any rate")
+    text = (
+        ngettext(
+            "{count} picture, {time:.1f} s at {rate:g} fps",
+            "{count} pictures, {time:.1f} s at {rate:g} fps",
+            count,
+        )
+        if EXPORT_FORMATS[settings.format].is_drawn
+        else _("{time:.1f} s, at any rate")
+    )
+    small_text(look, text.format(count=count, time=count / document.fps, rate=document.fps))
     return settings
 
 
 def _output(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     out = exporting.export_destination(project)
-    label(look, "File" if EXPORT_FORMATS[project.document.export.format].suffixes else "Folder")
+    label(
+        look, _("File") if EXPORT_FORMATS[project.document.export.format].suffixes else _("Folder")
+    )
     button = 1.15 * imgui.get_frame_height()
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
     imgui.begin_disabled(True)  # noqa: FBT003 - chosen by the button beside it
-    imgui.input_text("##out", display_name(out.name) if out else "not chosen yet")
+    imgui.input_text("##out", display_name(out.name) if out else _("not chosen yet"))
     imgui.end_disabled()
-    draw_tooltip(display_name(out) if out else "Choose where to")
+    draw_tooltip(display_name(out) if out else _("Choose the output"))
     imgui.same_line(0, gap)
-    if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", "Choose where to…"):
+    if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", _("Choose the output…")):
         actions.append(do(exporting.ask_export_destination))
     run = session.export
     if exporting.is_export_under_way(session):
         # A negative share animates the bar without a value.
-        share, text = -0.5 * imgui.get_time(), "Preparing…"
+        share, text = -0.5 * imgui.get_time(), _("Preparing…")
         if run is not None:
             total = len(run.plan.times)
             share = run.done / total
-            text = f"{run.done} of {total}" if run.done < total else "Finishing…"
+            text = (
+                _("{done} of {total}").format(done=run.done, total=total)
+                if run.done < total
+                else _("Finishing…")
+            )
         return [*actions, do(exporting.cancel_export)] if progress_bar(share, text) else actions
-    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  Export###start", FILL):
+    if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  {_('Export')}###start", FILL):
         actions.append(do(exporting.repeat_export))
     look.note_place("start export")
-    draw_tooltip("Export now", BINDINGS["export again"].shown_keys)
+    draw_tooltip(_("Export now"), BINDINGS["export again"].shown_keys)
     if EXPORT_FORMATS[project.document.export.format].is_still:
-        text, hint = f"{icons.ICON_FA_COPY}  Copy###copy", "Put the picture on the clipboard"
+        text, hint = (
+            f"{icons.ICON_FA_COPY}  {_('Copy')}###copy",
+            _("Put the picture on the clipboard"),
+        )
         if text_button(text, FILL, hint, BINDINGS["copy picture"].shown_keys):
             actions.append(do(exporting.copy_picture))
     return actions
-
-
-def _preview_height(look: Look) -> float:
-    """Return the height of the preview with which the button below fits the panel."""
-    spacing, line = imgui.get_style().item_spacing.y, imgui.get_text_line_height()
-    below = 4 * imgui.get_frame_height() + 3 * line + 0.6 * look.em + 10 * spacing
-    room = imgui.get_content_region_avail().y - below
-    return min(max(room, PREVIEW * look.em), LARGEST_PREVIEW * look.em)
-
-
-def _preview(
-    look: Look, project: Project, settings: ExportSettings, frame: BoundingBox, motion: BoundingBox
-) -> None:
-    """Draw the export's frame around the drawing and the whole motion."""
-    canvas = BoundingBox(0j, complex(*project.document.canvas))
-    around = frame.joined(canvas).joined(motion)
-    width, height = imgui.get_content_region_avail().x, _preview_height(look)
-    corner = imgui.get_cursor_screen_pos()
-    extent = around.upper - around.lower
-    scale = min((width - look.em) / extent.real, (height - look.em) / extent.imag)
-    middle = (around.lower + around.upper) / 2
-
-    def place(point: complex) -> ImVec2:
-        offset = (point - middle) * scale
-        return ImVec2(corner.x + width / 2 + offset.real, corner.y + height / 2 - offset.imag)
-
-    def ends(box: BoundingBox) -> tuple[ImVec2, ImVec2]:
-        upper_left = complex(box.lower.real, box.upper.imag)
-        return place(upper_left), place(complex(box.upper.real, box.lower.imag))
-
-    palette, draw_list = look.palette, imgui.get_window_draw_list()
-    opposite = corner + ImVec2(width, height)
-    draw_list.add_rect_filled(corner, opposite, colour_u32(palette.desk), 0.4 * look.em)
-    is_clear = settings.background == "transparent"
-    colour = palette.raised if is_clear else rgb(settings.background)
-    draw_list.add_rect_filled(*ends(frame), colour_u32(colour))
-    if project.layer_runtime.shown is not None:
-        count = len(project.layer_runtime.shown.mesh.domain.outline)
-        for point in project.layer_runtime.shown.positions[:count]:
-            draw_list.path_line_to(place(complex(point)))
-        draw_list.path_stroke(colour_u32(palette.dim), 1.3, imgui.ImDrawFlags_.closed)
-    draw_list.add_rect(*ends(canvas), colour_u32(palette.dim, 0.6))
-    draw_list.add_rect(*ends(motion), colour_u32(palette.warning, 0.8))
-    draw_list.add_rect(*ends(frame), colour_u32(palette.accent), 0.0, 1.6)
-    imgui.dummy(ImVec2(width, height))
-    draw_tooltip(
-        "Blue: what the export shows, as in the viewport. Grey: the picture's canvas.\n"
-        "Orange: where the motion reaches."
-    )
-    is_known = project.extent.follows(extent_key(project.document))
-    if not is_known and not project.extent.has_failed(extent_key(project.document)):
-        note = MEASURES
-    else:
-        note = LEAVES if not frame.contains(motion, slack=1.0) else KEEPS
-    _note(look, note)
-
-
-def _note(look: Look, text: str) -> None:
-    """Write a note, with the height of the longest note."""
-    width, notes = imgui.get_content_region_avail().x, (MEASURES, LEAVES, KEEPS)
-    with push_text_size(SMALL):
-        room = max(imgui.calc_text_size(note, wrap_width=width).y for note in notes)
-    top = imgui.get_cursor_pos_y()
-    small_text(look, text)
-    imgui.set_cursor_pos_y(top + room + imgui.get_style().item_spacing.y)
-    imgui.dummy(ImVec2(0, 0))

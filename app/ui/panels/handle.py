@@ -13,17 +13,17 @@ from app.document import (
     TargetErrors,
     handle_commands,
     measure_target_errors,
-    shape_commands,
 )
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, viewing
-from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
+from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import free_rotation, set_targets
-from app.ui.panels import depth
-from app.ui.panels.handle_motion.auto_pin import draw_auto_pin
-from app.ui.panels.handle_motion.spring import draw_spring
-from app.ui.panels.handle_motion.track import draw_track
-from app.ui.shortcuts.keys import CTRL, format_modified
+from app.texts import _, ngettext
+from app.ui.panels.handle_settings.anchor import draw_anchor
+from app.ui.panels.handle_settings.auto_pin import draw_auto_pin
+from app.ui.panels.handle_settings.depth import draw_depth_settings
+from app.ui.panels.handle_settings.spring import draw_spring
+from app.ui.panels.handle_settings.track import draw_track
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
 from app.ui.style.sliders import Scale, number_field, slider
@@ -40,7 +40,6 @@ from app.ui.style.widgets import (
     shorten_text,
     small_text,
     split_line,
-    text_button,
 )
 from app.ui.viewport.marks import find_auto_pinned
 
@@ -54,8 +53,10 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
         return []
     layer = project.layer
     if not layer.handles:
-        heading(look, "Handles")
-        small_text(look, "There are none yet. Click on the drawing to add one, then drag it, or:")
+        heading(look, _("Handles"))
+        small_text(
+            look, _("There are no handles yet. Click on the drawing to add one, then drag it, or:")
+        )
         suggest = BINDINGS["suggest handles"]
         is_pressed = main_button(look, f"{suggest.icon}  {suggest.label}###{suggest.label}", FILL)
         draw_tooltip(suggest.hint)
@@ -66,22 +67,23 @@ def draw_handle_panel(session: Session, look: Look, project: Project) -> list[Ac
     if len(chosen) == 1:
         actions += _details(session, look, project, chosen[0])
     elif chosen:
-        heading(look, f"{len(chosen)} handles")
-        small_text(look, "Dragging one of them moves them all; arrows nudge them.")
+        count = len(chosen)
+        heading(look, ngettext("{count} handle", "{count} handles", count).format(count=count))
+        small_text(look, _("Dragging one of them moves them all; arrows nudge them."))
         actions += _firmness(session, look, chosen)
         track = layer.track_of(chosen[0].id)
         if track is not None and set(track.handles) >= {handle.id for handle in chosen}:
             actions += draw_track(session, look, project, layer.handle(track.handles[0]))
     else:
-        small_text(look, "Select a handle to see its settings.")
+        small_text(look, _("Select a handle to see its settings."))
     if len(chosen) != 1 and session.tint == "depth":
         actions.append(do(viewing.set_tint, None))
-    heading(look, "Anchor")
-    return actions + _anchor(look, project, chosen)
+    heading(look, _("Anchor"))
+    return actions + draw_anchor(look, project, chosen)
 
 
 def _heading_with_delete(session: Session, look: Look, project: Project) -> list[Action]:
-    heading(look, "Handles", framed=True)
+    heading(look, _("Handles"), framed=True)
     align_right(2 * 1.15 * imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     actions = draw_action_button(session, look, "suggest handles")
     imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
@@ -89,8 +91,8 @@ def _heading_with_delete(session: Session, look: Look, project: Project) -> list
         look,
         icons.ICON_FA_TRASH,
         "delete handles",
-        "Delete the selected handles; the pose stays",
-        keys="Del",
+        _("Delete the selected handles; the pose stays"),
+        keys=_("Del"),
         enabled=bool(project.selected_handles),
     ):
         actions.append(do(remove_handles, project.selected_handles))
@@ -119,12 +121,11 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
     actions: list[Action] = []
     palette = look.palette
     is_anchor = handle.position == project.layer.anchor
-    clicked, _ = imgui.selectable(
+    if imgui.selectable(
         f"###handle {handle.id}",
         handle.id in project.selected_handles,
         imgui.SelectableFlags_.allow_overlap,
-    )
-    if clicked:
+    )[0]:
         chosen = frozenset({handle.id})
         keeps = imgui.get_io().key_shift or imgui.get_io().key_ctrl
         actions.append(
@@ -135,7 +136,7 @@ def _row(look: Look, project: Project, handle: Handle, lag: float | None) -> lis
     icon = icons.ICON_FA_ANCHOR if is_anchor else usual
     imgui.text_colored(palette.anchor if is_anchor else palette.dim, icon)
     imgui.same_line(2.6 * look.em)
-    text = handle.group if lag is None else f"{lag:.0f} px"
+    text = handle.group if lag is None else _("{lag:.0f} px").format(lag=lag)
     beside = imgui.calc_text_size(text).x + 0.6 * look.em
     room = imgui.get_content_region_avail().x - beside
     imgui.text_unformatted(shorten_text(handle.name, room))
@@ -156,22 +157,23 @@ def _find_target_errors(project: Project) -> TargetErrors:
 def _details(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
     heading(look, shorten_text(handle.name, 0.9 * imgui.get_content_region_avail().x))
-    label(look, "Name")
-    _, name = imgui.input_text("##name", handle.name)
+    label(look, _("Name"))
+    name = imgui.input_text("##name", handle.name)[1]
     if imgui.is_item_deactivated_after_edit() and name.strip() and name != handle.name:
         actions.append(
             do(editing.edit_layer, handle_commands.rename_handle, handle.id, name.strip())
         )
     actions += _firmness(session, look, [handle])
-    hint = "Where it sits on the drawing at rest, in pixels from the upper left corner"
-    placed = _point(look, project, "At rest", handle.position, hint)
+    hint = _("Where the handle is on the drawing at rest, in pixels from the upper left corner")
+    label(look, _("At rest"))
+    placed = _point(project, "at rest", handle.position, hint)
     if placed is not None:
         actions.append(do(editing.edit_layer, handle_commands.move_handle, handle.id, placed))
     actions += _draw_target(look, project, handle)
     actions += draw_auto_pin(look, project, handle)
     actions += draw_track(session, look, project, handle)
     actions += draw_spring(look, project, handle)
-    return actions + depth.draw_depth_settings(session, look, project, handle)
+    return actions + draw_depth_settings(session, look, project, handle)
 
 
 def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Action]:
@@ -179,16 +181,16 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
     actions: list[Action] = []
     identities = frozenset(handle.id for handle in chosen)
     weights = {handle.weight for handle in chosen}
-    label(look, "Hold")
+    label(look, _("Hold"))
     weight = weights.pop() if len(weights) == 1 else math.nan
     word = next((word for word, value in WEIGHT_PRESETS.items() if value == weight), "")
-    taken = option_buttons(look, "hold", [(word, word) for word in WEIGHT_PRESETS], word)
-    draw_tooltip("How firmly it holds against the others where not all can have their way")
+    taken = option_buttons(look, "hold", [(word, _(word)) for word in WEIGHT_PRESETS], word)
+    draw_tooltip(_("How firmly the handle holds its target against other handles"))
     if taken is not None:
         weigh = handle_commands.set_handle_weight
         actions.append(do(editing.edit_layer, weigh, identities, WEIGHT_PRESETS[taken]))
     label(look, "")
-    hint = "How strongly it pulls, relative to the others: 1 is normal"
+    hint = _("How strongly the handle pulls, relative to the others: 1 is normal")
     weighed = slider(look, "weight", chosen[0].weight, WEIGHTS, hint=hint)
     if weighed is not None:
         weigh, value = handle_commands.set_handle_weight, float(f"{weighed.value:.3g}")
@@ -213,33 +215,42 @@ def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     is_wanted = target is not None
     if target is None:
         target = Target(position=complex(shown.handle_positions[identities.index(handle.id)]))
-    hint = "Where this pose wants it, in pixels from the upper left corner"
-    wished = _point(look, project, "Target", target.position, hint)
-    if wished is not None:
-        actions.append(do(set_targets, {handle.id: replace(target, position=wished)}))
+    hint = _("Target of the handle in this pose, in pixels from the upper left corner")
+    label(look, _("Target"))
+    place = _point(project, "target", target.position, hint)
+    if place is not None:
+        actions.append(do(set_targets, {handle.id: replace(target, position=place)}))
     actions += _draw_rotation(look, project, handle, target)
-    shortfall = _find_target_errors(project)
-    lag = shortfall.errors.get(handle.id)
-    if lag is None:
-        goes = (
-            "stays until the next key"
-            if handle.id in find_auto_pinned(shown)
-            else "goes with the shape"
-        )
-        small_text(look, "" if is_wanted else f"Between keys it {goes}.")
-    else:
+    missed = _find_target_errors(project)
+    lag = missed.errors.get(handle.id)
+    if lag is not None:
         is_coming = project.pull is not None and not project.pull.is_at_rest
-        why = "on its way" if is_coming else shortfall.reason
-        small_text(look, f"{lag:.0f} px short of its target, {why}", look.palette.warning)
+        text = (
+            _("{lag:.0f} px short of its target, on its way")
+            if is_coming
+            else _("{lag:.0f} px short of its target, held back by the limits")
+            if missed.at_limits
+            else _(
+                "{lag:.0f} px short of its target, held back by the other handles and the shape's "
+                "stiffness"
+            )
+        )
+        small_text(look, text.format(lag=lag), look.palette.warning)
+    elif is_wanted:
+        small_text(look, "")
+    elif handle.id in find_auto_pinned(shown):
+        small_text(look, _("Between keys the handle stays until the next key."))
+    else:
+        small_text(look, _("Between keys the handle goes with the shape."))
     return actions
 
 
 def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target) -> list[Action]:
     """Draw whether the pose fixes the rotation at a handle, and the angle."""
-    label(look, "Turn")
+    label(look, _("Turn"))
     is_turned = target.rotation is not None
     changed, turns = imgui.checkbox("##turns", is_turned)
-    draw_tooltip("Turn the shape at this handle by an angle, or let it turn freely")
+    draw_tooltip(_("Turn the shape at this handle by an angle, or let it turn freely"))
     if changed and not turns:
         return [do(free_rotation, handle.id)]
     if changed and project.layer_runtime.shown is not None:
@@ -248,52 +259,26 @@ def _draw_rotation(look: Look, project: Project, handle: Handle, target: Target)
         return [do(set_targets, {handle.id: replace(target, rotation=now)})]
     imgui.same_line()
     if target.rotation is None:
-        imgui.text_colored(look.palette.dim, "freely")
+        imgui.text_colored(look.palette.dim, _("freely"))
         return []
     imgui.set_next_item_width(FILL)
     entered = number_field("angle", math.degrees(target.rotation), "%.1f°")
-    draw_tooltip("Counter-clockwise, in degrees; drag the ring around the handle to turn it")
+    draw_tooltip(_("Counter-clockwise, in degrees; drag the ring around the handle to turn it"))
     if entered is None:
         return []
     return [do(set_targets, {handle.id: replace(target, rotation=math.radians(entered))})]
 
 
-def _point(look: Look, project: Project, text: str, place: complex, hint: str) -> complex | None:
+def _point(project: Project, name: str, place: complex, hint: str) -> complex | None:
     """Draw two fields for a place in screen convention, y down. Return the entered place."""
     height = project.document.canvas[1]
-    label(look, text)
     entered = []
     widths = split_line(2, imgui.get_style().item_inner_spacing.x)
     for axis, at, width in zip("xy", (place.real, height - place.imag), widths, strict=True):
         imgui.set_next_item_width(width)
-        entered.append(number_field(f"{text.lower()} {axis}", at, "%.1f"))
+        entered.append(number_field(f"{name} {axis}", at, "%.1f"))
         draw_tooltip(hint)
     x, y = entered
     if x is None and y is None:
         return None
     return complex(place.real if x is None else x, place.imag if y is None else height - y)
-
-
-def _anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
-    """Describe the anchor, the reference point of the in-betweens, and let it be set."""
-    layer = project.layer
-    holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
-    if layer.anchor is None:
-        small_text(look, "Automatic: the middle of the shape stays calm between keys.")
-    elif holder is not None:
-        name = shorten_text(holder, 12 * look.em)
-        small_text(look, f"“{name}” stays calm between keys: it goes the straightest way.")
-    else:
-        anchor = layer.anchor
-        y = project.document.canvas[1] - anchor.imag
-        small_text(look, f"The point {anchor.real:.0f}, {y:.0f} stays calm between keys.")
-    is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
-    halves, actions = split_line(2), list[Action]()
-    text = f"{icons.ICON_FA_ANCHOR}  Follow this handle###anchor here"
-    hint, keys = "Let this point stay calm between keys", format_modified(CTRL, "click")
-    if text_button(text, next(halves), hint, keys, enabled=is_chosen):
-        actions.append(do(toggle_anchor_at_handle, chosen[0].id))
-    has_own = layer.anchor is not None
-    if text_button("Automatic anchor###clear anchor", next(halves), enabled=has_own):
-        actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))
-    return actions

@@ -9,6 +9,7 @@ from app.document import LibraryPose, Pose, format_pairs
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
 from app.editor.poses import flipping, library, pasting
+from app.texts import _
 from app.ui.shortcuts.widgets import draw_action_button, draw_action_text_button
 from app.ui.style.sliders import Scale, number_field, slider_track
 from app.ui.style.theme import SMALL, Look, colour_u32, pixel_density
@@ -37,7 +38,7 @@ def draw_poses_panel(
     """Draw the library's poses as thumbnails, and the buttons that flip them."""
     if project.layer_runtime.shown is None:
         return []
-    heading(look, "Poses", framed=True)
+    heading(look, _("Poses"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
     actions = draw_action_button(session, look, "keep pose")
     offers = library.list_library_poses(project)
@@ -45,12 +46,14 @@ def draw_poses_panel(
         actions += _libraries(look, project, offers, pictures)
         small_text(
             look,
-            "Click a pose to use it at this frame, drag it onto the timeline, or drag the bar "
-            "below it to blend it in.",
+            _(
+                "Click a pose to use it at this frame, drag it onto the timeline, or drag the bar "
+                "below it to blend it in."
+            ),
         )
     else:
-        small_text(look, "Keep a pose to use it again: here, at other frames, or blended in.")
-    heading(look, "Flip")
+        small_text(look, _("Keep a pose to use it again: here, at other frames, or blended in."))
+    heading(look, _("Flip"))
     return actions + _flip(session, look, project)
 
 
@@ -63,7 +66,8 @@ def _libraries(
     for owner, group in groupby(numbered, key=lambda each: each[1].owner.id):
         if owner != project.active:
             name = project.document.layer(owner).name
-            title = f"Of {shorten_text(name, imgui.get_content_region_avail().x - 4 * look.em)}"
+            name = shorten_text(name, imgui.get_content_region_avail().x - 4 * look.em)
+            title = _("Of {name}").format(name=name)
             if not imgui.tree_node_ex(f"{title}###of {owner}", imgui.TreeNodeFlags_.default_open):
                 continue
         imgui.push_id(owner)
@@ -96,7 +100,7 @@ def _tiles(
         actions += _blend(look, project, library.PoseOffer(owner, kept), side)
         if owner.id == project.active:
             taken = (other.name for other in owner.library if other is not kept)
-            name = name_popup(look, "name", kept.name, taken, "pose")
+            name = name_popup(look, "name", kept.name, taken, _("Another pose has this name."))
             if name is not None:
                 actions.append(do(library.rename_library_pose, kept.name, name))
         imgui.pop_id()
@@ -136,7 +140,8 @@ def _tile(
         if texture is not None:
             _show(texture, corner, imgui.get_item_rect_max(), 0.2 * em)
         imgui.end_drag_drop_source()
-    draw_tooltip(f"{kept.name}: click to use it at this frame, right click for more")
+    text = _("{name}: click to use it at this frame, right-click for more")
+    draw_tooltip(text.format(name=kept.name))
     return actions + _menu(kept, owner.id, is_own=owner.id == project.active)
 
 
@@ -160,7 +165,9 @@ def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float)
     imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() - 0.5 * look.em)
     moved = slider_track(look, "blend", share, SHARES, width, colour=look.palette.accent)
     draw_tooltip(
-        f"{100 * share:.0f}% blended in" if share else "Drag to blend it into the present pose"
+        _("{share:.0%} blended in").format(share=share)
+        if share
+        else _("Drag to blend it into the present pose")
     )
     if moved is None:
         return []
@@ -172,10 +179,10 @@ def _menu(kept: LibraryPose, owner: int, *, is_own: bool) -> list[Action]:
     actions: list[Action] = []
     asks = False
     if imgui.begin_popup_context_item("menu"):
-        if imgui.menu_item_simple("Use at this frame", "Click"):
+        if imgui.menu_item_simple(_("Use at this frame"), _("Click")):
             actions.append(do(library.apply_library_pose, kept.name, owner))
-        asks = is_own and imgui.menu_item_simple("Rename…")
-        if is_own and imgui.menu_item_simple("Delete"):
+        asks = is_own and imgui.menu_item_simple(_("Rename…"))
+        if is_own and imgui.menu_item_simple(_("Delete")):
             actions.append(do(library.delete_library_pose, kept.name))
         imgui.end_popup()
     if asks:
@@ -188,32 +195,37 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     widths = split_line(2)
     for name in ("paste flipped", "paste swapped"):
         actions += draw_action_text_button(session, name, next(widths))
-    label(look, "Axis")
+    label(look, _("Axis"))
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
         actions.append(do(viewing.toggle_overlay, "mirror"))
-    draw_tooltip("Show in the viewport where poses are flipped; drag it by its grip")
+    draw_tooltip(_("Show in the viewport where poses are flipped; drag it by its grip"))
     imgui.same_line()
     button = 6 * look.em
     gap = imgui.get_style().item_inner_spacing.x
     imgui.set_next_item_width(imgui.get_content_region_avail().x - button - gap)
     placed = number_field("axis x", layer.axis, "%.1f")
-    draw_tooltip("In pixels from the left edge")
+    draw_tooltip(_("In pixels from the left edge"))
     if placed is not None:
         actions.append(do(flipping.set_mirror_axis, placed))
     imgui.same_line(0, gap)
-    hint = "Put the axis in the middle of the pairs of handles, or of the shape"
-    if text_button("Middle", button, hint, enabled=layer.mirror is not None):
+    hint = _("Put the axis in the middle of the pairs of handles, or of the shape")
+    if text_button(_("Middle"), button, hint, enabled=layer.mirror is not None):
         actions.append(do(flipping.set_mirror_axis, None))
-    label(look, "Pairs")
-    _, text = imgui.input_text("##pairs", format_pairs(project.document.pairs))
+    label(look, _("Pairs"))
+    text = imgui.input_text("##pairs", format_pairs(project.document.pairs))[1]
     if imgui.is_item_deactivated_after_edit():
         actions.append(do(pasting.set_mirror_names, text))
     draw_tooltip(
-        "Words that tell two sides apart, or two whole names, with a slash between: L/R, near/far"
+        _(
+            "Words that tell two sides apart, or two whole names, with a slash between: L/R, "
+            "near/far"
+        )
     )
     small_text(
         look,
-        "Layers and handles are pairs by their names, such as “paw.L” and “paw.R”, or by their "
-        "places. Flipped mirrors, swapped does not.",
+        _(
+            "Layers and handles are pairs by their names, such as “paw.L” and “paw.R”, or by their "
+            "places. Flipped mirrors, swapped does not."
+        ),
     )
     return actions

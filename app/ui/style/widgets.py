@@ -5,6 +5,7 @@ from contextlib import AbstractContextManager
 
 from imgui_bundle import ImVec2, ImVec4, imgui, imgui_ctx
 
+from app.texts import _
 from app.ui.style.theme import SMALL, Look
 
 LABEL_WIDTH, NAME_WIDTH = 6.2, 14.0  # em
@@ -168,15 +169,15 @@ def split_line(count: int, gap: float | None = None, *, room: float = 0.0) -> It
 def progress_bar(share: float, text: str) -> bool:
     """Draw a progress bar with a cancel button. Return whether the button was pressed."""
     imgui.progress_bar(share, ImVec2(FILL, 0), text)
-    return imgui.button("Cancel###stop", ImVec2(FILL, 0))
+    return imgui.button(_("Cancel") + "###stop", ImVec2(FILL, 0))
 
 
 def name_popup(
-    look: Look, popup: str, name: str, taken: Iterable[str] = (), kind: str = ""
+    look: Look, popup: str, name: str, taken: Iterable[str] = (), refusal: str = ""
 ) -> str | None:
     """Draw the rename field in its popup, if the popup is open. Return the entered name.
 
-    Names in `taken` are refused. `kind` is a word for the item, for the message.
+    Names in `taken` are refused by the message `refusal`.
     """
     if not imgui.begin_popup(popup):
         return None
@@ -185,11 +186,11 @@ def name_popup(
     imgui.set_next_item_width(NAME_WIDTH * look.em)
     flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
     entered, name = imgui.input_text("##name", name, flags)
-    draw_tooltip("Enter takes the name, Esc leaves it")
+    draw_tooltip(_("Enter takes the name, Esc leaves it"))
     name = name.strip()
     is_free = name not in taken
     if not is_free:
-        small_text(look, f"Another {kind} has this name.")
+        small_text(look, refusal)
     elif entered:
         imgui.close_current_popup()
     imgui.end_popup()

@@ -254,7 +254,7 @@ def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
     assert any("same width and height" in toast.text for toast in window.session.toasts)
 
 
-def test_what_cannot_be_is_told_and_undone(window, drawing):
+def test_impossible_cut_out_is_reported_and_undone(window, drawing):
     add_handle(window.session, complex(0.1 * SIZE, SIZE / 2))
     window.settle()
     domain = drawing.layer.domain
@@ -440,8 +440,8 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
         assert tuple(pixel(window, place)) == tuple(before)
     # Both sides can be pulled apart.
     targets = layer.keys[0].pose.targets
-    wishes = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
-    set_targets(window.session, wishes)
+    targets_now = {0: Target(position=15 + 30j), 1: Target(position=105 + 30j), 2: targets[2]}
+    set_targets(window.session, targets_now)
     window.settle()
     reached = boots.layer_runtime.shown.handle_positions
     assert abs(reached[1] - reached[0]) == pytest.approx(90, abs=0.5)

@@ -165,9 +165,9 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
         window.act(exporting.start_export, tmp_path / "walk frames")
         window.until(lambda: session.export is not None and session.export.done > 2)
         total = len(session.export.plan.times)
-        told = [text for text in written if text.startswith("Exporting walk frames: ")]
-        assert told
-        assert all(text.endswith(f" of {total}") for text in told)
+        texts = [text for text in written if text.startswith("Exporting walk frames: ")]
+        assert texts
+        assert all(text.endswith(f" of {total}") for text in texts)
         window.run(lambda robot: robot.item_click("//**/Cancel"))
     finally:
         window.clock.cost = 0.0

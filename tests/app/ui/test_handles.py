@@ -222,8 +222,8 @@ def short(window, loose):
     """The bar with a handle that is wanted elsewhere, and has not arrived."""
     place, pose = places(loose)[1], loose.layer.key(24).pose
     targets = {**pose.targets, 1: Target(position=place - 120 + 80j)}
-    wished = key_commands.replace_key_pose(0, 24, replace(pose, targets=targets))
-    editing.edit_document(window.session, wished)
+    command = key_commands.replace_key_pose(0, 24, replace(pose, targets=targets))
+    editing.edit_document(window.session, command)
     window.settle()
     assert abs(targets[1].position - place) > 4 * window.grip(loose)
     return loose

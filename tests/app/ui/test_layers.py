@@ -278,7 +278,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     listed(lambda rows: rows.menu(arm, "Replace picture…"))
     assert window.session.dialog.title == "Replace the picture of arm"
     window.act(close_dialog)
-    # What hung on a layer that is deleted hangs on it again when that is undone.
+    # Undo attaches the children of a deleted layer to it again.
     joint = Attachment(parent=body, parent_point=95 + 118j)
     window.act(editing.edit_document, layer_commands.attach_layer(arm, 95 + 118j, joint))
     window.act(set_active_layer, body)
@@ -305,7 +305,7 @@ def test_a_layer_is_seen_at_once_where_its_in_betweens_are_not_there_yet(window,
     assert keyed.layer.name == "arm copy"
     window.act(delete_layers, keyed.active)
     window.act(editing.undo)
-    assert all(puppet.shown is not None for puppet in keyed.layer_runtimes.values())
+    assert all(runtime.shown is not None for runtime in keyed.layer_runtimes.values())
 
 
 def test_the_list_shows_small_pictures(window, scene, listed):
@@ -382,7 +382,7 @@ def test_pictures_that_are_dropped_on_a_scene(window, scene, listed, tmp_path, d
     window.session.toasts = []
 
 
-def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, scene):
+def test_attached_layer_follows_live_and_poses_around_its_joint(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     window.act(editing.edit_layer, shape_commands.set_anchor, 95 + 118j)
     window.act(attach_layer, arm, body)
@@ -395,13 +395,13 @@ def test_a_layer_that_hangs_follows_live_and_is_posed_around_its_joint(window, s
     top = scene.layer.handles[1].id
     window.act(set_targets, {top: Target(position=110 + 155j)})
     window.settle()
-    hung, carrier = scene.layer_runtimes[arm].shown, scene.layer_runtimes[body].shown
+    child, parent = scene.layer_runtimes[arm].shown, scene.layer_runtimes[body].shown
     joint = scene.document.layer(arm).attachments[0]
-    at = carrier.pivot_frame_at(joint.parent_point)
-    place = hung.placement.apply(np.array([hung.pivot_frame_at(95 + 118j).position]))[0]
+    at = parent.pivot_frame_at(joint.parent_point)
+    place = child.placement.apply(np.array([child.pivot_frame_at(95 + 118j).position]))[0]
     assert abs(place - at.position) < 1e-6 * WIDTH
-    assert abs(hung.placement.factor - at.rotation) < 0.02
-    assert hung.placement.factor.imag < -0.05
+    assert abs(child.placement.factor - at.rotation) < 0.02
+    assert child.placement.factor.imag < -0.05
     window.act(set_active_layer, arm)
     window.act(add_handle, 190 + 118j)
     window.settle()
@@ -424,7 +424,7 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
     window.settle()
     assert scene.document.layer(arm).still
     assert len(scene.document.layer(arm).domain.mesh.triangles) == 2
-    window.run(lambda robot: robot.item_click("Layers/Let it be posed"))
+    window.run(lambda robot: robot.item_click("Layers/Make posable"))
     window.settle()
     assert not scene.document.layer(arm).still
     assert scene.layer.name == "arm"
@@ -434,7 +434,7 @@ def test_a_layer_stands_still_and_is_posed_again(window, scene):
     assert not scene.document.layer(arm).still
 
 
-def test_what_stands_still_hangs_moves_and_fades_as_before(window, scene):
+def test_still_layer_keeps_parent_moves_and_fades(window, scene):
     arm, body = identity(scene, "arm"), identity(scene, "body")
     window.act(attach_layer, arm, body)
     window.settle()
@@ -678,19 +678,19 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
     play(ease)
     assert keyed.selected_keys == chosen
 
-    def told(what):
+    def values_by_layer(what):
         return {
             layer.name: [what(key) for key in layer.keys]
             for layer in keyed.document.layers
             if not layer.still
         }
 
-    eased = told(lambda key: key.easing == PRESETS["in-out"])
+    eased = values_by_layer(lambda key: key.easing == PRESETS["in-out"])
     assert eased == {"body": [True, False], "arm": [False, True, True]}
     window.act(keys.set_revolutions, keyed.keys_with(body, 0), 2)
-    assert told(lambda key: key.revolutions) == {"body": [2, 0], "arm": [0, 2, 2]}
+    assert values_by_layer(lambda key: key.revolutions) == {"body": [2, 0], "arm": [0, 2, 2]}
     window.act(keys.use_next_tangent_mode)
-    passed = told(lambda key: key.tangent_mode is TangentMode.CORNER)
+    passed = values_by_layer(lambda key: key.tangent_mode is TangentMode.CORNER)
     assert passed == {"body": [True, False], "arm": [False, True, True]}
     # One that is not chosen is alone.
     assert keyed.keys_with(body, 18) == {body: {18}}
@@ -822,8 +822,8 @@ def test_handles_are_shown_of_the_layer_that_is_chosen_even_while_in_betweens_ar
     window.settle()
     window.act(editing.select_handles, frozenset())
     # As long as the worker has not made them, no layer has a sampler.
-    for puppet in scene.layer_runtimes.values():
-        puppet.store.sampler = None
+    for runtime in scene.layer_runtimes.values():
+        runtime.store.sampler = None
     before = np.asarray(window.picture()).astype(int)
     scene.active = identity(scene, "body")
     after = np.asarray(window.picture()).astype(int)
@@ -845,7 +845,7 @@ def pixel(window, place):
 
 @pytest.fixture
 def posed(window, scene):
-    """The scene with the arm hung on the body, and raised by a handle at frame 24."""
+    """The scene with the arm attached to the body, and raised by a handle at frame 24."""
     arm, body = identity(scene, "arm"), identity(scene, "body")
     joint = Attachment(parent=body, parent_point=95 + 118j)
     window.act(editing.edit_document, layer_commands.attach_layer(arm, 95 + 118j, joint))
@@ -917,7 +917,7 @@ def test_what_is_outside_of_another_picture_comes_into_it(window, posed, tmp_pat
     assert abs(rest.pose.targets[0].position - layer.handles[0].position) < 1e-9
     assert raised.pose.targets[0].position != before.layer(arm).keys[1].pose.targets[0].position
     assert layer.attachments == before.layer(arm).attachments
-    # The body without the place where the arm hangs.
+    # The body without the place where the arm is attached.
     legs = saved(tmp_path / "legs.png", painted((60, 120, 110, 180), (40, 40, 200, 255)))
     window.act(replace_picture, body, legs)
     window.settle()
@@ -935,13 +935,13 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     arm, wall = identity(scene, "arm"), identity(scene, "wall")
     before = scene.document
     empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
-    for path, told in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
+    for path, reason in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
         window.session.toasts = []
         window.act(replace_picture, arm, path)
         window.settle()
         (toast,) = window.session.toasts
         assert toast.text.startswith("The picture of arm was not replaced")
-        assert told in toast.text
+        assert reason in toast.text
     assert scene.document is before
     # A still layer takes any picture.
     path = saved(tmp_path / "sky.png", Image.new("RGBA", (240, 200), (90, 160, 250, 255)))
@@ -984,13 +984,13 @@ def stranger(tmp_path_factory):
     return path
 
 
-def test_what_an_import_told_stays_in_the_panel(window, stranger):
+def test_import_log_stays_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
     (toast,) = window.session.toasts
     assert "One thing looks different here" in toast.text
-    told = project.document.import_log
-    assert told.warnings == ("shine, glow: drawn normally, not in the mode 'overlay'",)
-    assert "wall: opaque all over, so that it stands still" in told.notes
+    log = project.document.import_log
+    assert log.warnings == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    assert "wall: opaque all over, so that it stands still" in log.notes
     window.show_tab("Handle")
     window.act(toast.action.apply)
     window.frames(3)
@@ -1009,9 +1009,9 @@ def test_what_an_import_told_stays_in_the_panel(window, stranger):
     assert project.is_import_log_open
 
 
-def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_path):
+def test_import_log_is_saved_and_not_shown_again(window, stranger, tmp_path):
     document = window.again(Harness.open, stranger).document
-    path = tmp_path / "told.lissom"
+    path = tmp_path / "log.lissom"
     save_project(path, document)
     window.session.toasts = []
     project = window.open(path)
@@ -1025,7 +1025,7 @@ def test_what_an_import_told_is_saved_and_not_told_again(window, stranger, tmp_p
     assert project.is_import_log_open
 
 
-def test_what_adding_layers_told_is_undone_with_them(window, scene, stranger):
+def test_import_log_of_added_layers_is_undone_with_them(window, scene, stranger):
     before = scene.document.import_log
     window.act(add_layers, [stranger])
     window.settle()
@@ -1097,8 +1097,8 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window.settle()
     arm, body = (keyed.layer_runtimes[identity(keyed, name)] for name in ("arm", "body"))
     body_id = identity(keyed, "body")
-    for puppet in (arm, body):
-        assert puppet.store.sampler.extension is not None  # made where nothing needed it yet
+    for runtime in (arm, body):
+        assert runtime.store.sampler.extension is not None  # made where nothing needed it yet
     window.clock.now += 2 * memory.REST
     window.act(playback.seek, 3)
     window.settle()

@@ -39,8 +39,8 @@ def opened(window, folder):
     return window.open(folder / f"{NAME}.png")
 
 
-def told(window):
-    """Return what was told, after some frames in which whatever cannot be drawn is told, too."""
+def messages(window):
+    """Return the messages, after some frames in which errors of drawing appear, too."""
     window.frames(3)
     return [toast.text for toast in window.session.toasts]
 
@@ -54,7 +54,7 @@ def press(window, *names):
 def test_a_picture_is_opened_under_a_name_that_can_be_shown(window, opened):
     assert opened.name == opened.layer.name == SHOWN
     window.show_tab("Layers")
-    assert told(window) == []
+    assert messages(window) == []
 
 
 @pytest.mark.usefixtures("opened")
@@ -62,10 +62,10 @@ def test_a_project_is_saved_and_found_among_the_recent_files(window, folder):
     path = folder / f"{NAME}.lissom"
     window.act(saving.write_project, path, None)
     window.settle()
-    assert told(window) == [f"Saved {SHOWN}.lissom."]
+    assert messages(window) == [f"Saved {SHOWN}.lissom."]
     assert load_project(path).layers[0].name == SHOWN
     window.act(saving.close_project)
-    assert told(window) == [f"Saved {SHOWN}.lissom."]
+    assert messages(window) == [f"Saved {SHOWN}.lissom."]
     window.settle()
     recent = (path, folder / f"{NAME}.png")
     assert load_preferences(window.folder).recent == window.session.preferences.recent == recent
@@ -86,7 +86,7 @@ def test_failures_and_questions_tell_the_name(window, folder):
     window.act(files.open_file, missing)
     window.settle()
     window.act(files.open_recent_file, missing)
-    failed, gone = told(window)
+    failed, gone = messages(window)
     assert failed.startswith(f"{SHOWN}.png cannot be opened: cannot read ")
     assert gone.startswith(f"{SHOWN}.png is not in ")
     window.act(saving.write_project, folder / f"{NAME}.lissom", None)
@@ -96,7 +96,7 @@ def test_failures_and_questions_tell_the_name(window, folder):
     assert window.session.dialog is not None
     window.run(lambda robot: robot.item_click("//###dialog/Don't save"))
     assert window.session.project is None
-    assert len(told(window)) == 3
+    assert len(messages(window)) == 3
 
 
 def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
@@ -107,11 +107,11 @@ def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
     window.act(files.ask_recovery)
     (candidate,) = window.session.dialog.candidates
     assert candidate.origin == SourceInfo(SHOWN, folder / f"{NAME}.lissom")
-    assert told(window) == []
+    assert messages(window) == []
     window.run(lambda robot: robot.item_click("//###dialog/**/Open"))
     window.settle()
     assert window.session.project.path == folder / f"{NAME}.lissom"
-    assert len(told(window)) == 1
+    assert len(messages(window)) == 1
 
 
 @pytest.mark.parametrize("writes", [False, True])
@@ -130,7 +130,7 @@ def test_our_file_browser_lists_and_chooses_it(window, folder, writes):
     window.frames(3)
     press(window, *([] if writes else ["down_arrow", "down_arrow"]), "enter")
     assert chosen == [folder / f"{NAME}.png"]
-    assert told(window) == []
+    assert messages(window) == []
 
 
 def note(chosen, _, path):
@@ -146,7 +146,7 @@ def test_an_export_goes_there(window, folder, kind, ending):
     window.show_tab("Export")
     window.act(exporting.start_export_at, folder / name)
     window.until(lambda: window.session.toasts)
-    assert told(window)[0].startswith("Exported ")
+    assert messages(window)[0].startswith("Exported ")
     assert (folder / name).exists()
 
 

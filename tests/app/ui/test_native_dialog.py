@@ -32,7 +32,7 @@ sys.exit(status)
 
 
 class Program:
-    """A stand-in for zenity, which is told when and what to answer."""
+    """A stand-in for zenity, with a given answer at a given time."""
 
     def __init__(self, window, place):
         self.window = window
@@ -96,7 +96,7 @@ def chosen():
 
 @pytest.fixture
 def ask(window, tmp_path, chosen):
-    """Opens a dialog for a file to write, unless told otherwise."""
+    """Opens a dialog for a file to write, by default."""
 
     def open_dialog(**changes):
         settings = {
@@ -234,7 +234,7 @@ def test_the_person_may_prefer_our_browser(window, program, ask, chosen, tmp_pat
 
 
 @pytest.mark.parametrize("way", ["Cancel", "escape"])
-def test_the_window_can_cancel_a_dialog_that_hangs(window, program, ask, chosen, way):
+def test_window_can_cancel_a_dialog_that_never_answers(window, program, ask, chosen, way):
     ask()
     program.asked()
     if way == "Cancel":

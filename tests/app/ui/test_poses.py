@@ -130,7 +130,7 @@ def test_poses_are_kept_clicked_named_and_deleted(window, project, tmp_path):
 
     def name(robot):
         robot.set_ref("###Poses")
-        robot.item_click("**/###Keep pose")
+        robot.item_click("**/###Save pose")
         robot.yield_(2)
         robot.item_click("**/pose Pose 1", 1)
         robot.item_click("//$FOCUSED/Rename…")

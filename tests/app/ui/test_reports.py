@@ -24,7 +24,7 @@ def caught(error):
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "ending"),
     [
         (FileNotFoundError(2, "No such file", str(SECRET)), "[Errno 2] No such file: '…'"),
         (ValueError(f"{SECRET} is torn"), "ValueError: … is torn"),
@@ -35,17 +35,17 @@ def caught(error):
         (KeyError("ann-marie"), "KeyError: '…'"),
     ],
 )
-def test_a_trace_names_nothing_of_the_persons(error, told, monkeypatch):
+def test_a_trace_names_nothing_of_the_persons(error, ending, monkeypatch):
     monkeypatch.setattr(getpass, "getuser", lambda: ANN.name)
     text = format_trace(caught(error), [SECRET])
-    assert text.splitlines()[-1].endswith(told)
+    assert text.splitlines()[-1].endswith(ending)
     assert 'File "test_reports.py"' in text or 'File "tests/' in text
     assert str(Path(__file__).parents[3]) not in text
 
 
 @pytest.fixture
 def broken(window, bar, monkeypatch):
-    """A bug in a panel that was told of once."""
+    """A bug in a panel that is reported once."""
 
     def fail(*_):
         raise ZeroDivisionError(f"a bug with {SECRET}")
@@ -108,7 +108,7 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     assert "report of it was kept" in session.toasts[0].text
     session.toasts = []
     error_reports.offer_kept_report(session)
-    assert session.toasts == [], "it was told"
+    assert session.toasts == [], "a message appeared"
     window.run(lambda robot: robot.menu_click("//##MainMenuBar/Help/Report a problem…"))
     window.frames(2)
     window.run(lambda robot: robot.item_click("//###dialog/Discard"))

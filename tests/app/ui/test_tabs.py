@@ -104,17 +104,17 @@ def test_handle_is_chosen_renamed_weighed_and_deleted(project, tab):
 def test_target_typed_in_poses_the_shape(window, project, tab):
     editing.select_handles(window.session, frozenset({1}))
     before = project.layer.key(24).pose
-    wish = before.targets[1].position
+    target = before.targets[1].position
     tab(
         "Handle",
         lambda robot: robot.item_input_value(
-            "**/##target y", project.document.canvas[1] - wish.imag + 20.0
+            "**/##target y", project.document.canvas[1] - target.imag + 20.0
         ),
     )
     after = project.layer.key(24).pose
-    assert after.targets[1].position == pytest.approx(wish - 20j, abs=0.01)
+    assert after.targets[1].position == pytest.approx(target - 20j, abs=0.01)
     place = project.layer.map_of(after)(np.array([project.layer.handle(1).position]))
-    np.testing.assert_allclose(place, wish - 20j, rtol=0, atol=2)
+    np.testing.assert_allclose(place, target - 20j, rtol=0, atol=2)
 
 
 def test_turn_is_taken_from_the_shape_then_typed_then_freed(window, project, tab):
@@ -326,7 +326,7 @@ def test_rebuilt_domain_keeps_a_pose_that_no_handle_holds(window, project, tab):
     assert certificate.k == pytest.approx(STRETCH, rel=0.01)
 
 
-def test_domain_that_cannot_be_built_is_told(window, project, tab):
+def test_error_appears_when_the_domain_cannot_be_built(window, project, tab):
     before = project.document
     project.layer_runtime.picture = replace(
         project.layer_runtime.picture, rgba=np.zeros_like(project.layer_runtime.picture.rgba)
@@ -442,7 +442,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     assert project.extent.follows(extent_key(project.document)), "where the tab is hidden, too"
 
 
-def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
+def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
     session = window.session
     exporting.set_export_settings(session, replace(project.document.export, size=(80, 60)))
 
@@ -461,12 +461,12 @@ def test_export_is_started_repeated_and_told(window, project, tab, tmp_path):
     window.until(lambda: session.export is None)
     names = sorted(path.name for path in (tmp_path / "frames").iterdir())
     assert names == [f"frame_{number:04d}.png" for number in range(3)]
-    told = next(toast for toast in session.toasts if toast.tone == "good")
-    assert told.label == "Open folder"
-    assert told.action.arguments == (tmp_path / "frames",)
+    toast = next(toast for toast in session.toasts if toast.tone == "good")
+    assert toast.label == "Open folder"
+    assert toast.action.arguments == (tmp_path / "frames",)
 
 
-def test_export_that_cannot_begin_is_told(window, project, tab, tmp_path):
+def test_error_appears_when_an_export_cannot_begin(window, project, tab, tmp_path):
     project.export_destinations["png"] = tmp_path / "missing" / "frames"
     tab("Export", lambda robot: robot.item_click("**/###start"))
     assert window.session.export is None
@@ -516,8 +516,8 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
     """Pulled weakly, far from every limit: all places that tell of it say so, and the same."""
     layer = project.layer
     key = layer.key(24)
-    wish = Target(position=key.pose.targets[1].position + 12j)
-    pose = replace(key.pose, targets={**key.pose.targets, 1: wish})
+    target = Target(position=key.pose.targets[1].position + 12j)
+    pose = replace(key.pose, targets={**key.pose.targets, 1: target})
     editing.edit_document(window.session, key_commands.replace_key_pose(project.active, 24, pose))
     editing.select_handles(window.session, frozenset({1}))
     written = []
@@ -530,10 +530,10 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
     for title in ("Handle", "Deform"):
         written.clear()
         window.show_tab(title)
-        told = " ".join(written).lower()
-        assert "12 px short of its target" in told, title
-        assert reason in told, title
-        assert "by the limits" not in told
+        text = " ".join(written).lower()
+        assert "12 px short of its target" in text, title
+        assert reason in text, title
+        assert "by the limits" not in text
     assert project.timeline.target_errors.value[pose] == {1: pytest.approx(12, abs=1e-6)}
 
 

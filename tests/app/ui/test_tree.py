@@ -1,4 +1,4 @@
-"""The tree of layers in the window: groups, choices, several at once, joints that change hands."""
+"""The tree of layers in the window: groups, switches, selections, parents over time."""
 
 import re
 
@@ -117,7 +117,7 @@ def place(project, name, window):
     return complex(shown.placement.apply(shown.positions).mean())
 
 
-def test_layers_take_turns_by_one_click(window, scene, ids, use):
+def test_switch_is_created_by_one_click(window, scene, ids, use):
     def choose_both(robot):
         robot.item_click(row_of(ids["ah"]))
         robot.key_down(int(window.Key.mod_ctrl))
@@ -127,18 +127,18 @@ def test_layers_take_turns_by_one_click(window, scene, ids, use):
     use(choose_both)
     assert set(scene.selected_layers) == {ids["ah"], ids["oh"]}
 
-    def let_take_turns(robot):
+    def choose_create_switch(robot):
         robot.item_click(row_of(ids["ah"]), 1)
-        robot.item_click("//$FOCUSED/Let them take turns")
+        robot.item_click("//$FOCUSED/Create switch")
 
-    use(let_take_turns)
-    (choice,) = scene.document.switch_groups
-    assert set(choice.layers) == {ids["ah"], ids["oh"]}
-    first = scene.document.layer(choice.layer_at(0)).name
+    use(choose_create_switch)
+    (switch_group,) = scene.document.switch_groups
+    assert set(switch_group.layers) == {ids["ah"], ids["oh"]}
+    first = scene.document.layer(switch_group.layer_at(0)).name
     other = ({"ah", "oh"} - {first}).pop()
     assert {"ah", "oh"} & seen(scene, 0) == {first}
     window.act(playback.seek, 12)
-    use(lambda robot: robot.item_click(f"**/fold choice {choice.name}"))
+    use(lambda robot: robot.item_click(f"**/fold choice {switch_group.name}"))
     use(lambda robot: robot.item_click(f"**/###turn {ids[other]}"))
     assert {"ah", "oh"} & seen(scene, 11) == {first}
     assert {"ah", "oh"} & seen(scene, 12) == {other}
@@ -271,21 +271,21 @@ def test_layers_are_grouped_folded_hidden_and_locked_together(window, scene, ids
     assert scene.document.layer(ids["stick"]).group == "group"
 
 
-def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, use):
+def test_row_is_attached_when_dropped_on_another_row(window, scene, ids, use):
     before = place(scene, "hat", window)
     use(lambda robot: drop(robot, ids["hat"], ids["head"]))
     window.settle()
     (joint,) = scene.document.layer(ids["hat"]).attachments
     assert joint.parent == ids["head"]
     assert abs(place(scene, "hat", window) - before) < 0.1
-    # Beside what it does not touch, it hangs as well, and nothing moves.
+    # A layer that does not touch the other one is attached as well, and nothing moves.
     before = place(scene, "stick", window)
     use(lambda robot: drop(robot, ids["stick"], ids["head"]))
     window.settle()
     (joint,) = scene.document.layer(ids["stick"]).attachments
     assert abs(joint.offset) > 10
     assert abs(place(scene, "stick", window) - before) < 0.1
-    # In a circle nothing can hang, which is told, and nothing moves.
+    # A circle is refused with a message, and nothing moves.
     before, window.session.toasts = scene.document, []
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
     assert scene.document is before
@@ -293,7 +293,7 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     assert re.search(
         says(PARENT_IS_DESCENDANT, name="hat", parent="head", other="head"), toast.text
     )
-    # So it is where it hangs there by others, and where one of several would.
+    # An indirect circle is refused as well, also for one of several layers.
     window.act(attach_layer, ids["ah"], ids["hat"])
     window.settle()
     before, window.session.toasts = scene.document, []
@@ -327,17 +327,17 @@ def test_chosen_layers_are_dropped_together(window, scene, ids, use):
 def test_chosen_layers_are_dropped_on_a_choice_together(window, scene, ids, use):
     window.act(create_switch, ids["ah"], ids["oh"])
     before = scene.document
-    (choice,) = before.switch_groups
-    (row,) = (row for row in scene.tree if row.switch_group is choice)
+    (switch_group,) = before.switch_groups
+    (row,) = (row for row in scene.tree if row.switch_group is switch_group)
     window.act(select_layers, ids["hat"], ids["stick"])
     use(lambda robot: drop(robot, ids["stick"], row.key))
     (joined,) = scene.document.switch_groups
-    assert set(joined.layers) == {*choice.layers, ids["hat"], ids["stick"]}
+    assert set(joined.layers) == {*switch_group.layers, ids["hat"], ids["stick"]}
     window.act(editing.undo)
     assert scene.document is before
 
 
-def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window, scene, ids):
+def test_children_get_the_grandparent_when_a_layer_is_deleted(window, scene, ids):
     for child, parent in (("ah", "hat"), ("hat", "head")):
         window.act(attach_layer, ids[child], ids[parent])
         window.settle()
@@ -353,7 +353,7 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     assert scene.history.undo_label == "Delete layer"
     window.act(editing.undo)
     assert scene.document is before
-    # Also where it is handed over to it at another time, and without a jump.
+    # Also where it is reparented to it at another time, and without a jump.
     window.act(attach_layer, ids["ah"], ids["stick"])
     window.settle()
     window.act(playback.seek, 10)
@@ -369,20 +369,20 @@ def test_what_hung_on_a_layer_that_is_deleted_hangs_on_what_that_hung_on(window,
     assert abs(place(scene, "ah", window) - there) < 0.1
 
 
-def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, use):
+def test_layer_is_reparented_and_detached_without_a_jump(window, scene, ids, use):
     window.act(attach_layer, ids["stick"], ids["head"])
     window.settle()
     window.act(set_active_layer, ids["stick"])
-    for frame, button in ((10, f"**/To hat###to {ids['hat']}"), (20, "**/Let it go")):
+    for frame, button in ((10, f"**/To hat###to {ids['hat']}"), (20, "**/Detach")):
         window.act(playback.seek, frame)
         window.settle()
         before = place(scene, "stick", window)
 
-        def hand_over(robot, frame=frame, button=button):
-            robot.item_click(f"**/Hand over from frame {frame} on…")
+        def reparent(robot, frame=frame, button=button):
+            robot.item_click(f"**/Reparent from frame {frame}…")
             robot.item_click(button.replace("**", "//$FOCUSED"))
 
-        use(hand_over)
+        use(reparent)
         window.settle()
         assert scene.document.layer(ids["stick"]).attachments[-1].frame == frame
         assert abs(place(scene, "stick", window) - before) < 0.5
@@ -395,7 +395,7 @@ def test_a_layer_is_handed_over_and_let_go_without_a_jump(window, scene, ids, us
     assert len(scene.document.layer(ids["stick"]).attachments) == 2
 
 
-def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, ids, use):
+def test_reparenting_in_a_repeat_changes_all_repeats(window, scene, ids, use):
     window.act(attach_layer, ids["stick"], ids["head"])
     window.settle()
     window.act(editing.edit_document, cycle_commands.set_cycle(ids["stick"], 0, 12))
@@ -411,7 +411,7 @@ def test_what_is_handed_over_in_a_repeat_is_handed_over_in_all(window, scene, id
         scene.document.parent_chain(ids["stick"], frame)[1].id for frame in (5, 7, 14, 19, 30)
     ]
     assert parents == [ids[name] for name in ("head", "hat", "head", "hat", "hat")]
-    use(lambda robot: robot.item_click("**/No change at frame 6###joint"))
+    use(lambda robot: robot.item_click("**/Delete parent key###joint"))
     assert (
         scene.document.layer(ids["stick"]).attachments == document.layer(ids["stick"]).attachments
     )
@@ -470,13 +470,13 @@ def test_what_is_hidden_at_all_times_is_switched_instead(window, scene, ids, use
     assert not scene.document.layer(ids["hat"]).hidden
 
 
-def test_a_group_of_mouths_is_offered_as_a_choice(window, scene, ids, use):
+def test_group_of_mouths_is_offered_as_a_switch(window, scene, ids, use):
     command = group_commands.group_layers([ids["ah"], ids["oh"]], "mouth")
     window.act(editing.edit_document, command)
     window.frames(3)
-    use(lambda robot: robot.item_click("**/Let them take turns"))
-    (choice,) = scene.document.switch_groups
-    assert (choice.name, set(choice.layers)) == ("mouth", {ids["ah"], ids["oh"]})
+    use(lambda robot: robot.item_click("**/Create switch"))
+    (switch_group,) = scene.document.switch_groups
+    assert (switch_group.name, set(switch_group.layers)) == ("mouth", {ids["ah"], ids["oh"]})
     window.act(editing.undo)
     window.frames(3)
     use(lambda robot: robot.item_click("**/No"))
@@ -495,7 +495,7 @@ def test_a_group_is_dragged_by_its_row(window, scene, ids, use):
     def inside(path):
         return {each.name for each in scene.document.layers if each.group == path}
 
-    # Onto a layer, all of it hangs there.
+    # Onto a layer, all its layers are attached.
     before = scene.document
     use(lambda robot: drop(robot, key("mouth"), ids["hat"]))
     window.settle()
@@ -524,17 +524,17 @@ def test_a_group_in_a_group_of_mouths_is_not_taken_apart(window, scene, ids, use
     key = next(row.key for row in scene.tree if row.group and row.group.name == "mouth")
     before = scene.document
 
-    def take_turns(robot):
+    def choose_create_switch(robot):
         robot.item_click(row_of(key), 1)
-        robot.item_click("//$FOCUSED/Let its layers take turns")
+        robot.item_click("//$FOCUSED/Create switch")
         robot.key_press(int(window.Key.escape))
 
-    use(take_turns)
+    use(choose_create_switch)
     assert scene.document is before
     # The layers that are by themselves are offered, and the group stays as it is.
-    use(lambda robot: robot.item_click("**/Let them take turns"))
-    (choice,) = scene.document.switch_groups
-    assert set(choice.layers) == {ids["ah"], ids["oh"]}
+    use(lambda robot: robot.item_click("**/Create switch"))
+    (switch_group,) = scene.document.switch_groups
+    assert set(switch_group.layers) == {ids["ah"], ids["oh"]}
 
 
 def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use):
@@ -549,7 +549,7 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/change 12"))
     assert playback.current_frame(window.session, scene) == 12
     window.frames(3)
-    use(lambda robot: robot.item_click("**/No movement key at frame 12"))
+    use(lambda robot: robot.item_click("**/Delete transform key"))
     assert scene.document.layer(ids["stick"]).transform_keys == ()
 
     def paint_in_front(robot):
@@ -559,5 +559,5 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     use(paint_in_front)
     assert [each.id for each in layers_in_draw_order(scene.document, 11)][-1] == ids["oh"]
     assert [each.id for each in layers_in_draw_order(scene.document, 12)][-1] == ids["stick"]
-    use(lambda robot: robot.item_click("**/No change of order at frame 12"))
+    use(lambda robot: robot.item_click("**/Delete order key"))
     assert scene.document.layer(ids["stick"]).draw_order_keys == ()

@@ -10,6 +10,7 @@ from app.editor import Action, Overlays, Project, Session, do
 from app.editor.actions import viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.viewing import OverlayName
+from app.texts import _, ngettext
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -24,39 +25,39 @@ from app.ui.style.widgets import (
 )
 from engine.domain.meshing.mesh import Mesh
 
-DETAILS = (("coarse", "Coarse"), ("normal", "Normal"), ("fine", "Fine"))
+DETAILS = (("coarse", _("Coarse")), ("normal", _("Normal")), ("fine", _("Fine")))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)
 SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
-    ("outline", "Outline", "The edge of the shape, which moves with the drawing"),
-    ("cage", "Cage", "The polygon around the drawing at rest that moves every point inside"),
-    ("wireframe", "Mesh", "The triangles that the drawing is cut into"),
+    ("outline", _("Outline"), _("The edge of the shape, which moves with the drawing")),
+    ("cage", _("Cage"), _("The polygon around the drawing at rest that moves every point inside")),
+    ("wireframe", _("Mesh"), _("The triangles that the drawing is cut into")),
 )
 
 
 def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Action]:
-    heading(look, "Show")
+    heading(look, _("Show"))
     actions = _toggles(session.overlays)
-    heading(look, "Facts")
+    heading(look, _("Facts"))
     _facts(look, project)
-    heading(look, "Rebuild")
+    heading(look, _("Rebuild"))
     layer = project.layer
     draft = project.meshing or layer.meshing
     chosen = _settings(look, draft)
     if chosen != draft:
         actions.append(do(viewing.preview_meshing, chosen))
     imgui.dummy(ImVec2(0, 0.2 * look.em))
-    renewal = project.key_resolver
-    if renewal is not None and renewal.meshing is not None:
-        if progress_bar(renewal.progress, renewal.status_text):
+    resolver = project.key_resolver
+    if resolver is not None and resolver.meshing is not None:
+        if progress_bar(resolver.progress, resolver.status_text):
             actions.append(do(resolving.cancel_solving_keys))
     else:
-        is_new = chosen != layer.meshing and renewal is None
-        text = f"{icons.ICON_FA_ARROWS_ROTATE}  Rebuild###rebuild"
+        is_new = chosen != layer.meshing and resolver is None
+        text = f"{icons.ICON_FA_ARROWS_ROTATE}  {_('Rebuild')}###rebuild"
         if main_button(look, text, FILL, enabled=is_new):
             actions.append(do(resolving.rebuild_mesh))
-        if is_new and imgui.button("Revert###forget", ImVec2(FILL, 0)):
+        if is_new and imgui.button(_("Revert") + "###forget", ImVec2(FILL, 0)):
             actions.append(do(viewing.preview_meshing, layer.meshing))
-    small_text(look, "Handles stay, and every key is posed again. Undo brings all of it back.")
+    small_text(look, _("Handles stay, and every key is posed again. Undo restores both."))
     return actions
 
 
@@ -78,14 +79,17 @@ def _facts(look: Look, project: Project) -> None:
     close = ImVec2(imgui.get_style().item_spacing.x, 0.0)
     imgui.push_style_var(imgui.StyleVar_.item_spacing, close)
     width, height = project.document.canvas
-    _fact(look, "Picture", f"{width} × {height} pixels")
-    _fact(look, "Outline", f"{sum(map(len, domain.loops)):,} points")
-    _fact(look, "Cage", f"{sum(map(len, domain.cages)):,} points")
+    text = _("{width} × {height} pixels")
+    _fact(look, _("Picture"), text.format(width=width, height=height))
+    for name, loops in ((_("Outline"), domain.loops), (_("Cage"), domain.cages)):
+        count = sum(map(len, loops))
+        text = ngettext("{count:,} point", "{count:,} points", count)
+        _fact(look, name, text.format(count=count))
     if domain.holes:
-        _fact(look, "Holes", f"{len(domain.holes):,}")
-    _fact(look, "Triangles", f"{len(domain.mesh.triangles):,}")
-    _fact(look, "Vertices", f"{len(domain.mesh.vertices):,}")
-    _fact(look, "Least angle", f"{_smallest_angle(domain.mesh):.1f}°")
+        _fact(look, _("Holes"), f"{len(domain.holes):,}")
+    _fact(look, _("Triangles"), f"{len(domain.mesh.triangles):,}")
+    _fact(look, _("Vertices"), f"{len(domain.mesh.vertices):,}")
+    _fact(look, _("Least angle"), f"{_smallest_angle(domain.mesh):.1f}°")
     imgui.pop_style_var()
 
 
@@ -100,13 +104,13 @@ def _smallest_angle(mesh: Mesh) -> float:
 
 
 def _settings(look: Look, draft: Meshing) -> Meshing:
-    label(look, "Outline")
+    label(look, _("Outline"))
     match option_buttons(look, "detail", DETAILS, draft.detail):
         case "coarse" | "normal" | "fine" as detail:
             draft = replace(draft, detail=detail)
-    draw_tooltip("How closely the outline follows the drawing")
-    label(look, "Triangles")
-    hint = "How many triangles to aim at: more bend smoothly, fewer draw faster"
+    draw_tooltip(_("How closely the outline follows the drawing"))
+    label(look, _("Triangles"))
+    hint = _("How many triangles to aim at: more bend smoothly, fewer draw faster")
     entered = slider(look, "triangles", draft.triangles, TRIANGLES, text="%.0f", hint=hint)
     if entered is not None:
         digits = 0 if entered.is_final and entered.value < 10_000 else -3

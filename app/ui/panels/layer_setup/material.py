@@ -8,8 +8,8 @@ from app.editor import Action, MaterialTool, Project, Session, do
 from app.editor.actions import viewing
 from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
 from app.editor.actions.posing.pose_drag import pose_at_playhead
-from app.ui.panels.layer_setup.cut_out import BRUSHES
-from app.ui.shortcuts.table import BINDINGS
+from app.texts import _
+from app.ui.panels.layer_setup.cut_out import BRUSHES, brush_hint
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -32,28 +32,33 @@ AMOUNTS = Scale(
 )
 SOFTNESSES = Scale(left=0.0, right=1.0)
 TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
-    ("stiff", icons.ICON_FA_CUBE, "Stiff", "Brush over what is to bend and stretch less"),
-    ("soft", icons.ICON_FA_FEATHER, "Soft", "Brush over what is to give way first"),
-    ("normal", icons.ICON_FA_ERASER, "Normal", "Brush over what is to be as it was"),
-    ("bone", icons.ICON_FA_BONE, "Bone", "Drag from one handle to another: the limb is stiff"),
+    ("stiff", icons.ICON_FA_CUBE, _("Stiff"), _("Brush over parts that bend and stretch less")),
+    ("soft", icons.ICON_FA_FEATHER, _("Soft"), _("Brush over parts that give way first")),
+    ("normal", icons.ICON_FA_ERASER, _("Normal"), _("Brush over parts to make them normal again")),
+    (
+        "bone",
+        icons.ICON_FA_BONE,
+        _("Bone"),
+        _("Drag from one handle to another: the limb is stiff"),
+    ),
 )
 
 
 def draw_material_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the brush, the bones, and the button that applies both to existing keys."""
     layer = project.layer
-    heading(look, "Brush", framed=True)
+    heading(look, _("Brush"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
-    hint, is_painted = "Take back all that is painted; bones stay", layer.stiffness is not None
+    hint, is_painted = _("Delete all strokes; bones stay"), layer.stiffness is not None
     actions = [] if session.tint == "stiffness" else [do(viewing.set_tint, "stiffness")]
     if icon_button(look, icons.ICON_FA_TRASH, "clear material", hint, enabled=is_painted):
         actions.append(do(stiffness_editing.clear_stiffness))
     actions += _tools(session, look) + _brush(session, look, project)
-    heading(look, "Bones", framed=True)
+    heading(look, _("Bones"), framed=True)
     actions += _bones(look, layer)
-    heading(look, "Whole layer")
+    heading(look, _("Whole layer"))
     actions += _whole(layer)
-    heading(look, "Keys")
+    heading(look, _("Keys"))
     return actions + _keys(session, look, project)
 
 
@@ -73,25 +78,27 @@ def _tools(session: Session, look: Look) -> list[Action]:
 
 def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    label(look, "Size")
-    keys = " and ".join(BINDINGS[name].shown_keys for name in ("smaller brush", "larger brush"))
-    hint = f"Radius of the brush in pixels of the picture; {keys} change it"
+    label(look, _("Size"))
     radius = cut_out_editing.brush_radius(project)
-    entered = slider(look, "material brush", radius, BRUSHES, text="%.0f", hint=hint)
+    entered = slider(look, "material brush", radius, BRUSHES, text="%.0f", hint=brush_hint())
     if entered is not None:
         actions.append(do(cut_out_editing.set_brush_radius, entered.value))
-    label(look, "Strength")
-    hint = "How many times as stiff, or as soft, it makes what it covers"
+    label(look, _("Strength"))
+    hint = _("How many times as stiff, or as soft, the brush makes the shape")
     entered = slider(look, "strength", session.strength, STRENGTHS, text="%.1f ×", hint=hint)
     if entered is not None:
         actions.append(do(stiffness_editing.set_stiffness_strength, entered.value))
-    label(look, "Soft edge")
-    hint = "Over which part of the radius that becomes less"
+    label(look, _("Soft edge"))
+    hint = _("Part of the radius over which the strength fades")
     entered = slider(look, "softness", session.softness, SOFTNESSES, hint=hint)
     if entered is not None:
         actions.append(do(stiffness_editing.set_brush_softness, entered.value))
     small_text(
-        look, "It acts on the outline within its radius, and by that as deep as a limb is thick."
+        look,
+        _(
+            "The brush acts on the outline within its radius, and from there as deep as a limb is "
+            "thick."
+        ),
     )
     if session.material == "stiff":
         small_text(look, _describe_limits(project.layer, session.strength))
@@ -100,13 +107,16 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
 
 def _bones(look: Look, layer: Layer) -> list[Action]:
     if not layer.bones:
-        small_text(look, "None yet. With “Bone” in hand, drag from a handle to the next one.")
+        small_text(
+            look,
+            _("There are no bones yet. Choose “Bone”, then drag from a handle to the next one."),
+        )
         return []
     actions: list[Action] = []
     is_shown = any(bone.is_shown for bone in layer.bones)
     align_right(1.15 * imgui.get_frame_height())
     eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
-    if icon_button(look, eye, "show bones", "Show the bones, or hide them: they act either way"):
+    if icon_button(look, eye, "show bones", _("Show or hide the bones. They act either way.")):
         actions.append(do(stiffness_editing.set_bones_visible, shown=not is_shown))
     for bone in layer.bones:
         first, second = (layer.handle(identity).name for identity in bone.ends)
@@ -115,9 +125,9 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
         imgui.align_text_to_frame_padding()
         imgui.text_unformatted(name)
         align_right(1.15 * imgui.get_frame_height())
-        if icon_button(look, icons.ICON_FA_XMARK, "delete bone", "Take this bone away"):
+        if icon_button(look, icons.ICON_FA_XMARK, "delete bone", _("Delete this bone")):
             actions.append(do(stiffness_editing.remove_bone, bone.ends))
-        hint = "How many times as stiff as usual the limb is"
+        hint = _("How many times as stiff as usual the limb is")
         entered = slider(look, "amount", bone.stiffness, AMOUNTS, text="%.1f ×", hint=hint)
         if entered is not None:
             actions.append(do(stiffness_editing.set_bone_stiffness, bone.ends, entered.value))
@@ -129,48 +139,48 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
 def _describe_limits(layer: Layer, amount: float) -> str:
     """Describe the limits of new poses in a part of this stiffness."""
     if amount <= 1:
-        return "It gives way first, within the limits of the layer."
+        return _("This part gives way first, within the limits of the layer.")
     limits = layer.bounds.scaled_by(np.array([amount]))
     fields = limits.k, limits.sigma_a, limits.sigma_b
     shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
-    return (
-        f"In new poses it bends at most {shear:.0%}, stretches at most {stretch - 1:.0%} and "
-        f"shrinks at most {1 - squeeze:.0%}."
-    )
+    return _(
+        "In new poses this part bends at most {shear:.0%}, stretches at most {stretch:.0%} and "
+        "shrinks at most {shrinkage:.0%}."
+    ).format(shear=shear, stretch=stretch - 1, shrinkage=1 - squeeze)
 
 
 def _whole(layer: Layer) -> list[Action]:
     actions: list[Action] = []
     widths = split_line(2)
-    hint = "Heads, hands and feet stiff, tails and hair soft, by the names of the handles"
-    text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  By names"
+    hint = _("Make heads, hands and feet stiff, tails and hair soft, by the names of the handles")
+    text = f"{icons.ICON_FA_WAND_MAGIC_SPARKLES}  {_('By names')}"
     if text_button(text, next(widths), hint, enabled=bool(layer.handles)):
         actions.append(do(stiffness_editing.suggest_stiffness))
-    hint = "Give both sides of the mirror axis what one of them has"
+    hint = _("Copy the material of one side of the mirror axis to the other side")
     is_any = layer.stiffness is not None or bool(layer.bones)
-    text = f"{icons.ICON_FA_ARROWS_LEFT_RIGHT}  Mirror"
+    text = f"{icons.ICON_FA_ARROWS_LEFT_RIGHT}  {_('Mirror')}"
     if text_button(text, next(widths), hint, enabled=is_any):
         actions.append(do(stiffness_editing.mirror_stiffness))
     return actions
 
 
 def _keys(session: Session, look: Look, project: Project) -> list[Action]:
-    small_text(look, "Keys keep their poses until they are posed again with this material.")
-    renewal = project.key_resolver
-    if renewal is not None and renewal.new_layer is None:
+    small_text(look, _("Keys keep their poses until they are posed again with this material."))
+    resolver = project.key_resolver
+    if resolver is not None and resolver.new_layer is None:
         return (
             [do(resolving.cancel_solving_keys)]
-            if progress_bar(renewal.progress, renewal.status_text)
+            if progress_bar(resolver.progress, resolver.status_text)
             else []
         )
     actions: list[Action] = []
-    is_possible = renewal is None and bool(project.layer.handles)
+    is_possible = resolver is None and bool(project.layer.handles)
     is_here = is_possible and pose_at_playhead(session, project) is not None
     widths = split_line(2)
-    hint = "Pull the handles of the pose that is shown to their targets again"
-    if text_button("Pose this key again", next(widths), hint, enabled=is_here):
+    hint = _("Pull the handles of the pose that is shown to their targets again")
+    if text_button(_("Pose this key again"), next(widths), hint, enabled=is_here):
         actions.append(do(stiffness_editing.solve_shown_pose_again))
-    hint = "Pull the handles of every key to their targets again"
-    if text_button("Pose all keys again", next(widths), hint, enabled=is_possible):
+    hint = _("Pull the handles of every key to their targets again")
+    if text_button(_("Pose all keys again"), next(widths), hint, enabled=is_possible):
         actions.append(do(resolving.solve_keys_again))
     return actions

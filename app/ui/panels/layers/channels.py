@@ -23,28 +23,37 @@ from app.editor.layering.layer_channels import (
     key_transform,
 )
 from app.editor.layering.layer_list import set_layer_opacity
+from app.texts import _
 from app.ui.style.sliders import Scale, number_field, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import FILL, draw_tooltip, label, small_text, text_button
 
 PERCENT = Scale(left=0, right=100)
-HOW = {"right": "goes right", "up": "goes up", "turn": "turns, counter-clockwise"}
+MOVES = {
+    "right": _("Move the layer and its children right. A change sets a key at this frame."),
+    "up": _("Move the layer and its children up. A change sets a key at this frame."),
+    "turn": _(
+        "Turn the layer and its children counter-clockwise. A change sets a key at this frame."
+    ),
+}
 
 
 def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     actions, opacity = [], opacity_at(document, layer, frame)
-    label(look, "Opacity")
-    hint = "How much of what lies behind is covered"
-    if layer.opacity_keys:
-        hint += "; a change is a key at this frame"
+    label(look, _("Opacity"))
+    hint = (
+        _("How much the layer covers. A change sets a key at this frame.")
+        if layer.opacity_keys
+        else _("How much the layer covers")
+    )
     faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
         fade = key_opacity if layer.opacity_keys else set_layer_opacity
         actions.append(do(fade, layer.id, min(max(faded.value / 100, 0.0), 1.0)))
     keyed = keyed_frame(layer, layer.opacity_keys, frame)
     is_keyed = any(key.frame == keyed for key in layer.opacity_keys)
-    changed, _ = imgui.checkbox("Key opacity", is_keyed)
-    draw_tooltip("It fades evenly from key to key")
+    changed = imgui.checkbox(_("Key opacity"), is_keyed)[0]
+    draw_tooltip(_("The layer fades evenly from key to key"))
     if changed and is_keyed:
         actions.append(do(delete_opacity_key, layer.id))
     elif changed:
@@ -63,7 +72,7 @@ def draw_transform_channel(
     turn = math.degrees(math.atan2(moved.factor.imag, moved.factor.real))
     shift = moved.shift - (1 - moved.factor) * layer.pivot
     entered: dict[str, float] = {}
-    label(look, "Transform")
+    label(look, _("Transform"))
     each = (imgui.get_content_region_avail().x - 2 * imgui.get_style().item_inner_spacing.x) / 3
     values = {
         "right": (shift.real, "%.1f px"),
@@ -73,9 +82,7 @@ def draw_transform_channel(
     for name, (value, text) in values.items():
         imgui.set_next_item_width(each)
         found = number_field(f"moved {name}", value, text)
-        draw_tooltip(
-            f"The layer, with all that hangs on it, {HOW[name]}; a change is a key at this frame"
-        )
+        draw_tooltip(MOVES[name])
         if found is not None:
             entered[name] = found
         imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
@@ -86,11 +93,11 @@ def draw_transform_channel(
         actions.append(do(key_transform, layer.id, complex(right, up), radians))
     keyed = keyed_frame(layer, layer.transform_keys, frame)
     if any(key.frame == keyed for key in layer.transform_keys) and text_button(
-        "Delete transform key", FILL, "It goes on between the keys around"
+        _("Delete transform key"), FILL, _("The layer then moves between the keys around this one")
     ):
         actions.append(do(delete_transform_key, layer.id))
     if layer.has_parent and layer.transform_keys:
-        small_text(look, "While it hangs on another layer it is moved by that one alone.")
+        small_text(look, _("While the layer has a parent, only the parent moves it."))
     return actions
 
 
@@ -102,28 +109,32 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     actions: list[Action] = []
     now = draw_order_key_at(document, layer, frame)
     beside = None if now is None or now.beside is None else document.layer(now.beside)
-    words = "as in the list"
+    text = _("as in the list")
     if now is not None and beside is not None:
-        words = f"{'in front of' if now.in_front else 'behind'} {beside.name}"
-    label(look, "Draw order")
-    if imgui.begin_combo("##painted", words):
-        if imgui.selectable("as in the list", beside is None)[0] and beside is not None:
+        text = _("in front of {name}") if now.in_front else _("behind {name}")
+        text = text.format(name=beside.name)
+    label(look, _("Draw order"))
+    if imgui.begin_combo("##painted", text):
+        if imgui.selectable(_("as in the list"), beside is None)[0] and beside is not None:
             actions.append(do(key_draw_order, layer.id, None))
-        for in_front, word in ((True, "in front of"), (False, "behind")):
+        for in_front, id_, text in (
+            (True, "in front of", _("in front of {name}")),
+            (False, "behind", _("behind {name}")),
+        ):
             imgui.separator()
             actions += [
                 do(key_draw_order, layer.id, each.id, in_front)
                 for each in others
                 if imgui.selectable(
-                    f"{word} {each.name}###{word} {each.id}",
+                    f"{text.format(name=each.name)}###{id_} {each.id}",
                     each is beside and now is not None and now.in_front == in_front,
                 )[0]
             ]
         imgui.end_combo()
-    draw_tooltip(f"From frame {frame} on, until it is said otherwise")
+    draw_tooltip(_("From frame {frame} to the next order key").format(frame=frame))
     keyed = change_frame(layer.draw_order_keys, layer.cycles, frame)
     if any(each.frame == keyed for each in layer.draw_order_keys) and text_button(
-        "Delete order key", FILL, "What was said before it holds on"
+        _("Delete order key"), FILL, _("The previous order key then holds on")
     ):
         actions.append(do(delete_draw_order_key, layer.id))
     return actions

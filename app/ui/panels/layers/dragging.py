@@ -8,6 +8,7 @@ from app.editor.layering.layer_list import add_layers_to_group, move_layers_besi
 from app.editor.layering.layer_selection import select_layers
 from app.editor.layering.parenting import attach_layers, is_same_or_descendant
 from app.editor.layering.switches import add_to_switch
+from app.texts import ngettext
 from app.ui.style.theme import Look, colour_u32
 
 MOVED = "layer"  # type of the drag-and-drop payload
@@ -29,7 +30,10 @@ def drag_layer_row(
         if row.layer is None and set(project.selected_layers) != set(row.layers):
             actions.append(do(select_layers, *row.layers))
         dragged = _dragged(project, row.layers[0])
-        imgui.text(row.name if set(dragged) <= set(row.layers) else f"{len(dragged)} layers")
+        text, count = row.name, len(dragged)
+        if not set(dragged) <= set(row.layers):
+            text = ngettext("{count} layer", "{count} layers", count).format(count=count)
+        imgui.text(text)
         imgui.end_drag_drop_source()
     if not imgui.begin_drag_drop_target():
         return actions

@@ -33,6 +33,7 @@ from app.editor.layering.parenting import (
 )
 from app.editor.layering.pictures import make_posable, make_still
 from app.editor.layering.switches import key_switch, remove_from_switch
+from app.texts import _
 from app.ui.panels.layers.channels import (
     draw_opacity_channel,
     draw_order_channel,
@@ -51,38 +52,37 @@ from app.ui.style.widgets import (
 )
 
 PERCENT = Scale(left=0, right=100)
-NOTHING = "nothing"
+BLEND_NAMES = {"normal": _("normal"), "multiply": _("multiply"), "screen": _("screen")}
+NOTHING = _("nothing")
 
 
 def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) -> list[Action]:
     actions = []
     identity = layer.id
-    label(look, "Name")
+    label(look, _("Name"))
     entered, name = imgui.input_text(
         "##layer name", layer.name, imgui.InputTextFlags_.enter_returns_true
     )
     if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
         actions.append(do(rename_layer, identity, name))
     actions += draw_opacity_channel(project.document, look, layer, frame)
-    label(look, "Blend")
-    if imgui.begin_combo("##blend", layer.blend):
+    label(look, _("Blend"))
+    if imgui.begin_combo("##blend", BLEND_NAMES[layer.blend]):
         actions += [
             do(set_blend_mode, identity, blend)
             for blend in BLENDS
-            if imgui.selectable(blend, blend == layer.blend)[0]
+            if imgui.selectable(BLEND_NAMES[blend], blend == layer.blend)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(
-        "How its colours meet those of what lies behind: multiply darkens, screen lightens"
-    )
-    changed, _ = imgui.checkbox("Clipped", layer.clipped)
-    draw_tooltip("Seen only where that is which lies below it in its group")
+    draw_tooltip(_("How its colours mix with the layers behind: multiply darkens, screen lightens"))
+    changed = imgui.checkbox(_("Clipped"), layer.clipped)[0]
+    draw_tooltip(_("Visible only over the layer below it in its group"))
     if changed:
         actions.append(do(toggle_clipping, identity))
     for group in project.document.groups_around(layer.group):
         actions += _group(look, group)
-    changed, _ = imgui.checkbox("Reference only", layer.reference)
-    draw_tooltip("Seen while you work, left out of exports")
+    changed = imgui.checkbox(_("Reference only"), layer.reference)[0]
+    draw_tooltip(_("Visible while you work, left out of exports"))
     if changed:
         actions.append(do(toggle_reference, identity))
     actions += _draw_visibility(project.document, look, layer, frame)
@@ -90,10 +90,10 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     actions += draw_transform_channel(project.document, look, layer, frame)
     actions += draw_order_channel(project.document, look, layer, frame)
     if layer.still:
-        small_text(look, "A still picture: it is shown as it was drawn.")
-        if imgui.button("Make posable", ImVec2(FILL, 0)):
+        small_text(look, _("A still picture: it is shown as it was drawn."))
+        if imgui.button(_("Make posable"), ImVec2(FILL, 0)):
             actions.append(do(make_posable, identity))
-    elif imgui.button("Make still picture", ImVec2(FILL, 0)):
+    elif imgui.button(_("Make still picture"), ImVec2(FILL, 0)):
         actions.append(do(make_still, identity))
     return actions
 
@@ -102,12 +102,14 @@ def _group(look: Look, group: Group) -> list[Action]:
     actions = []
     imgui.push_id(group.name)
     name = group.name.rpartition("/")[2]
-    label(look, shorten_text(f"In {name}", (LABEL_WIDTH - 0.5) * look.em))
-    hint = f"How much all layers of the group {group.name} together cover of what lies behind"
+    label(look, shorten_text(_("In {name}").format(name=name), (LABEL_WIDTH - 0.5) * look.em))
+    hint = _("How much all layers of the group {name} together cover").format(name=group.name)
     faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
         actions.append(do(set_group_opacity, group.name, min(max(faded.value / 100, 0.0), 1.0)))
-    if imgui.checkbox(shorten_text(f"Hide all of {name}", 14 * look.em), group.hidden)[0]:
+    if imgui.checkbox(
+        shorten_text(_("Hide all of {name}").format(name=name), 14 * look.em), group.hidden
+    )[0]:
         actions.append(do(toggle_group_hidden, group.name))
     imgui.pop_id()
     return actions
@@ -115,49 +117,56 @@ def _group(look: Look, group: Group) -> list[Action]:
 
 def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
     """Draw the buttons that show or hide a layer from the present frame on."""
-    choice = document.switch_group_of(layer.id)
-    if choice is not None:
-        return _draw_switch_keys(document, look, choice, layer, frame)
+    switch_group = document.switch_group_of(layer.id)
+    if switch_group is not None:
+        return _draw_switch_keys(document, look, switch_group, layer, frame)
     actions = []
     is_seen = is_visible(document, layer, frame)
-    text = f"{'Hide' if is_seen else 'Show'} from frame {frame} on"
+    text = _("Hide from frame {frame} on") if is_seen else _("Show from frame {frame} on")
     is_put_away = layer.hidden or document.is_in_hidden(layer)
     hint = (
-        "It is hidden at all times now: switched instead, it is hidden until here and seen from "
-        "here on"
+        _(
+            "The layer is hidden at all times now. With a key it is hidden before this frame and "
+            "visible from this frame on."
+        )
         if is_put_away
-        else "For props that come and go; what is in one place takes turns by a choice"
+        else _("For props that come and go. Use a switch for layers that replace each other.")
     )
-    if text_button(text, FILL, hint):
+    if text_button(text.format(frame=frame), FILL, hint):
         actions.append(do(toggle_visibility_key, layer.id))
     keyed = change_frame(layer.visibility_keys, layer.cycles, frame)
     is_switched = any(switch.frame == keyed for switch in layer.visibility_keys)
-    if is_switched and imgui.button("Delete visibility key", ImVec2(FILL, 0)):
+    if is_switched and imgui.button(_("Delete visibility key"), ImVec2(FILL, 0)):
         actions.append(do(delete_visibility_key, layer.id))
     if layer.visibility_keys:
-        told = (
-            f"{'shown' if s.visible else 'hidden'} from {s.frame}" for s in layer.visibility_keys
+        keys = (
+            (_("shown from {frame}") if key.visible else _("hidden from {frame}")).format(
+                frame=key.frame
+            )
+            for key in layer.visibility_keys
         )
-        small_text(look, "This layer is " + ", ".join(told) + ".")
+        small_text(look, _("This layer is {keys}.").format(keys=", ".join(keys)))
     return actions
 
 
 def _draw_switch_keys(
-    document: Document, look: Look, choice: SwitchGroup, layer: Layer, frame: int
+    document: Document, look: Look, switch_group: SwitchGroup, layer: Layer, frame: int
 ) -> list[Action]:
     """Draw which layer of a switch is visible from the present frame on."""
     actions = []
-    label(look, shorten_text(choice.name, (LABEL_WIDTH - 0.5) * look.em))
-    seen = with_repeats(document, choice).layer_at(frame)
+    label(look, shorten_text(switch_group.name, (LABEL_WIDTH - 0.5) * look.em))
+    seen = with_repeats(document, switch_group).layer_at(frame)
     if imgui.begin_combo("##turn", document.layer(seen).name):
         actions += [
             do(key_switch, each)
-            for each in choice.layers
+            for each in switch_group.layers
             if imgui.selectable(f"{document.layer(each).name}###turn {each}", each == seen)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(f"Which of these layers is seen from frame {frame} on")
-    if text_button("Remove from switch", FILL, "It is seen when it was, by itself"):
+    draw_tooltip(_("Which of these layers is visible from frame {frame} on").format(frame=frame))
+    if text_button(
+        _("Remove from switch"), FILL, _("The layer keeps its visibility, with keys of its own")
+    ):
         actions.append(do(remove_from_switch, layer.id))
     return actions
 
@@ -166,27 +175,27 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
     """Draw a layer's parent at the present frame, and its attachments over time."""
     document = project.document
 
-    def can_carry(other: Layer) -> bool:
+    def can_be_parent(other: Layer) -> bool:
         return not is_same_or_descendant(project, other.id, layer.id)
 
-    if not layer.attachments and not any(map(can_carry, document.layers)):
+    if not layer.attachments and not any(map(can_be_parent, document.layers)):
         return []
     actions = []
     joint = document.attachment_at(layer, frame)
     parent = None if joint is None or joint.parent is None else document.layer(joint.parent)
-    label(look, "Attached to")
+    label(look, _("Attached to"))
     if imgui.begin_combo("##attached to", NOTHING if parent is None else parent.name):
         if imgui.selectable(NOTHING, parent is None)[0] and parent is not None:
             actions.append(do(detach_layer, layer.id))
         actions += [
             do(attach_layer, layer.id, other.id)
-            for other in filter(can_carry, document.layers)
+            for other in filter(can_be_parent, document.layers)
             if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
         ]
         imgui.end_combo()
-    draw_tooltip("The layer moves with the place of the other one that is under its anchor now")
+    draw_tooltip(_("The layer moves with the place of its parent that is under its anchor now"))
     if joint is not None and parent is not None:
-        changed, turns = imgui.checkbox("Inherit rotation", joint.inherits_rotation)
+        changed, turns = imgui.checkbox(_("Inherit rotation"), joint.inherits_rotation)
         if changed:
             actions.append(do(set_inherits_rotation, layer.id, turns))
     if frame > document.frames.first:
@@ -199,31 +208,36 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
     actions: list[Action] = []
     document, joint = project.document, layer.attachment_key_at(frame)
     now = None if joint is None else joint.parent
-    if text_button(f"Reparent from frame {frame}…", FILL, "Nothing jumps at that frame"):
-        imgui.open_popup("hand over")
-    if imgui.begin_popup("hand over"):
-        if imgui.menu_item_simple("Detach", enabled=now is not None):
+    text = _("Reparent from frame {frame}…").format(frame=frame)
+    if text_button(text, FILL, _("The layer does not jump at that frame")):
+        imgui.open_popup("reparent")
+    if imgui.begin_popup("reparent"):
+        if imgui.menu_item_simple(_("Detach"), enabled=now is not None):
             actions.append(do(reparent_layer, layer.id, None))
         for other in reversed([each for each in document.layers if each is not layer]):
             is_circle = any(each is layer for each in document.parent_chain(other.id, frame))
-            name = f"To {other.name}###to {other.id}"
+            name = f"{_('To {name}').format(name=other.name)}###to {other.id}"
             if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
                 actions.append(do(reparent_layer, layer.id, other.id))
             if is_circle:
-                draw_tooltip(f"At frame {frame} it hangs on {layer.name} itself")
+                text = _("At frame {frame} it is attached to {name} itself")
+                draw_tooltip(text.format(frame=frame, name=layer.name))
             elif other.id == now:
-                draw_tooltip(f"It hangs there already at frame {frame}")
+                text = _("It is the parent at frame {frame} already")
+                draw_tooltip(text.format(frame=frame))
         imgui.end_popup()
     keyed = layer.joint_frame(frame)
     if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:
-        hint = "What held it before goes on holding it"
-        if text_button("Delete parent key###joint", FILL, hint):
+        hint = _("The previous parent then stays the parent")
+        if text_button(_("Delete parent key") + "###joint", FILL, hint):
             actions.append(do(delete_parent_key, layer.id, keyed))
     if len(layer.attachments) > 1:
-        told = (
-            f"{'nothing' if each.parent is None else document.layer(each.parent).name} from "
-            f"{each.frame}"
+        parents = (
+            _("{name} from {frame}").format(
+                name=NOTHING if each.parent is None else document.layer(each.parent).name,
+                frame=each.frame,
+            )
             for each in layer.attachments
         )
-        small_text(look, "It hangs on " + ", ".join(told) + ".")
+        small_text(look, _("It is attached to {parents}.").format(parents=", ".join(parents)))
     return actions

@@ -8,9 +8,11 @@ from app.editor.actions import files, playback
 from app.editor.actions.layer_setup import resolving
 from app.editor.layering.switches import create_switch, dismiss_switch_suggestion
 from app.errors import few_notices
+from app.texts import _, message_of
 from app.ui.panels.layers.menus import explain_unswitchable_groups
+from app.ui.panels.layers.row import SmallPictures
 from app.ui.panels.layers.settings import draw_layer_settings
-from app.ui.panels.layers.tree import SmallPictures, draw_layer_tree
+from app.ui.panels.layers.tree import draw_layer_tree
 from app.ui.style.theme import Look
 from app.ui.style.widgets import heading, progress_bar, shorten_text, small_text
 
@@ -25,13 +27,13 @@ def draw_layers_panel(
     actions += draw_layer_tree(session, look, project, pictures)
     if len(project.document.layers) == 1:
         small_text(
-            look, "Drop another picture here, or open an .ora or .psd file, for more layers."
+            look, _("Drop another picture here, or open an .ora or .psd file, for more layers.")
         )
-    renewal = project.key_resolver
+    resolver = project.key_resolver
     if (
-        renewal is not None
-        and renewal.replaces_picture
-        and progress_bar(renewal.progress, renewal.status_text)
+        resolver is not None
+        and resolver.replaces_picture
+        and progress_bar(resolver.progress, resolver.status_text)
     ):
         actions.append(do(resolving.cancel_solving_keys))
     heading(look, shorten_text(project.layer.name, imgui.get_content_region_avail().x))
@@ -45,17 +47,23 @@ def _summary(look: Look, project: Project) -> list[Action]:
     if not summary:
         return []
     count = len(summary.warnings)
-    title = "Imported as drawn" if not count else f"What looks different here: {count}"
+    title = (
+        _("What looks different here: {count}").format(count=count)
+        if count
+        else _("Imported as drawn")
+    )
     imgui.set_next_item_open(project.is_import_log_open)
     is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
     actions = [do(files.toggle_import_log)] if imgui.is_item_toggled_open() else []
     if not is_open:
         return actions
     for loss in few_notices(summary.warnings):
-        small_text(look, loss, look.palette.text)
-    if summary.notes and imgui.tree_node_ex(f"Small matters: {len(summary.notes)}", _FOLD):
+        small_text(look, message_of(loss), look.palette.text)
+    if summary.notes and imgui.tree_node_ex(
+        _("Small matters: {count}").format(count=len(summary.notes)), _FOLD
+    ):
         for matter in few_notices(summary.notes):
-            small_text(look, matter)
+            small_text(look, message_of(matter))
     imgui.separator()
     return actions
 
@@ -68,14 +76,15 @@ def _offers(look: Look, project: Project) -> list[Action]:
             continue
         name = path.rpartition("/")[2]
         imgui.push_id(path)
-        small_text(look, f"The {len(layers)} layers of {name} look as if they took turns.")
+        text = _("The {count} layers of {name} look like alternatives.")
+        small_text(look, text.format(count=len(layers), name=name))
         whole = subgroups_with_layers(project.document, path)
         if whole:
-            small_text(look, f"{explain_unswitchable_groups(whole)}.")
-        if imgui.button("Create switch"):
+            small_text(look, explain_unswitchable_groups(whole))
+        if imgui.button(_("Create switch")):
             actions.append(do(create_switch, *layers, name=name))
         imgui.same_line()
-        if imgui.button("No"):
+        if imgui.button(_("No")):
             actions.append(do(dismiss_switch_suggestion, path))
         imgui.pop_id()
     return actions

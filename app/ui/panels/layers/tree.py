@@ -1,6 +1,6 @@
 """The tree of layers, front layer on top, with buttons, names and drag and drop."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
@@ -15,16 +15,12 @@ from app.editor.layering.layer_list import (
     note_listed_layer,
     rename_group,
     rename_layer,
-    toggle_group_hidden,
-    toggle_layers_hidden,
-    toggle_layers_locked,
 )
 from app.editor.layering.layer_selection import (
     select_layers,
     select_layers_up_to,
     set_active_layer,
     toggle_layers_selected,
-    toggle_tree_row,
 )
 from app.editor.layering.parenting import delete_layers
 from app.editor.layering.pictures import (
@@ -32,32 +28,29 @@ from app.editor.layering.pictures import (
     ask_replacement_picture,
     set_drop_target,
 )
-from app.editor.layering.switches import key_switch, rename_switch
-from app.render import Thumbnail
+from app.editor.layering.switches import rename_switch
+from app.texts import _, ngettext
 from app.ui.panels.layers.dragging import drag_layer_row, scroll_while_dragged
 from app.ui.panels.layers.menus import draw_layer_menu
-from app.ui.style.drawing import draw_centred_text
-from app.ui.style.theme import SMALL, Look, colour_u32
-from app.ui.style.widgets import (
-    begin_tooltip,
-    icon_button,
-    is_hovered_or_held,
-    name_popup,
-    push_text_size,
-    shorten_text,
-    show_picture,
+from app.ui.panels.layers.row import (
+    FOLD,
+    GAP,
+    INDENT,
+    ROW,
+    WIDE,
+    SmallPictures,
+    draw_fold,
+    draw_row_picture,
+    draw_row_switches,
+    draw_row_text,
+    draw_row_tooltip,
 )
-from engine.arrays import Bytes
+from app.ui.style.drawing import draw_centred_text
+from app.ui.style.theme import Look, colour_u32
+from app.ui.style.widgets import icon_button, name_popup
 
-ROW, WIDE, GAP = 2.1, 2.5, 0.35  # em: height of a row, width of its thumbnail, space
-INDENT, FOLD = 0.9, 1.2  # em: indent for each level, width of the triangle
 DEEPEST_INDENT = 6  # deeper rows have the same indent
 FEWEST, OTHERS = 6.5, 20.0  # smallest list in rows; em left for the settings below
-RING = 0.4  # em: radius of the circle of a switch's hidden layer
-HIDDEN = 0.35  # opacity of thumbnails of layers that are hidden now
-PAPER = imgui.IM_COL32(128, 130, 136, 255)  # visible behind both dark and light drawings
-SIGN = imgui.IM_COL32(12, 13, 16, 255)  # on the paper
-SmallPictures = Callable[[int, Bytes], Thumbnail | None]
 
 
 def draw_layer_tree(
@@ -99,20 +92,26 @@ def _bar(look: Look, project: Project) -> list[Action]:
         imgui.same_line()
 
     forward, back = (do(move_layer, active, index + by) for by in (1, -1))
-    replace = "Replace the layer's picture by another file: handles, keys and joints stay"
-    what = "the layer" if len(chosen) == 1 else f"the {len(chosen)} chosen layers"
-    delete = f"Delete {what}" if last else "A scene has at least one layer"
-    group = f"Put {what} in a group"
+    count = len(chosen)
+    replace = _("Replace the layer's picture by another file: handles, keys and parents stay")
+    delete = (
+        ngettext("Delete the layer", "Delete the {count} selected layers", count)
+        if last
+        else _("A scene has at least one layer")
+    ).format(count=count)
+    group = ngettext(
+        "Put the layer in a group", "Put the {count} selected layers in a group", count
+    )
     button(
         icons.ICON_FA_PLUS,
         "add layer",
-        "Add a picture as a layer",
+        _("Add a picture as a layer"),
         do(ask_pictures_to_add),
     )
     button(
         icons.ICON_FA_CLONE,
         "copy layer",
-        "Duplicate the layer",
+        _("Duplicate the layer"),
         do(duplicate_layer, active),
     )
     button(
@@ -122,10 +121,10 @@ def _bar(look: Look, project: Project) -> list[Action]:
         do(ask_replacement_picture, active),
     )
     button(
-        icons.ICON_FA_ARROW_UP, "raise", "Bring the layer forward", forward, enabled=index < last
+        icons.ICON_FA_ARROW_UP, "raise", _("Bring the layer forward"), forward, enabled=index < last
     )
-    button(icons.ICON_FA_ARROW_DOWN, "lower", "Send the layer back", back, enabled=index > 0)
-    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group, do(group_layers))
+    button(icons.ICON_FA_ARROW_DOWN, "lower", _("Send the layer back"), back, enabled=index > 0)
+    button(icons.ICON_FA_FOLDER_PLUS, "group layers", group.format(count=count), do(group_layers))
     button(
         icons.ICON_FA_TRASH,
         "delete layer",
@@ -158,25 +157,25 @@ def _row(
         actions.append(do(set_drop_target, layer.id))
     is_named = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
     actions += drag_layer_row(look, project, row, low, high)
-    _tell(project.document, row)
+    draw_row_tooltip(project.document, row)
     chosen, asks = draw_layer_menu(project, row)
     actions += chosen + _naming(session, look, project, row, low, asks=is_named or asks)
     middle = (low.y + high.y) / 2
     imgui.set_cursor_screen_pos(ImVec2(corner.x, middle - imgui.get_frame_height() / 2))
     frame = playback.current_frame(session, project)
-    actions += _switches(look, project, row, frame)
-    hung, told = (0, "") if layer is None else parent_label(project.document, layer, frame)
-    depth = min(row.depth + hung, DEEPEST_INDENT)
+    actions += draw_row_switches(look, project, row, frame)
+    level, detail = (0, "") if layer is None else parent_label(project.document, layer, frame)
+    depth = min(row.depth + level, DEEPEST_INDENT)
     left = imgui.get_item_rect_max().x + (GAP + INDENT * depth) * em
     is_seen = _is_seen(project, row, frame)
     shown = _shown(project.document, row, frame)
     if not row.toggle:
-        _picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
+        draw_row_picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
     else:
-        actions += _fold(look, row, ImVec2(left, middle))
+        actions += draw_fold(look, row, ImVec2(left, middle))
         left += FOLD * em
         if row.switch_group is not None:
-            _picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
+            draw_row_picture(look, project, shown, ImVec2(left, middle), pictures, is_seen=is_seen)
         else:
             icon = icons.ICON_FA_FOLDER_OPEN if row.is_open else icons.ICON_FA_FOLDER
             box = ImVec2(left, low.y), ImVec2(left + WIDE * em, high.y)
@@ -186,8 +185,8 @@ def _row(
     start = left + (WIDE + GAP) * em
     if layer is None:
         # The visible layer of a switch, or the number of layers in a group.
-        told = shown.name if row.switch_group is not None else f"{len(row.layers)}"
-    _text(look, project, row, told, start, ImVec2(high.x, middle), is_seen=is_seen)
+        detail = shown.name if row.switch_group is not None else f"{len(row.layers)}"
+    draw_row_text(look, project, row, detail, start, ImVec2(high.x, middle), is_seen=is_seen)
     imgui.set_cursor_screen_pos(after)
     return actions
 
@@ -232,13 +231,13 @@ def _naming(
         actions.append(do(ask_layer_name, None))
     imgui.set_next_window_pos(low)
     taken: Sequence[str] = ()
-    kind = "layer"
+    refusal = _("Another layer has this name.")
     if layer is not None:
         taken = [other.name for other in document.layers if other is not layer]
     elif row.switch_group is not None:
-        kind = "choice"
+        refusal = _("Another switch has this name.")
         taken = [other.name for other in document.switch_groups if other is not row.switch_group]
-    name = name_popup(look, f"name {row.key}", row.name, taken, kind)
+    name = name_popup(look, f"name {row.key}", row.name, taken, refusal)
     if name is None:
         return actions
     if layer is not None:
@@ -248,166 +247,3 @@ def _naming(
     if row.group is not None:
         return [*actions, do(rename_group, row.group.name, name)]
     return actions
-
-
-def _tell(document: Document, row: TreeRow) -> None:
-    """Show the tooltip of the last item, a row, with its full name."""
-    if imgui.get_drag_drop_payload_py_id() is not None or not begin_tooltip():
-        return
-    imgui.text_unformatted(row.name)
-    if row.layer is not None:
-        for joint in row.layer.attachments:
-            to = "nothing" if joint.parent is None else document.layer(joint.parent).name
-            since = f" from frame {joint.frame} on" if len(row.layer.attachments) > 1 else ""
-            imgui.text_unformatted(f"Hangs on {to}{since}")
-        imgui.text_disabled(
-            "Drag it to change the order, or onto another row to hang it there, double-click to "
-            "rename it, right click for more"
-        )
-    elif row.switch_group is not None:
-        imgui.text_disabled(
-            "These layers take turns: open it, and a click on a circle shows one from here on"
-        )
-    else:
-        imgui.text_disabled(
-            "Click to choose all layers in it, drag it to move or hang them together, right click "
-            "for more"
-        )
-    imgui.end_tooltip()
-
-
-def _fold(look: Look, row: TreeRow, left: ImVec2) -> list[Action]:
-    em = look.em
-    low = ImVec2(left.x, left.y - ROW / 2 * em)
-    imgui.set_cursor_screen_pos(low)
-    imgui.set_next_item_allow_overlap()
-    clicked = imgui.invisible_button(f"fold {row.key}", ImVec2(FOLD * em, ROW * em))
-    icon = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
-    colour = colour_u32(look.palette.text if is_hovered_or_held() else look.palette.dim)
-    draw_centred_text(low, low + ImVec2(FOLD * em, ROW * em), icon, colour)
-    return [do(toggle_tree_row, row.toggle)] if clicked else []
-
-
-def _switches(look: Look, project: Project, row: TreeRow, frame: int) -> list[Action]:
-    """Draw the eye and the lock of a row. Layers of a switch have a circle instead of the eye."""
-    actions = []
-    document = project.document
-    layers = [document.layer(each) for each in row.layers]
-    choice = None if row.layer is None else document.switch_group_of(row.layer.id)
-    if choice is not None:
-        is_on = with_repeats(document, choice).layer_at(frame) == row.layers[0]
-        icon = icons.ICON_FA_CIRCLE_DOT if is_on else ""
-        hint = f"Seen from frame {frame} on, in place of the others of {choice.name}"
-        if icon_button(look, icon, f"turn {row.key}", hint, active=is_on):
-            actions.append(do(key_switch, row.layers[0]))
-        if not is_on:
-            _ring(look)
-    elif row.switch_group is not None:
-        imgui.dummy(ImVec2(1.15 * imgui.get_frame_height(), imgui.get_frame_height()))
-    else:
-        group = row.group
-        hidden = layers[0].hidden if group is None else group.hidden
-        eye = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
-        what = "the layer" if group is None else "the group"
-        hint = f"Show {what}" if hidden else f"Hide {what}, also in exports"
-        if icon_button(look, eye, f"eye {row.key}", hint, active=hidden):
-            actions.append(
-                do(toggle_layers_hidden, *_of_chosen(project, row))
-                if group is None
-                else do(toggle_group_hidden, group.name)
-            )
-    imgui.same_line(0, 0)
-    locked = all(layer.locked for layer in layers)
-    key = icons.ICON_FA_LOCK if locked else icons.ICON_FA_LOCK_OPEN
-    hint = "Let clicks reach it" if locked else "Let clicks pass through it"
-    if icon_button(look, key, f"lock {row.key}", hint, active=locked):
-        actions.append(do(toggle_layers_locked, *_of_chosen(project, row)))
-    return actions
-
-
-def _ring(look: Look) -> None:
-    """Draw an empty circle on the last item, because the icon font has only a full one."""
-    middle = (imgui.get_item_rect_min() + imgui.get_item_rect_max()) / 2
-    radius, thick = RING * look.em, 0.1 * look.em
-    imgui.get_window_draw_list().add_circle(
-        middle, radius, colour_u32(look.palette.text), thickness=thick
-    )
-
-
-def _of_chosen(project: Project, row: TreeRow) -> tuple[int, ...]:
-    """Return the layers that a row's button changes: the row's, or all selected ones."""
-    chosen = project.selected_layers
-    return chosen if set(row.layers).issubset(chosen) and len(chosen) > 1 else row.layers
-
-
-def _picture(
-    look: Look,
-    project: Project,
-    layer: Layer,
-    left: ImVec2,
-    pictures: SmallPictures,
-    *,
-    is_seen: bool,
-) -> None:
-    """Draw a layer's thumbnail right of a point, or an icon before the thumbnail is ready."""
-    em = look.em
-    pad = 0.12 * em
-    half = ROW / 2 * em - pad
-    low = ImVec2(left.x, left.y - half)
-    high = ImVec2(left.x + WIDE * em, left.y + half)
-    draw_list = imgui.get_window_draw_list()
-    draw_list.add_rect_filled(low, high, PAPER, 0.25 * em)
-    pixels = project.layer_runtimes[layer.id].small.value
-    picture = None if pixels is None else pictures(layer.id, pixels)
-    if picture is None:
-        icon = icons.ICON_FA_IMAGE if layer.still else icons.ICON_FA_PERSON
-        draw_centred_text(low, high, icon, SIGN)
-        return
-    corner, room = low + ImVec2(pad, pad), high - low - ImVec2(2 * pad, 2 * pad)
-    opacity = 1.0 if is_seen else HIDDEN
-    show_picture(picture.texture, picture.size, corner, room, opacity=opacity)
-
-
-def _signs(project: Project, row: TreeRow) -> list[str]:
-    if row.layer is None:
-        opacity = 1.0 if row.group is None else row.group.opacity
-        return [f"{100 * opacity:.0f}%"] if opacity < 1 else []
-    layer = row.layer
-    signs = [f"{100 * layer.opacity:.0f}%"] if layer.opacity < 1 else []
-    signs += [icons.ICON_FA_LINK] if layer.has_parent else []
-    signs += [icons.ICON_FA_IMAGE] if layer.still else []
-    signs += [icons.ICON_FA_BAN] if layer.reference else []
-    return signs + ([icons.ICON_FA_BINOCULARS] if layer.id in project.solo else [])
-
-
-def _text(
-    look: Look,
-    project: Project,
-    row: TreeRow,
-    told: str,
-    left: float,
-    end: ImVec2,
-    *,
-    is_seen: bool,
-) -> None:
-    """Write a row's name, the detail behind it, and its signs left of `end`."""
-    palette, em = look.palette, look.em
-    draw_list, middle = imgui.get_window_draw_list(), end.y
-    right = end.x - GAP * em
-    with push_text_size(SMALL):
-        for sign in reversed(_signs(project, row)):
-            size = imgui.calc_text_size(sign)
-            right -= size.x
-            draw_list.add_text(ImVec2(right, middle - size.y / 2), colour_u32(palette.dim), sign)
-            right -= GAP * em
-    top = middle - imgui.get_text_line_height() / 2
-    name = shorten_text(row.name, right - left)
-    draw_list.add_text(
-        ImVec2(left, top), colour_u32(palette.text if is_seen else palette.dim), name
-    )
-    left += imgui.calc_text_size(name).x + 2 * GAP * em
-    with push_text_size(SMALL):
-        size = imgui.calc_text_size(told)
-        if told and right - left > 2 * em:
-            told = shorten_text(told, right - left)
-            draw_list.add_text(ImVec2(left, middle - size.y / 2), colour_u32(palette.dim), told)

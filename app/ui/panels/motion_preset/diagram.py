@@ -9,6 +9,7 @@ from app.editor import Action, do
 from app.editor.actions.posing.motion_presets import joint_placement
 from app.editor.work.motion_setup import MotionSetup
 from app.rigging import BodyKind
+from app.texts import _
 from app.ui.style.drawing import draw_knob
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, is_pressed
@@ -127,7 +128,8 @@ def draw_joint_diagram(look: Look, draft: MotionSetup, size: ImVec2) -> list[Act
                     name,
                 )
             )
-        draw_tooltip(f"{name}: click to {'leave it out' if is_there else 'add it'}")
+        text = _("{name}: click to leave it out") if is_there else _("{name}: click to add it")
+        draw_tooltip(text.format(name=name))
         radius = DOT * (1.25 if is_hot or name == draft.selected_joint else 1.0)
         colour = joint_colour(look, name)
         if is_there:

@@ -7,6 +7,7 @@ from app.editor import Action, Project, Session, do
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.work.motion_setup import MotionSetup
 from app.rigging import KINDS, MOTIONS
+from app.texts import _, ngettext
 from app.ui.panels.motion_preset.diagram import draw_body_diagram, draw_joint_diagram
 from app.ui.shortcuts.keys import ALT, format_modified
 from app.ui.shortcuts.table import BINDINGS
@@ -32,17 +33,17 @@ SHARES = Scale(left=0.0, right=0.99)
 REPEATS = Scale(left=1.0, right=20.0)
 KIND_HEIGHT, DIAGRAM_HEIGHT = 3.2, 9.5  # em
 IN_A_ROW = 5  # largest number of motions
-LOOKS = {None: "Automatic", -1: "Left", 1: "Right"}
+FACINGS = {None: _("Automatic"), -1: _("Left"), 1: _("Right")}
 
 
 def draw_motion_panel(session: Session, look: Look, project: Project) -> list[Action]:
     """Draw the motion setup or its progress; otherwise the layer's applied motions."""
-    errand, draft = project.motion_job, project.motion_setup
-    if errand is not None:
-        heading(look, f"Giving it “{errand.setup.preset.label}”")
+    job, draft = project.motion_job, project.motion_setup
+    if job is not None:
+        heading(look, _("Applying “{preset}”").format(preset=job.setup.preset.label))
         return (
             [do(apply_motion.cancel_motion_job)]
-            if progress_bar(errand.progress, errand.step_label)
+            if progress_bar(job.progress, job.step_label)
             else []
         )
     if draft is None:
@@ -65,10 +66,11 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
     """Draw the layer's applied motions, and the button that sets up another one."""
     actions: list[Action] = []
     binding, layer = BINDINGS["give motion"], project.layer
-    heading(look, f"Motions of {layer.name}" if layer.motions else "Motion presets")
+    title = _("Motions of {name}") if layer.motions else _("Motion presets")
+    heading(look, title.format(name=layer.name))
     if not layer.motions:
         small_text(
-            look, "Let the drawing walk, wave, slither or breathe: say where its joints are."
+            look, _("Let the drawing walk, wave, slither or breathe. Show where its joints are.")
         )
     for given in layer.motions:
         imgui.push_id(given.first)
@@ -85,14 +87,15 @@ def _draw_applied_motions(session: Session, look: Look, project: Project) -> lis
 def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
     actions: list[Action] = []
     name = MOTIONS[given.motion].label if given.motion in MOTIONS else given.motion
-    imgui.text_unformatted(f"{name}, frames {given.first} – {given.last}")
+    text = _("{name}, frames {first} – {last}")
+    imgui.text_unformatted(text.format(name=name, first=given.first, last=given.last))
     if not is_motion_unedited(project.layer, given):
-        small_text(look, "Edited by hand since: it stays as it is.")
+        small_text(look, _("This motion was edited by hand. It stays as it is."))
     widths = split_line(2)
-    if text_button("Change…", next(widths), "Give it once more, in another way"):
+    if text_button(_("Change…"), next(widths), _("Apply it again with other settings")):
         actions.append(do(preset_setup.edit_applied_motion, given))
-    hint = f"Let another motion follow from frame {given.last} on"
-    if text_button("Add motion…", next(widths), hint):
+    hint = _("Add another motion from frame {frame} on").format(frame=given.last)
+    if text_button(_("Add motion…"), next(widths), hint):
         actions.append(do(preset_setup.append_motion, given))
     return actions
 
@@ -100,7 +103,7 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
 def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
     """Draw a button with a diagram for each kind of body."""
     actions: list[Action] = []
-    heading(look, "Body")
+    heading(look, _("Body"))
     palette = look.palette
     widths = split_line(len(KINDS), 0.3 * look.em)
     for (name, kind), width in zip(KINDS.items(), widths, strict=True):
@@ -111,43 +114,51 @@ def _kinds(look: Look, draft: MotionSetup) -> list[Action]:
         if imgui.button(f"###{name} kind", size):
             actions.append(do(preset_setup.set_body_kind, name))
         imgui.pop_style_color()
-        draw_tooltip(f"{kind.label}. {kind.hint}")
+        draw_tooltip(_("{label}. {hint}").format(label=kind.label, hint=kind.hint))
         colour = colour_u32(palette.on_accent if is_chosen else palette.text)
         inset = ImVec2(0.2 * look.em, 0.4 * look.em)
         draw_body_diagram(look, kind, low + inset, size - inset * 2, colour)
-    small_text(look, f"{draft.body_kind.label}. {draft.body_kind.hint}.")
+    kind = draft.body_kind
+    small_text(look, _("{label}. {hint}.").format(label=kind.label, hint=kind.hint))
     return actions
 
 
 def _joints(look: Look, draft: MotionSetup) -> list[Action]:
-    heading(look, "Joints")
+    heading(look, _("Joints"))
     if not draft.body_kind.parents:
-        small_text(look, "It moves as a whole: there is nothing to be dragged.")
+        small_text(look, _("The drawing moves as a whole. It has no joints."))
         return []
     width = imgui.get_content_region_avail().x
     actions = draw_joint_diagram(look, draft, ImVec2(width, DIAGRAM_HEIGHT * look.em))
     small_text(
         look,
-        "Drag the joints on the drawing to where they belong. A click on one here, or "
-        f"{format_modified(ALT, 'click')} there, leaves it out.",
+        _(
+            "Drag the joints on the drawing to their places. A click on a joint here, or {keys} on "
+            "the drawing, leaves it out."
+        ).format(keys=format_modified(ALT, _("click"))),
     )
     has_sides = draft.kind == "biped-front"
     widths = split_line(1 + has_sides)
     if has_sides:
         binding = BINDINGS["mirror joints"]
-        way = "left to right" if joint_placement.mirrored_side(draft) == "L" else "right to left"
-        text = f"{binding.icon}  Mirror {way}###mirror joints"
-        hint = f"{binding.hint}: from that of the joint that was touched last"
+        way = (
+            _("Mirror left to right")
+            if joint_placement.mirrored_side(draft) == "L"
+            else _("Mirror right to left")
+        )
+        text = f"{binding.icon}  {way}###mirror joints"
+        hint = _("{hint}: from the side of the joint that was touched last")
+        hint = hint.format(hint=binding.hint)
         if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
             actions.append(binding.action)
     binding = BINDINGS["find joints"]
-    if text_button(f"{binding.icon}  Detect joints", next(widths), binding.hint):
+    if text_button(f"{binding.icon}  {_('Detect joints')}", next(widths), binding.hint):
         actions.append(binding.action)
     return actions
 
 
 def _motions(look: Look, draft: MotionSetup) -> list[Action]:
-    heading(look, "Preset")
+    heading(look, _("Preset"))
     actions: list[Action] = []
     fitting = [motion for motion in MOTIONS.values() if draft.kind in motion.templates]
     rows = -(-len(fitting) // IN_A_ROW)
@@ -157,19 +168,19 @@ def _motions(look: Look, draft: MotionSetup) -> list[Action]:
         chosen = option_buttons(look, f"motions {row}", options, draft.motion)
         if chosen is not None:
             actions.append(do(preset_setup.set_motion_preset, chosen))
-    small_text(look, f"{draft.preset.hint}.")
+    small_text(look, _("{hint}.").format(hint=draft.preset.hint))
     return actions
 
 
 def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
-    heading(look, "How")
+    heading(look, _("How"))
     actions: list[Action] = []
     now = draft.parameters
     for name, text, scale, form, hint in (
-        ("speed", "Speed", SPEEDS, "%.2f ×", "How many times as fast as usual"),
-        ("size", "Size", SIZES, "%.2f ×", "How far limbs swing, and how far steps go"),
-        ("energy", "Energy", ENERGIES, "%.2f ×", "How much it bounces and sways beside that"),
-        ("start", "Start", SHARES, "%.2f", "The share of the cycle at which it begins"),
+        ("speed", _("Speed"), SPEEDS, "%.2f ×", _("How many times as fast as usual")),
+        ("size", _("Size"), SIZES, "%.2f ×", _("How far limbs swing, and how far steps go")),
+        ("energy", _("Energy"), ENERGIES, "%.2f ×", _("How much it bounces and sways")),
+        ("start", _("Start"), SHARES, "%.2f", _("The share of the cycle at which it begins")),
     ):
         label(look, text)
         entered = slider(look, name, getattr(now, name), scale, text=form, hint=hint)
@@ -177,18 +188,18 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
             actions.append(
                 do(preset_setup.set_motion_parameters, **{name: scale.clamp(entered.value)})
             )
-    label(look, "Repeats")
-    hint = "How often it is there, one after the other"
+    label(look, _("Repeats"))
+    hint = _("How many times the motion plays, one after the other")
     entered = slider(look, "rounds", draft.rounds, REPEATS, text="%.0f", hint=hint)
     if entered is not None:
         rounds = min(max(round(entered.value), 1), preset_setup.MOST_ROUNDS)
         actions.append(do(preset_setup.set_motion_options, rounds=rounds))
     if draft.kind in {"biped-side", "four-legs"}:
-        label(look, "Facing")
-        options = [(str(way), text) for way, text in LOOKS.items()]
+        label(look, _("Facing"))
+        options = [(str(way), text) for way, text in FACINGS.items()]
         chosen = option_buttons(look, "facing", options, str(draft.facing))
         if chosen is not None:
-            ways = {str(way): way for way in LOOKS}
+            ways = {str(way): way for way in FACINGS}
             actions.append(do(preset_setup.set_motion_options, facing=ways[chosen]))
     actions += _switches(look, draft)
     return actions
@@ -197,20 +208,25 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
 def _switches(look: Look, draft: MotionSetup) -> list[Action]:
     actions: list[Action] = []
     now = draft.parameters
-    changed, mirrored = imgui.checkbox("Mirrored", now.mirrored)
-    draw_tooltip("As in a mirror: the other arm waves, a walk goes the other way")
+    changed, mirrored = imgui.checkbox(_("Mirrored"), now.mirrored)
+    draw_tooltip(_("As in a mirror: the other arm waves, a walk goes the other way"))
     if changed:
         actions.append(do(preset_setup.set_motion_parameters, mirrored=mirrored))
     if draft.preset.template_for(draft.kind).can_travel:
         imgui.same_line(0, 1.2 * look.em)
-        changed, travels = imgui.checkbox("Travels", now.travel)
-        draw_tooltip("It gets on in the picture, and does not loop; else it walks on the spot")
+        changed, travels = imgui.checkbox(_("Travels"), now.travel)
+        draw_tooltip(
+            _(
+                "The layer moves on in the picture, and does not loop. Without this it walks on "
+                "the spot."
+            )
+        )
         if changed:
             actions.append(do(preset_setup.set_motion_parameters, travel=travels))
     if draft.body_kind.parents:
         imgui.same_line(0, 1.2 * look.em)
-        changed, bones = imgui.checkbox("Bones for limbs", draft.bones)
-        draw_tooltip("Limbs bend at their joints alone, and keep their lengths")
+        changed, bones = imgui.checkbox(_("Bones for limbs"), draft.bones)
+        draw_tooltip(_("Limbs bend only at their joints, and keep their lengths"))
         if changed:
             actions.append(do(preset_setup.set_motion_options, bones=bones))
     return actions
@@ -221,7 +237,9 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
     if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(project):
-        changed, replaces = imgui.checkbox("Replace what was edited by hand", draft.replaces_edits)
+        changed, replaces = imgui.checkbox(
+            _("Replace what was edited by hand"), draft.replaces_edits
+        )
         if changed:
             actions.append(do(preset_setup.set_motion_options, replaces_edits=replaces))
     small_text(look, _where(project, draft))
@@ -229,10 +247,10 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     if reason:
         small_text(look, reason, look.palette.warning)
     widths = split_line(2)
-    if main_button(look, "Apply###give", next(widths), enabled=not reason):
+    if main_button(look, _("Apply") + "###give", next(widths), enabled=not reason):
         actions.append(do(apply_motion.apply_motion_preset))
-    draw_tooltip(reason or "Solve it key after key, and play it; it is one step of undo")
-    if text_button("Cancel###no motion", next(widths), "", BINDINGS["pose"].shown_keys):
+    draw_tooltip(reason or _("Solve key after key, and play the motion. One undo takes it back."))
+    if text_button(_("Cancel") + "###no motion", next(widths), "", BINDINGS["pose"].shown_keys):
         actions.append(do(preset_setup.close_motion_setup))
     return actions
 
@@ -240,8 +258,11 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
 def _where(project: Project, draft: MotionSetup) -> str:
     period = draft.preset.frames(draft.parameters, project.document.fps) * draft.rounds
     if draft.applied_motion is not None:
-        return (
-            f"It takes the place of frames {draft.applied_motion.first} – "
-            f"{draft.applied_motion.last}."
-        )
-    return f"It begins at frame {draft.first} and takes {period} frames."
+        text = _("It replaces frames {first} – {last}.")
+        return text.format(first=draft.applied_motion.first, last=draft.applied_motion.last)
+    text = ngettext(
+        "It begins at frame {first} and takes {count} frame.",
+        "It begins at frame {first} and takes {count} frames.",
+        period,
+    )
+    return text.format(first=draft.first, count=period)

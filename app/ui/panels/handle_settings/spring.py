@@ -9,6 +9,7 @@ from app.document import SPRING_PRESETS, Handle, Layer, Spring, spring_root, tra
 from app.editor import Action, Project, do
 from app.editor.actions import editing
 from app.editor.actions.timing import springs
+from app.texts import _
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -28,44 +29,51 @@ DAMPINGS = Scale(left=0.0, right=1.5)
 LAGS = Scale(left=0.0, right=12.0)
 STRENGTHS = Scale(left=0.0, right=2.0)
 STRETCHES = Scale(left=0.0, right=1.0)
+PRESET_NAMES = {
+    "tail": _("Tail"),
+    "ear": _("Ear"),
+    "hair": _("Hair"),
+    "cloth": _("Cloth"),
+    "jelly": _("Jelly"),
+}
 LEAST_FREQUENCY = 0.01  # Hz
-NEAREST = "Nearest handle"
-NO_ROOT = "It swings freely: add a handle where it hangs on, and it keeps its length."
+NEAREST = _("Nearest handle")
+NO_ROOT = _("It swings freely. Add a handle at its root, and it keeps its length.")
 # The numbers of a spring: field, label, range, format, explanation.
 NUMBERS = (
-    ("frequency", "Frequency", FREQUENCIES, "%.2f", "How often it swings in a second, in Hz"),
-    ("damping", "Damping", DAMPINGS, "%.2f", "How soon it comes to rest: 0 never, 1 at once"),
-    ("lag", "Lag", LAGS, "%.1f", "By how many frames it notices later that its place moves"),
-    ("strength", "Strength", STRENGTHS, "%.2f", "How far it swings: 1 as a spring does"),
-    ("stretch", "Stretch", STRETCHES, "%.2f", "How far its length changes: 0 not, 1 as it likes"),
+    ("frequency", _("Frequency"), FREQUENCIES, "%.2f", _("How often it swings in a second, in Hz")),
+    ("damping", _("Damping"), DAMPINGS, "%.2f", _("How soon it comes to rest: 0 never, 1 at once")),
+    ("lag", _("Lag"), LAGS, "%.1f", _("How many frames later it follows its place")),
+    ("strength", _("Strength"), STRENGTHS, "%.2f", _("How far it swings: 1 as a spring does")),
+    ("stretch", _("Stretch"), STRETCHES, "%.2f", _("How far its length changes: 0 not, 1 freely")),
 )
 
 
 def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     spring, actions = project.layer.spring_of(handle.id), list[Action]()
-    heading(look, "Follows", framed=True)
+    heading(look, _("Follows"), framed=True)
     if spring is not None:
         align_right(1.15 * imgui.get_frame_height())
-        if icon_button(look, icons.ICON_FA_TRASH, "delete spring", "Let it follow no longer"):
+        if icon_button(look, icons.ICON_FA_TRASH, "delete spring", _("Delete the spring")):
             command = track_commands.remove_springs
             actions.append(do(editing.edit_layer, command, (handle.id,)))
-    label(look, "Like")
-    names = [(name, name.capitalize()) for name in SPRING_PRESETS]
+    label(look, _("Like"))
+    names = [(name, PRESET_NAMES[name]) for name in SPRING_PRESETS]
     taken = option_buttons(look, "preset", names, "" if spring is None else _preset(spring))
-    draw_tooltip("Let it come late and swing, like one of these")
+    draw_tooltip(_("Let the handle follow late and swing, like one of these"))
     if taken is not None:
         frequency, damping = SPRING_PRESETS[taken]
         usual = spring or Spring(handle=handle.id, frequency=frequency, damping=damping)
         actions.append(_set(replace(usual, frequency=frequency, damping=damping)))
     if spring is None:
-        small_text(look, "It follows the shape at once. Choose what it swings like.")
+        small_text(look, _("It follows the shape at once. Choose a spring to let it swing."))
         return actions
     track = project.layer.track_of(handle.id)
     if track is not None and track.enabled:
-        small_text(look, "Its track comes first: the spring waits until that is off.")
-    label(look, "Spring")
-    changed, enabled = imgui.checkbox("on##spring", spring.enabled)
-    draw_tooltip("Whether it follows so; its numbers stay")
+        small_text(look, _("Its track comes first. The spring acts while the track is off."))
+    label(look, _("Spring"))
+    changed, enabled = imgui.checkbox(_("on") + "##spring", spring.enabled)
+    draw_tooltip(_("Switch the spring on or off. Its numbers stay."))
     if changed:
         actions.append(_set(replace(spring, enabled=enabled)))
     actions += _root(look, project.layer, spring)
@@ -77,13 +85,13 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
             actions.append(_set(replace(spring, **changed_field)))
     can = spring.enabled and track is None
     hint = (
-        "Turn the swing into a track, whose keys can be changed"
+        _("Turn the swing into a track with keys, which you can edit")
         if can
-        else "Switch the spring on first"
+        else _("Switch the spring on first")
         if not spring.enabled
-        else "Its track comes before the spring: delete the track first"
+        else _("The track comes before the spring. Delete the track first.")
     )
-    if text_button("Bake to keys", FILL, hint, enabled=can):
+    if text_button(_("Bake to keys"), FILL, hint, enabled=can):
         actions.append(do(springs.bake_spring, handle.id))
     return actions
 
@@ -105,8 +113,12 @@ def _root(look: Look, layer: Layer, spring: Spring) -> list[Action]:
     """Draw the root handle of the spring, and the menu that chooses another."""
     actions: list[Action] = []
     nearest = spring_root(layer, replace(spring, root=None))
-    nearest_name = NEAREST if nearest is None else f"{NEAREST}: {layer.handle(nearest).name}"
-    label(look, "Swings about")
+    nearest_name = (
+        NEAREST
+        if nearest is None
+        else _("Nearest handle: {name}").format(name=layer.handle(nearest).name)
+    )
+    label(look, _("Swings about"))
     imgui.set_next_item_width(-1)
     shown = nearest_name if spring.root is None else layer.handle(spring.root).name
     if imgui.begin_combo("##root", shown):
@@ -115,7 +127,7 @@ def _root(look: Look, layer: Layer, spring: Spring) -> list[Action]:
             if root != spring.handle and imgui.menu_item_simple(f"{name}###about {root}"):
                 actions.append(_set(replace(spring, root=root)))
         imgui.end_combo()
-    draw_tooltip("The handle to which it keeps its distance, as an ear's tip to the head")
+    draw_tooltip(_("The handle to which it keeps its distance, as an ear's tip to the head"))
     if nearest is None and spring.root is None:
         small_text(look, NO_ROOT)
     return actions

@@ -5,6 +5,7 @@ from imgui_bundle import imgui
 from app.document import DEFAULT_DEPTH_EXTENT, Handle, Keyframe, Layer, layer_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
+from app.texts import _
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, heading, label, small_text
@@ -17,7 +18,7 @@ def draw_depth_settings(
     session: Session, look: Look, project: Project, handle: Handle
 ) -> list[Action]:
     """Draw the depth of a handle, its extent, and its first key."""
-    heading(look, "In front")
+    heading(look, _("In front"))
     layer, frame = project.layer, playback.edited_frame(session, project)
     key = layer.key(frame) if frame in layer.key_frames else None
     imgui.begin_group()
@@ -35,8 +36,8 @@ def draw_depth_settings(
 
 
 def _depth(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
-    label(look, "Depth")
-    hint = "Where the drawing lies over itself: −1 paints this part behind, 1 in front"
+    label(look, _("Depth"))
+    hint = _("Order where the drawing overlaps itself: −1 paints this part behind, 1 in front")
     front = editing.depth_at_playhead(session, project, handle)
     entered = slider(look, "depth", front, DEPTHS, text="%.2f", hint=hint)
     if entered is None:
@@ -46,10 +47,10 @@ def _depth(session: Session, look: Look, project: Project, handle: Handle) -> li
 
 
 def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:
-    label(look, "Extent")
+    label(look, _("Extent"))
     usual = DEFAULT_DEPTH_EXTENT * diameter(layer.domain.outline)
     extents = Scale(left=0.1 * usual, right=8 * usual, logarithmic=True)
-    hint = "How far around the handle that holds, in pixels along the drawing"
+    hint = _("How far around the handle its depth holds, in pixels along the drawing")
     entered = slider(look, "extent", handle.extent or usual, extents, text="%.0f", hint=hint)
     if entered is None or entered.value <= 0:
         return []
@@ -60,11 +61,11 @@ def _from_key(look: Look, handle: Handle, key: Keyframe | None) -> list[Action]:
     """Draw whether the depth belongs to a key and holds from there on."""
     front = key.depths.get(handle.id) if key else None
     imgui.begin_disabled(key is None)
-    changed, keyed = imgui.checkbox("From this key on", front is not None)
+    changed, keyed = imgui.checkbox(_("From this key on"), front is not None)
     imgui.end_disabled()
-    draw_tooltip("The depth holds from this key until another one says otherwise")
+    draw_tooltip(_("The depth holds from this key to the next key with a depth"))
     if key is None:
-        small_text(look, "Go to a key to let the depth change there.")
+        small_text(look, _("Go to a key to change the depth there."))
         return []
     return [_set_in_key(key, handle, handle.depth if keyed else None)] if changed else []
 

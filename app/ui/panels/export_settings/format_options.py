@@ -41,10 +41,9 @@ def _chosen(look: Look, name: str, option: Option, value: Any) -> Any:
         return value
     entered: float
     if isinstance(value, int):
-        _, entered = imgui.input_int(f"##{name}", value, 0)
+        entered = imgui.input_int(f"##{name}", value, 0)[1]
     else:
-        _, entered = imgui.input_float(f"##{name}", value, 0.0, 0.0, "%.3g px")
-        entered = round(entered, 6)
+        entered = round(imgui.input_float(f"##{name}", value, 0.0, 0.0, "%.3g px")[1], 6)
     done = imgui.is_item_deactivated_after_edit()
     if option.tip and not option.choices:
         draw_tooltip(option.tip)

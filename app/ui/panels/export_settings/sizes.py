@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from imgui_bundle import imgui
 
+from app.texts import _
 from app.ui.style.widgets import draw_tooltip
 
 LARGEST = 65_535
@@ -23,11 +24,13 @@ def draw_size_fields(name: str, size: tuple[int, int], room: float) -> EnteredSi
     each = (imgui.get_content_region_avail().x - room - times - 2 * gap) / 2
     entered = list(size)
     ended = []
-    for side, word in enumerate(("width", "height")):
+    for side, (word, hint) in enumerate(
+        (("width", _("Width in pixels")), ("height", _("Height in pixels")))
+    ):
         imgui.set_next_item_width(each)
-        _, entered[side] = imgui.input_int(f"##{name}{word}", size[side], 0)
+        entered[side] = imgui.input_int(f"##{name}{word}", size[side], 0)[1]
         ended.append(imgui.is_item_deactivated_after_edit())
-        draw_tooltip(f"{word.capitalize()} in pixels")
+        draw_tooltip(hint)
         if not side:
             imgui.same_line(0, gap)
             imgui.text_disabled("×")

@@ -9,6 +9,7 @@ from app.document import Handle, Track, mirrored_handles, misses_target, track_a
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import tracks
+from app.texts import _
 from app.ui.style.sliders import Scale, number_field, slider
 from app.ui.style.theme import Look
 from app.ui.style.widgets import (
@@ -25,17 +26,17 @@ from app.ui.style.widgets import (
 
 REACHES = Scale(left=0.0, right=1.0)
 LONGEST = 48  # frames: the longest delay on the slider if the animation does not loop
-KINDS = (("pose", "With the pose"), ("picture", "Planted"))
+KINDS = (("pose", _("With the pose")), ("picture", _("Planted")))
 
 
 def draw_track(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     track = project.layer.track_of(handle.id)
     if track is None:
         return []
-    heading(look, "Own track", framed=True)
+    heading(look, _("Own track"), framed=True)
     align_right(1.15 * imgui.get_frame_height())
     actions: list[Action] = []
-    hint = "Delete the track: the handle moves with the whole pose again"
+    hint = _("Delete the track: the handle moves with the whole pose again")
     if icon_button(look, icons.ICON_FA_TRASH, "delete track", hint):
         command = track_commands.remove_tracks
         actions.append(do(editing.edit_layer, command, (handle.id,)))
@@ -50,7 +51,7 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
 def _together(look: Look, project: Project, track: Track) -> None:
     if len(track.handles) > 1:
         names = ", ".join(project.layer.handle(identity).name for identity in track.handles)
-        small_text(look, f"It moves {names} together.")
+        small_text(look, _("It moves {names} together.").format(names=names))
 
 
 def _here(session: Session, look: Look, project: Project, track: Track) -> list[Action]:
@@ -59,14 +60,14 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
     frame = playback.current_frame(session, project)
     at = track_at(replace(track, enabled=True), project.clip, frame)
     if at is None:
-        small_text(look, "It acts from its first key to its last, not in this frame.")
+        small_text(look, _("The track acts from its first key to its last key, not in this frame."))
         return actions
     first, height = track.handles[0], project.document.canvas[1] if track.is_scene_space else 0.0
-    name = "Place" if track.is_scene_space else "Offset"
+    name = _("Place") if track.is_scene_space else _("Offset")
     hint = (
-        "Where it is wanted here, in pixels from the upper left corner: typing makes a key"
+        _("Target here, in pixels from the upper left corner. Typing makes a key.")
         if track.is_scene_space
-        else "How far it is beside the pose here, in pixels right and down: typing makes a key"
+        else _("Offset from the pose here, in pixels right and down. Typing makes a key.")
     )
     label(look, name)
     entered = []
@@ -84,9 +85,9 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
         )
         actions.append(do(tracks.set_handle_value, first, place))
     if track.keys_rotation:
-        label(look, "Turned by")
+        label(look, _("Turned by"))
         turn = number_field("track turn", math.degrees(at.turn), "%.1f°")
-        draw_tooltip("Beyond what the pose turns it here, counter-clockwise: typing makes a key")
+        draw_tooltip(_("Turn in addition to the pose, counter-clockwise. Typing makes a key."))
         if turn is not None:
             actions.append(do(tracks.set_handle_value, first, at.place, math.radians(turn)))
     return actions
@@ -95,22 +96,20 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
 def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Action]:
     """Draw whether a track is on, the space of its keys, and whether they rotate the shape."""
     actions: list[Action] = []
-    label(look, "Keys are")
+    label(look, _("Keys are"))
     kind = option_buttons(look, "kind", KINDS, "picture" if track.is_scene_space else "pose")
-    draw_tooltip(
-        "Beside where the pose has it, or places in the picture, as of a foot on the ground"
-    )
+    draw_tooltip(_("Offsets from the pose, or places in the picture, as of a foot on the ground"))
     if kind is not None:
         actions.append(do(tracks.set_track_space, handle.id, kind == "picture"))
-    label(look, "Track")
-    changed, enabled = imgui.checkbox("on##track", track.enabled)
-    draw_tooltip("Whether the track acts; its keys stay")
+    label(look, _("Track"))
+    changed, enabled = imgui.checkbox(_("on") + "##track", track.enabled)
+    draw_tooltip(_("Switch the track on or off. Its keys stay."))
     if changed:
         command = track_commands.enable_track(project.active, handle.id, enabled=enabled)
         actions.append(do(editing.edit_document, command))
     imgui.same_line()
-    changed, turns = imgui.checkbox("Key rotation", track.keys_rotation)
-    draw_tooltip("Let its keys turn the shape at the handle; else it turns as the shape likes")
+    changed, turns = imgui.checkbox(_("Key rotation"), track.keys_rotation)
+    draw_tooltip(_("Let the keys turn the shape at the handle. Without this it turns freely."))
     if changed:
         command = track_commands.set_turning(project.active, handle.id, turns=turns)
         actions.append(do(editing.edit_document, command))
@@ -121,15 +120,15 @@ def _numbers(look: Look, project: Project, handle: Handle, track: Track) -> list
     actions: list[Action] = []
     frames = project.document.frames
     longest = frames.last - frames.first if project.document.loop else LONGEST
-    label(look, "Delay")
-    hint = "By how many frames the track is late; in a loop it comes round"
+    label(look, _("Delay"))
+    hint = _("How many frames late the track is. In a loop it comes round.")
     scale = Scale(left=0.0, right=float(max(longest, 1)))
     entered = slider(look, "delay", float(track.delay), scale, text="%.0f", hint=hint)
     if entered is not None:
         delay = round(scale.clamp(entered.value) if project.document.loop else entered.value)
         actions.append(do(editing.edit_layer, track_commands.set_delay, handle.id, delay))
-    label(look, "Reach")
-    hint = "How far around the handle the body gives: 0 hardly, 1 as it likes"
+    label(look, _("Reach"))
+    hint = _("How far around the handle the shape bends: 0 hardly, 1 freely")
     entered = slider(look, "reach", track.reach, REACHES, hint=hint)
     if entered is not None:
         reach = round(REACHES.clamp(entered.value), 2)
@@ -142,25 +141,26 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
     actions: list[Action] = []
     widths, layer = split_line(2), project.layer
     imgui.set_next_item_width(next(widths))
-    if imgui.begin_combo("##copy track", "Copy to…"):
+    if imgui.begin_combo("##copy track", _("Copy to…")):
         for other in layer.handles:
             if other.id == handle.id:
                 continue
-            mark = "" if layer.track_of(other.id) is None else "  (has one)"
-            if imgui.menu_item_simple(f"{other.name}{mark}###copy to {other.id}"):
+            has_track = layer.track_of(other.id) is not None
+            text = _("{name}  (has one)").format(name=other.name) if has_track else other.name
+            if imgui.menu_item_simple(f"{text}###copy to {other.id}"):
                 command = track_commands.copy_track
                 actions.append(do(editing.edit_layer, command, handle.id, other.id))
         imgui.end_combo()
-    draw_tooltip("Give another handle the same track, in place of its own")
+    draw_tooltip(_("Give another handle the same track, in place of its own"))
     words = project.document.pairs
     partners = mirrored_handles(layer.handles, layer.axis, layer.domain.outline, words)
     is_pair = partners.get(handle.id, handle.id) != handle.id
     hint = (
-        "Give its partner on the other side the mirrored track"
+        _("Give its partner on the other side the mirrored track")
         if is_pair
-        else "Mirror its track: no partner on the other side was found by name or place"
+        else _("Mirror its track: no partner on the other side was found by name or place")
     )
-    if text_button("Mirror track" if not is_pair else "Copy mirrored", next(widths), hint):
+    if text_button(_("Mirror track") if not is_pair else _("Copy mirrored"), next(widths), hint):
         actions.append(do(editing.edit_layer, track_commands.mirror_track, handle.id, words))
     return actions
 
@@ -170,4 +170,5 @@ def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle
     frame, corrected = playback.current_frame(session, project), project.layer_runtime.corrected
     miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
     if misses_target(project.layer, miss):
-        small_text(look, f"{miss:.0f} px short of its track here.", look.palette.danger)
+        text = _("{miss:.0f} px short of its track here.").format(miss=miss)
+        small_text(look, text, look.palette.danger)

@@ -1,0 +1,41 @@
+"""The anchor, the reference point of the in-betweens."""
+
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.document import Handle, shape_commands
+from app.editor import Action, Project, do
+from app.editor.actions import editing
+from app.editor.actions.posing.handles import toggle_anchor_at_handle
+from app.texts import _
+from app.ui.shortcuts.keys import CTRL, format_modified
+from app.ui.style.theme import Look
+from app.ui.style.widgets import shorten_text, small_text, split_line, text_button
+
+
+def draw_anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Action]:
+    """Describe the anchor, the reference point of the in-betweens, and let it be set."""
+    layer = project.layer
+    holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
+    if layer.anchor is None:
+        small_text(look, _("Automatic: the middle of the shape stays calm between keys."))
+    elif holder is not None:
+        name = shorten_text(holder, 12 * look.em)
+        small_text(
+            look,
+            _("“{name}” stays calm between keys: it goes the straightest way.").format(name=name),
+        )
+    else:
+        anchor = layer.anchor
+        y = project.document.canvas[1] - anchor.imag
+        text = _("The point {x:.0f}, {y:.0f} stays calm between keys.")
+        small_text(look, text.format(x=anchor.real, y=y))
+    is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
+    halves, actions = split_line(2), list[Action]()
+    text = f"{icons.ICON_FA_ANCHOR}  {_('Follow this handle')}###anchor here"
+    hint, keys = _("Let this point stay calm between keys"), format_modified(CTRL, "click")
+    if text_button(text, next(halves), hint, keys, enabled=is_chosen):
+        actions.append(do(toggle_anchor_at_handle, chosen[0].id))
+    has_own = layer.anchor is not None
+    if text_button(_("Automatic anchor") + "###clear anchor", next(halves), enabled=has_own):
+        actions.append(do(editing.edit_layer, shape_commands.set_anchor, None))
+    return actions
