@@ -18,6 +18,7 @@ from app.editor import (
 from app.editor.actions import editing
 from app.editor.actions.timing import keys, timeline_drag, tracks
 from app.editor.layering.layer_selection import set_active_layer
+from app.texts import _
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import begin_tooltip, draw_tooltip, is_hovered_or_held, is_pressed
@@ -57,7 +58,7 @@ def draw_track_background(bands: TimelineLayout) -> list[Action]:
 
 def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[Action]:
     actions: list[Action] = []
-    clicked = bands.button("ground", low, high, right=True)
+    clicked = bands.button(_("ground"), low, high, right=True)
     if is_pressed():
         actions += begin_key_box(bands)
     if clicked and is_plain_click():
@@ -299,6 +300,6 @@ def _draw_key_tooltip(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> No
     for text in describe_target_errors(bands.project, key) if row.is_active else ():
         imgui.text_colored(palette.warning, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}")
     imgui.text_disabled(
-        f"Drag to move, {format_modified(CTRL, 'drag')} to copy, right click for more"
+        f"Drag to move, {format_modified(CTRL, _('drag'))} to copy, right click for more"
     )
     imgui.end_tooltip()

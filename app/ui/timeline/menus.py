@@ -7,6 +7,7 @@ from app.editor import Action, KeyRow, Project, Session, TrackRow, display_frame
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import cycles, keys, tracks
 from app.editor.poses import copying
+from app.texts import _
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look
@@ -41,16 +42,16 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
     seen = display_frame(project.document, project.track_in(row), key.frame)
     actions += _paste_items(bands.session, seen)
     imgui.separator()
-    if imgui.menu_item_simple("Go to this key", "Click"):
+    if imgui.menu_item_simple(_("Go to this key"), _("Click")):
         actions.append(do(playback.scrub, seen))
-    if imgui.begin_menu("Tangent"):
+    if imgui.begin_menu(_("Tangent")):
         for passing, (name, hint) in TANGENT_MODES.items():
             chosen = key.shown_tangent_mode is passing
             if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
                 actions.append(do(keys.set_tangent_mode, taken, passing))
             draw_tooltip(hint)
         imgui.end_menu()
-    if imgui.begin_menu("Easing"):
+    if imgui.begin_menu(_("Easing")):
         for name, preset in PRESETS.items():
             if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:
                 actions.append(do(keys.set_easing, taken, preset))
@@ -90,7 +91,7 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
                 do(tracks.set_handle_value, track.handles[0], 0j, 0.0),
             ]
         draw_tooltip(
-            "Where the pose has the handle: the track begins and ends there without a jump"
+            _("Where the pose has the handle: the track begins and ends there without a jump")
         )
     actions += _paste_items(bands.session, frame)
     if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
@@ -100,7 +101,7 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
     actions += _time_items(bands.session, bands.look, bands.project)
     if track is not None:
         imgui.separator()
-        if imgui.menu_item_simple("Delete track"):
+        if imgui.menu_item_simple(_("Delete track")):
             actions.append(do(editing.edit_layer, track_commands.remove_tracks, track.handles[:1]))
     imgui.end_popup()
     return actions
@@ -120,12 +121,12 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     if cycle is None or isinstance(bands.project.row, TrackRow):
         return actions
     imgui.separator()
-    if imgui.menu_item_simple("Bake repeats"):
+    if imgui.menu_item_simple(_("Bake repeats")):
         actions.append(do(cycles.bake_cycle, frame))
     draw_tooltip(
         f"{cycle.description.capitalize()} are edited in one place; then each repeat is by itself"
     )
-    if imgui.menu_item_simple("Stop repeating"):
+    if imgui.menu_item_simple(_("Stop repeating")):
         actions.append(do(cycles.end_cycle, frame))
     return actions
 
@@ -161,7 +162,9 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
             actions.append(do(keys.scale_selected_keys, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
-    if imgui.menu_item_simple("Copy first pose to last key", enabled=len(project.layer.keys) > 1):
+    if imgui.menu_item_simple(
+        _("Copy first pose to last key"), enabled=len(project.layer.keys) > 1
+    ):
         actions.append(do(keys.match_loop_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):

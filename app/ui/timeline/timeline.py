@@ -21,6 +21,7 @@ from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.tools import tool_pointer
+from app.texts import _
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import Look
 from app.ui.timeline.bar import draw_transport_bar
@@ -214,10 +215,8 @@ def _hint_of_place(bands: TimelineLayout) -> str:
             what, more = "a marker", "double-click to name it"
         return f"Click {what} to go there, drag it to move it, {more}"
     if y < bands.track_top:
-        return (
-            f"Drag to move the playhead, wheel to scroll, {format_modified(CTRL, 'wheel')} to zoom"
-        )
+        return f"Drag to move the playhead, wheel to scroll, {format_modified(CTRL, _('wheel'))} to zoom"
     return (
-        f"Drag keys to move them, {format_modified(CTRL, 'drag')} to copy, click between "
+        f"Drag keys to move them, {format_modified(CTRL, _('drag'))} to copy, click between "
         "keys for easing"
     )

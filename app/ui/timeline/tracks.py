@@ -9,6 +9,7 @@ from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
 from app.editor.actions import editing
 from app.editor.actions.timing import timeline_drag
+from app.texts import _
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
@@ -87,7 +88,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
     low = ImVec2(bands.corner.x, lane.top)
     high = ImVec2(bands.left - 0.3 * em, lane.bottom)
     actions: list[Action] = []
-    if bands.button("name", low, high):
+    if bands.button(_("name"), low, high):
         actions += select_row(row, {})
         actions.append(do(editing.select_handles, frozenset(track.handles)))
     if lane.is_chosen or is_hovered_or_held():
@@ -95,7 +96,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
             colour_u32(palette.accent, CHOSEN) if lane.is_chosen else colour_u32(palette.hovered)
         )
         draw_list.add_rect_filled(low, high, colour, 0.2 * em)
-    draw_tooltip("Click to choose the track: drags of its handle and keys go there then")
+    draw_tooltip(_("Click to choose the track: drags of its handle and keys go there then"))
     switch = high.x - 2.0 * em
     with push_text_size(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
@@ -104,8 +105,10 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
         colour = colour_u32(palette.text if track.enabled else palette.dim)
         draw_list.add_text(ImVec2(low.x + 1.4 * em, top), colour_u32(palette.dim), icon)
         draw_list.add_text(ImVec2(low.x + 2.9 * em, top), colour, text)
-    clicked = bands.button("switch", ImVec2(switch, lane.top), high)
-    draw_tooltip("Switch the track off: its keys stay" if track.enabled else "Switch the track on")
+    clicked = bands.button(_("switch"), ImVec2(switch, lane.top), high)
+    draw_tooltip(
+        _("Switch the track off: its keys stay") if track.enabled else _("Switch the track on")
+    )
     icon = icons.ICON_FA_TOGGLE_ON if track.enabled else icons.ICON_FA_TOGGLE_OFF
     colour = colour_u32(palette.accent if track.enabled else palette.dim)
     with push_text_size(SMALL):
@@ -244,8 +247,8 @@ def _draw_track_key_tooltip(bands: TimelineLayout, lane: TrackLane, key: TrackKe
     name, hint = TANGENT_MODES[key.shown_tangent_mode]
     imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
     if key.velocity is not None:
-        imgui.text_disabled("At a velocity of its own, until a passing or an easing is chosen")
+        imgui.text_disabled(_("At a velocity of its own, until a passing or an easing is chosen"))
     imgui.text_disabled(
-        f"Drag to move, {format_modified(CTRL, 'drag')} to copy, right click for more"
+        f"Drag to move, {format_modified(CTRL, _('drag'))} to copy, right click for more"
     )
     imgui.end_tooltip()

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.document import Baseline, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
+from app.texts import _
 from app.ui.methods import METHODS
 from app.ui.style.drawing import draw_centred_text, draw_knob, outline_strokes
 from app.ui.style.theme import Look, colour_u32
@@ -91,7 +92,7 @@ def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) 
         if imgui.is_item_active() and imgui.get_io().mouse_delta.x:
             place = (imgui.get_mouse_pos().x - parts.corner.x) / room
             actions.append(do(viewing.move_comparison_divider, place))
-        draw_tooltip("Drag to compare")
+        draw_tooltip(_("Drag to compare"))
     palette = look.palette
     colour = palette.accent if is_hot else palette.text
     for tone, width in outline_strokes(look, colour_u32(colour), LINE):

@@ -14,6 +14,7 @@ from app.editor.actions.posing.pose_drag import free_rotation
 from app.editor.layering.layer_selection import reset_tree_rows
 from app.editor.tools import tool_pointer
 from app.editor.tools.tool import PointerHit
+from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.keys import ALT, CTRL, format_modified
 from app.ui.shortcuts.widgets import draw_action_item
@@ -125,7 +126,7 @@ def draw_viewport_panel(
     draw_cuts(look, screen)
     if on_canvas or session.active_tool is not None:
         draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
-    return actions + draw_mode_badge(look, "Cutting out", corner, parts.room)
+    return actions + draw_mode_badge(look, _("Cutting out"), corner, parts.room)
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:
@@ -239,14 +240,14 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     chosen = screen.project.selected_handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
-    if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, "click")):
+    if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
         actions.append(do(remove_handles, chosen))
     actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
     actions += draw_action_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
     label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
-    if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, "click")):
+    if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
         actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
     if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
@@ -256,7 +257,7 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
 
 
 def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
-    if not imgui.begin_menu("Hold"):
+    if not imgui.begin_menu(_("Hold")):
         return []
     weigh = handle_commands.set_handle_weight
     actions = [
@@ -270,7 +271,7 @@ def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
 
 def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Action]:
     """Draw the handle's depth: in front or behind where the drawing overlaps itself."""
-    if not imgui.begin_menu("Depth"):
+    if not imgui.begin_menu(_("Depth")):
         return []
     front = editing.depth_at_playhead(session, screen.project, handle)
     actions = [

@@ -7,6 +7,7 @@ from app.editor import Action, KeysByRow, TurnDrag, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import select_layers, set_active_layer, toggle_tree_row
+from app.texts import _
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -34,14 +35,14 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         high = ImVec2(bands.left - 0.3 * em, lane.bottom)
         left = low.x + INDENT * row.depth * em
         imgui.push_id(row.key)
-        if bands.button("name", low, high):
+        if bands.button(_("name"), low, high):
             actions.append(do(select_layers, *row.layers))
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():
-            imgui.text_unformatted("Click to choose all layers in it")
+            imgui.text_unformatted(_("Click to choose all layers in it"))
             imgui.end_tooltip()
-        if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
+        if bands.button(_("fold"), ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
             actions.append(do(toggle_tree_row, row.toggle))
         caret = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
         icon = icons.ICON_FA_FOLDER if row.switch_group is None else icons.ICON_FA_MASKS_THEATER
@@ -135,7 +136,7 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup
             draw_list.add_text(ImVec2(left + 0.45 * em, top), colour_u32(palette.text), text)
         if begin_tooltip():
             imgui.text_unformatted(f"{document.layer(seen).name} from frame {start} on")
-            imgui.text_disabled("Right click for another one, drag where it begins to move that")
+            imgui.text_disabled(_("Right click for another one, drag where it begins to move that"))
             imgui.end_tooltip()
         actions += _menu(bands, choice, start)
     for start in starts[1:]:
@@ -171,7 +172,7 @@ def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action
         bands.project.document, bands.project.document.switch_group(choice.name), start
     )
     is_change = any(turn.frame == keyed for turn in choice.keys[1:])
-    if imgui.menu_item_simple("Delete", enabled=is_change):
+    if imgui.menu_item_simple(_("Delete"), enabled=is_change):
         actions.append(
             do(editing.edit_document, switch_group_commands.unchoose_at(choice.name, keyed))
         )

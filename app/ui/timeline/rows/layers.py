@@ -16,6 +16,7 @@ from app.document import (
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
+from app.texts import _
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -204,7 +205,7 @@ def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
         )
         if begin_tooltip():
             imgui.text_unformatted(f"{' and '.join(told).capitalize()} at frame {frame}")
-            imgui.text_disabled("Click to go there; it is changed in the Layers tab")
+            imgui.text_disabled(_("Click to go there; it is changed in the Layers tab"))
             imgui.end_tooltip()
     return actions
 
@@ -270,7 +271,7 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
         return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
     if bands.project.timeline.gesture is None and begin_tooltip():
         imgui.text_unformatted(f"{'Shown' if switch.visible else 'Hidden'} from frame {frame} on")
-        imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
+        imgui.text_disabled(_("Click to go there, drag to move it, right click to take it away"))
         imgui.end_tooltip()
     return []
 
@@ -278,7 +279,7 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
 def _menu(row: LayerRow, frame: int) -> list[Action]:
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of switch {frame}"):
-        if imgui.menu_item_simple("Delete"):
+        if imgui.menu_item_simple(_("Delete")):
             command = layer_commands.key_visibility(row.layer.id, frame, visible=None)
             actions.append(do(editing.edit_document, command))
         imgui.end_popup()

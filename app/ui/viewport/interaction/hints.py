@@ -8,6 +8,7 @@ from app.editor import Action, Hint, Project, Session
 from app.editor.actions import tutorials
 from app.editor.tools.table import tools_of
 from app.editor.tools.tool import PointerHit
+from app.texts import _
 from app.ui.shortcuts.action_spec import ActionSpec
 from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified
 from app.ui.shortcuts.table import BINDINGS
@@ -75,7 +76,7 @@ def draw_badges(
     """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed_pose is not None:
-        return _draw_pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
+        return _draw_pill(look, _("Unkeyed pose"), top, BINDINGS["insert key"])
     mode = _mode(session, project)
     if mode:
         return draw_mode_badge(look, mode, corner, room)

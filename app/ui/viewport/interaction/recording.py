@@ -8,6 +8,7 @@ from app.editor.actions.tracking.recording import (
     retry_recording,
     smooth_recording,
 )
+from app.texts import _
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.viewport.paths import find_path_keys
@@ -65,17 +66,19 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
         changed, percent = imgui.slider_int(
             "##smoothing", round(100 * take.smoothing), 0, 100, "Smoothing %d%%"
         )
-        draw_tooltip("How far the motion may be beside what was recorded: the more, the fewer keys")
+        draw_tooltip(
+            _("How far the motion may be beside what was recorded: the more, the fewer keys")
+        )
         if changed:
             actions.append(do(smooth_recording, min(max(percent, 0), 100) / 100))
         imgui.same_line()
-        if imgui.button("Keep"):
+        if imgui.button(_("Keep")):
             actions.append(do(accept_recording))
-        draw_tooltip("Keep these keys, which can be changed like all others")
+        draw_tooltip(_("Keep these keys, which can be changed like all others"))
         imgui.same_line()
-        if imgui.button("Again"):
+        if imgui.button(_("Again")):
             actions.append(do(retry_recording))
-        draw_tooltip("Take this back, and record the next drag")
+        draw_tooltip(_("Take this back, and record the next drag"))
     padding = ImVec2(PADDING * em, PADDING * em)
     low, high = imgui.get_item_rect_min() - padding, imgui.get_item_rect_max() + padding
     draw_list.channels_set_current(0)

@@ -5,6 +5,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, TutorialStage, TutorialState, do
 from app.editor.actions import exporting, tutorials
+from app.texts import _
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import SMALL, Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, main_button, push_text_size
@@ -144,7 +145,7 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
     imgui.same_line(imgui.get_cursor_start_pos().x + width - button)
     if imgui.button(f"{words}###leave"):
         actions.append(do(tutorials.end_tutorial))
-    draw_tooltip("End the guide; what you made stays", BINDINGS["leave guide"].shown_keys)
+    draw_tooltip(_("End the guide; what you made stays"), BINDINGS["leave guide"].shown_keys)
     return actions
 
 

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session, TutorialState
 from app.editor.actions import exporting, tutorials
+from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import Look
@@ -92,11 +93,13 @@ def _hindrance(session: Session) -> str:
 def _to_handle(look: Look, guide: TutorialState, screen: ScreenMapping) -> TutorialStep:
     if guide.handle_place is None:
         return TutorialStep(
-            "Click on a part that is to stay where it is, then on one that is to move. Each click "
-            "adds a handle."
+            _(
+                "Click on a part that is to stay where it is, then on one that is to move. Each click "
+                "adds a handle."
+            )
         )
     return TutorialStep(
-        "Click on the nose. The handles that are there already hold legs and body in place.",
+        _("Click on the nose. The handles that are there already hold legs and body in place."),
         _ring(look, screen, guide.handle_place),
         is_round=True,
     )
@@ -124,7 +127,7 @@ def _to_pose(
     reach = REACH * look.em / screen.scale
     held = near[min(near)] if near and min(near) < reach else guide.handle_place
     return TutorialStep(
-        "Drag the nose down to the ground. A key with the new pose makes itself.",
+        _("Drag the nose down to the ground. A key with the new pose makes itself."),
         _ring(look, screen, held),
         _ring(look, screen, guide.target_place),
         is_round=True,
@@ -133,16 +136,16 @@ def _to_pose(
 
 def _to_export(session: Session, project: Project, places: Places) -> TutorialStep:
     if exporting.is_export_under_way(session):
-        return TutorialStep("The GIF is being made.")
+        return TutorialStep(_("The GIF is being made."))
     if not is_in_front("Export"):
         window = imgui.internal.find_window_by_name("###Export")
         tab = None if window is None else window.dc.dock_tab_item_rect
         at = None if tab is None else Rect(tab.min, tab.max)
-        return TutorialStep("Open the tab Export.", at, anywhere=True)
+        return TutorialStep(_("Open the tab Export."), at, anywhere=True)
     if project.document.export.format != tutorials.FORMAT:
-        return TutorialStep("Choose GIF as the format.", _box(places, "format"))
+        return TutorialStep(_("Choose GIF as the format."), _box(places, "format"))
     return TutorialStep(
-        "Click Export, and choose where the GIF goes.", _box(places, "start export")
+        _("Click Export, and choose where the GIF goes."), _box(places, "start export")
     )
 
 
