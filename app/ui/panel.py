@@ -7,6 +7,7 @@ from typing import Literal
 from imgui_bundle import hello_imgui, imgui
 
 from app.editor import Action, Project, Session
+from app.texts import _
 from app.ui.style.theme import Look
 
 
@@ -18,7 +19,7 @@ class Panel:
     it is not called.
     """
 
-    title: str
+    title: str  # its name in the program; the tab shows it in the person's language
     icon: str
     draw: Callable[[Session, Look, Project], list[Action]]
     place: Literal["MainDockSpace", "side", "bottom"] = "side"
@@ -28,9 +29,10 @@ class Panel:
     @property
     def labels(self) -> tuple[str, str, str]:
         """The tab's texts, from the longest to the icon alone. The title is their ImGui id."""
-        texts = (f"{self.icon}  {self.title}", self.title, self.icon)
-        full, title, icon = (f"{text}###{self.title}" for text in texts)
-        return full, title, icon
+        title = _(self.title)
+        texts = (f"{self.icon}  {title}", title, self.icon)
+        full, short, icon = (f"{text}###{self.title}" for text in texts)
+        return full, short, icon
 
     @property
     def label(self) -> str:

@@ -77,7 +77,7 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
             if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(_("How fast the timeline plays while a drag is recorded"))
+    draw_tooltip(_("Speed of the timeline while a drag is recorded"))
     return actions
 
 
@@ -190,7 +190,7 @@ def _speed(project: Project) -> list[Action]:
             if imgui.selectable(f"{speed:g}×", speed == current)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(_("How fast it plays here; the animation itself stays as it is"))
+    draw_tooltip(_("Speed of playback here; the animation itself stays the same"))
     return actions
 
 
@@ -198,7 +198,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     overlays, preferences = session.overlays, session.preferences
     binding = BINDINGS["onion skin"]
-    hint = "Onion skin: what is shown before and after"
+    hint = _("Onion skin: the poses shown before and after this frame")
     if icon_button(look, binding.icon, "onion skin", hint, active=overlays.onion):
         imgui.open_popup("menu of onion skin")
     if not imgui.begin_popup("menu of onion skin"):
@@ -210,8 +210,8 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     values = [preferences.ghosts_before, preferences.ghosts_after, preferences.ghost_step]
     before = list(values)
     sliders = (
-        *(("before", 0, MOST_GHOSTS), ("after", 0, MOST_GHOSTS)),
-        ("frames apart", 1, LARGEST_GHOST_STEP),
+        *((_("before"), 0, MOST_GHOSTS), (_("after"), 0, MOST_GHOSTS)),
+        (_("frames apart"), 1, LARGEST_GHOST_STEP),
     )
     for index, (name, low, high) in enumerate(sliders):
         imgui.set_next_item_width(8 * look.em)
@@ -219,7 +219,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     if values != before:
         actions.append(do(viewing.set_onion_skin, *values))
     changed, in_front = imgui.checkbox(_("In front of the drawing"), preferences.ghosts_in_front)
-    draw_tooltip(_("Over all layers, and not behind those that are posed"))
+    draw_tooltip(_("In front of all layers, not behind the posed layers"))
     if changed:
         actions.append(do(viewing.set_onion_skin_in_front, in_front))
     imgui.end_popup()
@@ -231,5 +231,5 @@ def _variant(project: Project) -> list[Action]:
     if imgui.begin_combo("##variant", VARIANTS[project.layer.variant].name):
         actions += draw_method_menu(project)
         imgui.end_combo()
-    draw_tooltip(_("How in-betweens are made"))
+    draw_tooltip(_("Method for the in-betweens"))
     return actions

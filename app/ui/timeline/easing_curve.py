@@ -5,7 +5,7 @@ from imgui_bundle import ImVec2, imgui
 from app.document import MAX_REVOLUTIONS, PRESETS, Easing, Keyframe
 from app.editor import Action, KeysByRow, Project, do
 from app.editor.actions.timing import keys
-from app.texts import _
+from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, Look, colour_u32
 from app.ui.style.widgets import (
     bold_text,
@@ -18,7 +18,13 @@ from app.ui.style.widgets import (
 
 SIDE = 12.0  # em: side of the editor
 TILE = 4.4  # em: width of a preset
-LABELS = {"linear": "Linear", "in": "In", "out": "Out", "in-out": "In-out", "hold": "Hold"}
+LABELS = {
+    "linear": _("Linear"),
+    "in": _("In"),
+    "out": _("Out"),
+    "in-out": _("In-out"),
+    "hold": _("Hold"),
+}
 DIGITS = 3  # decimals of a dragged control point
 
 
@@ -76,7 +82,11 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
     count = sum(map(len, taken.values()))
     bold_text(look, _("Easing"))
     imgui.same_line()
-    imgui.text_disabled(f"after {count} keys" if count > 1 else f"after frame {key.frame}")
+    imgui.text_disabled(
+        ngettext("after frame {frame}", "after {count} keys", count).format(
+            frame=key.frame, count=count
+        )
+    )
     actions: list[Action] = []
     chosen = _presets(look, key.easing)
     chosen = _editor(look, key.easing) or chosen
@@ -86,7 +96,7 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
     actions += _draw_revolutions(look, key, taken)
     if imgui.button(_("Use for new keys")):
         actions.append(do(keys.set_default_easing, key.easing))
-    draw_tooltip(_("Ways from keys that are made later begin like this one"))
+    draw_tooltip(_("New keys get this easing"))
     imgui.end_popup()
     return actions
 
@@ -166,7 +176,7 @@ def _control_points(
         imgui.invisible_button(f"control {index + 1}", ImVec2(2 * radius, 2 * radius))
         hot = is_hovered_or_held()
         draw_tooltip(
-            _("Drag: both points stay inside the square, so that in-betweens keep their limits")
+            _("Drag the point. It stays inside the square, so that in-betweens keep their limits.")
         )
         draw_list.add_circle_filled(
             centre, 0.5 * em if hot else 0.42 * em, colour_u32(palette.desk)
@@ -199,7 +209,7 @@ def _draw_revolutions(look: Look, key: Keyframe, taken: KeysByRow) -> list[Actio
     label(look, _("Whole turns"))
     changed, turns = imgui.input_int("##turns", key.revolutions, 1, 1)
     draw_tooltip(
-        _("Full turns on the way to the next key, counter-clockwise; negative ones go clockwise")
+        _("Full turns to the next key, counter-clockwise; negative numbers turn clockwise")
     )
     turns = min(max(turns, -MAX_REVOLUTIONS), MAX_REVOLUTIONS)
     return [do(keys.set_revolutions, taken, turns)] if changed and turns != key.revolutions else []

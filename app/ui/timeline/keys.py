@@ -37,6 +37,7 @@ from app.ui.timeline.track_residuals import describe_residual
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal: normally, and if keys are dense
 SMALLER = 0.7  # size of other layers' keys, relative to the active layer's
+KEY_GESTURES = _("Drag to move, {gesture} to copy, right click for more")
 GRIP = 1.45  # half the side of a key's hit box, relative to half its diagonal
 
 
@@ -277,7 +278,9 @@ def describe_target_errors(project: Project, key: Keyframe) -> list[str]:
     short = project.timeline.target_errors.value.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.layer.handles}
     return [
-        f"{names[identity]} is {lag:.0f} px short of its target"
+        _("{handle} is {error:.0f} px short of its target").format(
+            handle=names[identity], error=lag
+        )
         for identity, lag in short.items()
         if identity in names
     ]
@@ -287,19 +290,19 @@ def _draw_key_tooltip(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> No
     if not begin_tooltip():
         return
     palette, document = bands.look.palette, bands.project.document
-    imgui.text_unformatted(f"Key at frame {key.frame}")
+    imgui.text_unformatted(_("Key at frame {frame}").format(frame=key.frame))
     imgui.same_line()
     imgui.text_disabled(format_seconds(key.frame, document.fps))
     name, hint = TANGENT_MODES[key.shown_tangent_mode]
-    imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
+    imgui.text_unformatted(name)
+    imgui.text_disabled(hint)
     if not key.pose.certificate.is_certified:
         imgui.text_colored(
             palette.danger,
-            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Beyond the limits: in-betweens may fold here",
+            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  "
+            + _("Beyond the limits: in-betweens may fold here"),
         )
     for text in describe_target_errors(bands.project, key) if row.is_active else ():
         imgui.text_colored(palette.warning, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}")
-    imgui.text_disabled(
-        f"Drag to move, {format_modified(CTRL, _('drag'))} to copy, right click for more"
-    )
+    imgui.text_disabled(KEY_GESTURES.format(gesture=format_modified(CTRL, _("drag"))))
     imgui.end_tooltip()

@@ -23,6 +23,7 @@ from app.document import (
 )
 from app.editor import Action, CycleDrag, do
 from app.editor.actions.timing import timeline_drag, tracks
+from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -41,7 +42,14 @@ HATCH = 0.55  # em: between the lines over repeats
 GRIP = 0.35  # em: half the hit width of the end of repeats
 REPEATED_KEY = 0.26  # em: radius of a repeated key
 SEAM = 0.2  # em: smallest distance of two seams
-NAMES = {"linear": "linear", "in": "ease in", "out": "ease out", "in-out": "ease in-out"}
+NAMES = {
+    "linear": _("linear"),
+    "in": _("ease in"),
+    "out": _("ease out"),
+    "in-out": _("ease in-out"),
+    "hold": _("hold"),
+    "custom": _("custom"),
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -61,8 +69,8 @@ class _SegmentBar:
         """The easing of the segment in words, or "smooth"."""
         easing = self.key.easing
         if easing == LINEAR and not self.segment.is_linear:
-            return "smooth"
-        return NAMES.get(easing.name, easing.name)
+            return _("smooth")
+        return NAMES[easing.name]
 
 
 def draw_pose_segments(bands: TimelineLayout) -> list[Action]:
@@ -155,7 +163,7 @@ def _draw_segment(
     is_open = imgui.is_popup_open(popup)
     hot = is_open or (is_hovered_or_held() and bands.project.timeline.gesture is None)
     if bands.project.timeline.gesture is None and not is_open:
-        draw_tooltip(f"{bar.easing_text.capitalize()}: click to change how time runs here")
+        draw_tooltip(_("Easing: {easing}. Click to change it.").format(easing=bar.easing_text))
     _draw_bar(bands, bar, low, high, hot=hot)
     _label(bands, bar.easing_text, bar.key.revolutions, low, high)
     if bar.name.split()[-1].isdecimal():
@@ -194,8 +202,8 @@ def _draw_bar(
 def _label(bands: TimelineLayout, name: str, turns: int, low: ImVec2, high: ImVec2) -> None:
     """Write the easing's name in the upper left corner, away from the curve."""
     em = bands.look.em
-    text = f"{name}, {turns:+d} turns" if abs(turns) > 1 else f"{name}, {turns:+d} turn"
-    text = text if turns else name
+    text = ngettext("{easing}, {turns:+d} turn", "{easing}, {turns:+d} turns", abs(turns))
+    text = text.format(easing=name, turns=turns) if turns else name
     left = max(low.x, bands.left) + 0.6 * em
     with push_text_size(SMALL):
         if left + 2.2 * imgui.calc_text_size(text).x + em < min(high.x, bands.right):
@@ -264,16 +272,19 @@ def _frame(key: Keyframe) -> int:
 
 def _ends_of_cycle(bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int) -> list[Action]:
     """Draw the ends of a cycle and of its repeats, and handle the pointer on them."""
-    repeats = "to the end of the scene" if cycle.until is None else f"until frame {end}"
-    told = f"{cycle.description.capitalize()} repeat {repeats}"
+    if cycle.until is None:
+        text = _("Frames {first} to {last} repeat to the end of the scene")
+    else:
+        text = _("Frames {first} to {last} repeat until frame {until}")
+    text = text.format(first=cycle.first, last=cycle.last, until=end)
     actions: list[Action] = []
     if end > cycle.last:
-        actions += _end_of_cycle(bands, row, cycle, cycle.last, told, is_stretch=True)
-    return actions + _end_of_cycle(bands, row, cycle, end, told, is_stretch=False)
+        actions += _end_of_cycle(bands, row, cycle, cycle.last, text, is_stretch=True)
+    return actions + _end_of_cycle(bands, row, cycle, end, text, is_stretch=False)
 
 
 def _end_of_cycle(
-    bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int, told: str, *, is_stretch: bool
+    bands: TimelineLayout, row: LayerRow, cycle: Cycle, end: int, text: str, *, is_stretch: bool
 ) -> list[Action]:
     x, half = bands.x(end), GRIP * bands.look.em
     if not bands.shows(x - half, x + half):
@@ -294,14 +305,16 @@ def _end_of_cycle(
     if is_hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
     if is_dragged:
+        tag = _("to {frame}") if is_stretch else _("until {frame}")
         is_open = cycle.until is None and not is_stretch
-        draw_time_tag(
-            bands, x, "to the end" if is_open else f"{'to' if is_stretch else 'until'} {end}"
-        )
+        draw_time_tag(bands, x, _("to the end") if is_open else tag.format(frame=end))
     elif gesture is None and begin_tooltip():
-        imgui.text_unformatted(told)
-        what = "Drag to make each longer or shorter" if is_stretch else "Drag to end them elsewhere"
-        imgui.text_disabled(f"{what}, right click on them for more")
+        imgui.text_unformatted(text)
+        imgui.text_disabled(
+            _("Drag to make each repeat longer or shorter, right click the repeats for more")
+            if is_stretch
+            else _("Drag to end the repeats elsewhere, right click the repeats for more")
+        )
         imgui.end_tooltip()
     if not is_pressed():
         return []

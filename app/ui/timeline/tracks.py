@@ -9,7 +9,7 @@ from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
 from app.editor.actions import editing
 from app.editor.actions.timing import timeline_drag
-from app.texts import _
+from app.texts import _, ngettext
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
@@ -20,6 +20,7 @@ from app.ui.style.widgets import (
     shorten_text,
 )
 from app.ui.timeline.keys import (
+    KEY_GESTURES,
     begin_key_drag,
     draw_key_mark,
     find_drag_origin,
@@ -62,8 +63,10 @@ def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Act
     )
     clicked = bands.button(f"fold {layer.id}", low, high)
     is_open = layer.id in bands.project.timeline.expanded_layers
-    many = f"{len(layer.tracks)} tracks" if len(layer.tracks) > 1 else "its track"
-    draw_tooltip(f"Fold {many} away" if is_open else f"Show {many}")
+    count = len(layer.tracks)
+    hide = ngettext("Hide the track", "Hide {count} tracks", count)
+    show = ngettext("Show the track", "Show {count} tracks", count)
+    draw_tooltip((hide if is_open else show).format(count=count))
     palette = bands.look.palette
     icon = icons.ICON_FA_CARET_DOWN if is_open else icons.ICON_FA_CARET_RIGHT
     top = row.middle - imgui.get_text_line_height() / 2
@@ -96,7 +99,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
             colour_u32(palette.accent, CHOSEN) if lane.is_chosen else colour_u32(palette.hovered)
         )
         draw_list.add_rect_filled(low, high, colour, 0.2 * em)
-    draw_tooltip(_("Click to choose the track: drags of its handle and keys go there then"))
+    draw_tooltip(_("Click to select the track: then keys and drags of its handle go to the track"))
     switch = high.x - 2.0 * em
     with push_text_size(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
@@ -238,17 +241,24 @@ def _draw_track_key_tooltip(bands: TimelineLayout, lane: TrackLane, key: TrackKe
     if not begin_tooltip():
         return
     document, track = bands.project.document, lane.track
-    imgui.text_unformatted(f"Key of {format_track_name(lane.layer, track)} at frame {key.frame}")
+    imgui.text_unformatted(
+        _("Key of {track} at frame {frame}").format(
+            track=format_track_name(lane.layer, track), frame=key.frame
+        )
+    )
     if track.delay:
         imgui.same_line()
         imgui.text_disabled(
-            f"{track.delay} frames late, {format_seconds(track.delay, document.fps)}"
+            ngettext(
+                "{count} frame late, {time}", "{count} frames late, {time}", track.delay
+            ).format(count=track.delay, time=format_seconds(track.delay, document.fps))
         )
     name, hint = TANGENT_MODES[key.shown_tangent_mode]
-    imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
+    imgui.text_unformatted(name)
+    imgui.text_disabled(hint)
     if key.velocity is not None:
-        imgui.text_disabled(_("At a velocity of its own, until a passing or an easing is chosen"))
-    imgui.text_disabled(
-        f"Drag to move, {format_modified(CTRL, _('drag'))} to copy, right click for more"
-    )
+        imgui.text_disabled(
+            _("The key has its own velocity, until you choose a tangent or an easing")
+        )
+    imgui.text_disabled(KEY_GESTURES.format(gesture=format_modified(CTRL, _("drag"))))
     imgui.end_tooltip()

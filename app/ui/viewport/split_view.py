@@ -45,7 +45,7 @@ def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayo
     return SplitLayout(corner, room, corner.x + split.divider * room.x)
 
 
-def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
+def draw_split_pictures(parts: SplitLayout, own: int, comparison: int | None) -> None:
     """Show the drawing, and right of the divider the compared method's picture."""
     draw_list = imgui.get_window_draw_list()
     corner, room = parts.corner, parts.room
@@ -57,13 +57,13 @@ def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
         ImVec2(0, 1),
         ImVec2(1, 0),
     )
-    if twin is None:
+    if comparison is None:
         return
     is_beside = parts.divider >= corner.x + room.x
     left = 0.0 if is_beside else (parts.divider - corner.x) / room.x
     end = parts.divider + room.x if is_beside else corner.x + room.x
     draw_list.add_image(
-        imgui.ImTextureRef(twin),
+        imgui.ImTextureRef(comparison),
         ImVec2(parts.divider, corner.y),
         ImVec2(end, bottom),
         ImVec2(left, 1),

@@ -53,7 +53,7 @@ CANVAS = (
     ("fit", "fit motion", "actual size"),
     ("handles", "outline", "onion skin"),
 )
-DEPTHS = {"In front": 1.0, "In its usual order": 0.0, "Behind": -1.0}
+DEPTHS = {_("In front"): 1.0, _("In its usual order"): 0.0, _("Behind"): -1.0}
 
 
 def draw_viewport_pictures(
@@ -240,17 +240,18 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     chosen = screen.project.selected_handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
-    if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
+    if item(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
         actions.append(do(remove_handles, chosen))
     actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
     actions += draw_action_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
-    label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
+    is_anchor = handle.position == layer.anchor
+    label = _("Automatic anchor") if is_anchor else _("Make it the anchor")
     if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
         actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
-    if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
+    if item(_("Let it turn freely"), icons.ICON_FA_ROTATE, enabled=is_turned):
         actions.append(do(free_rotation, identity))
     imgui.end_popup()
     return actions
@@ -263,7 +264,7 @@ def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
     actions = [
         do(editing.edit_layer, weigh, chosen, weight)
         for word, weight in WEIGHT_PRESETS.items()
-        if imgui.menu_item(word, "", handle.weight == weight)[0]
+        if imgui.menu_item(_(word), "", handle.weight == weight)[0]
     ]
     imgui.end_menu()
     return actions

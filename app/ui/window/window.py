@@ -28,6 +28,7 @@ from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu.context import describe_graphics, is_software
 from app.storage import app_icon, sample_images
+from app.texts import N_, _, message_of
 from app.ui.panel import Panel
 from app.ui.panels import deform, distortion, export, handle, poses
 from app.ui.panels.layer_setup import cut_out, domain, material
@@ -135,7 +136,7 @@ class Window:
         is_over : callable
             Asked once a frame. If true, the window closes without a question.
         farewell : callable
-            Called before all objects are released, because the release may hang or crash. Also
+            Called before all objects are released, because the release may block or crash. Also
             called if an exception ends the window; then nothing is released.
 
         Raises
@@ -163,9 +164,11 @@ class Window:
             hello_imgui.manual_render.setup_from_runner_params(params)
         except RuntimeError as error:
             raise LissomError(
-                f"the window cannot be opened ({error}): it needs a display with OpenGL 3.3; "
-                "'lissom doctor' tells what there is, LIBGL_ALWAYS_SOFTWARE=1 draws without a "
-                "graphics card, and the command line needs no display"
+                _(
+                    "The window cannot be opened ({error}). It needs a display with OpenGL 3.3. "
+                    "'lissom doctor' checks the graphics, LIBGL_ALWAYS_SOFTWARE=1 draws without a "
+                    "graphics card, and the command line needs no display."
+                ).format(error=error)
             ) from error
         self._is_open = True
         self.session.jobs.wake = self.wake
@@ -215,43 +218,42 @@ class Window:
         """Report that OpenGL fails, as after a driver reset, and save a recovery copy at once."""
         session = self.session
         project = session.project
-        kept = ""
+        sentences = [_("The picture cannot be drawn: {error}.").format(error=error)]
         if project is not None and saving.has_unsaved_changes(project):
-            kept = " Unsaved work was kept."
             try:
                 saving.autosave_now(session)
+                sentences.append(_("A recovery copy of the unsaved work was saved."))
             except EXPECTED_ERRORS as reason:
-                kept = f" Unsaved work could not be kept ({reason})."
-        error_reports.report_unexpected_error(
-            session,
-            f"The picture cannot be drawn: {error}.{kept} If the picture does not come back, save "
-            "and start Lissom again.",
-            error,
-            topic="drawing",
-        )
+                sentences.append(
+                    _("The unsaved work could not be saved ({reason}).").format(
+                        reason=message_of(reason)
+                    )
+                )
+        sentences.append(_("If the picture does not come back, save and start Lissom again."))
+        error_reports.report_unexpected_error(session, " ".join(sentences), error, topic="drawing")
 
     def _panels(self) -> list[Panel]:
         draw_layers = partial(draw_layers_panel, pictures=self._layer_picture)
         draw_poses = partial(poses.draw_poses_panel, pictures=self._pose_picture)
         return [
             Panel(
-                "Viewport",
+                N_("Viewport"),
                 icons.ICON_FA_IMAGE,
                 self._draw_viewport,
                 place="MainDockSpace",
                 draw_background=self._draw_ground,
             ),
-            Panel("Timeline", icons.ICON_FA_FILM, timeline.draw_timeline_panel, place="bottom"),
-            Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
-            Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
-            Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
-            Panel("Motion", icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
-            Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
-            Panel("Material", icons.ICON_FA_CUBE, material.draw_material_panel),
-            Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
-            Panel("Mesh", icons.ICON_FA_SHAPES, domain.draw_domain_panel),
-            Panel("Cut-out", icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
-            Panel("Export", icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
+            Panel(N_("Timeline"), icons.ICON_FA_FILM, timeline.draw_timeline_panel, place="bottom"),
+            Panel(N_("Handle"), icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
+            Panel(N_("Layers"), icons.ICON_FA_LAYER_GROUP, draw_layers),
+            Panel(N_("Poses"), icons.ICON_FA_PERSON_RUNNING, draw_poses),
+            Panel(N_("Motion"), icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
+            Panel(N_("Deform"), icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
+            Panel(N_("Material"), icons.ICON_FA_CUBE, material.draw_material_panel),
+            Panel(N_("Distortion"), icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
+            Panel(N_("Mesh"), icons.ICON_FA_SHAPES, domain.draw_domain_panel),
+            Panel(N_("Cut-out"), icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
+            Panel(N_("Export"), icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
         ]
 
     def _draw_ground(self, session: Session, _: Look, project: Project) -> list[Action]:

@@ -22,6 +22,7 @@ from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
+from app.texts import _, message_of
 from app.ui import toasts, welcome
 from app.ui.bars.icons import draw_icon_bar
 from app.ui.bars.menus import draw_main_menu
@@ -42,6 +43,7 @@ IDLE_FPS = 0.2
 AWAKE = 0.5  # seconds of full frame rate after that, for its consequences
 REPEATS = 2  # frames after which further frames would show nothing new
 LEFT = imgui.MouseButton_.left
+MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The icon bar")
 # Actions that follow automatically in each frame, and not from the person.
 UNLOGGED = {
     dismiss_toast,
@@ -82,35 +84,33 @@ class WindowFrame:
         previews = welcome.Previews(thumbnail, moments)
         over = (
             # Hello ImGui draws the tabs themselves.
-            WindowPart("The names of the tabs", self._draw_tabs, place="window"),
-            WindowPart("The welcome view", partial(_welcome, previews=previews), place="window"),
-            WindowPart("The guide", self._draw_guide, place="window"),
+            WindowPart(_("The names of the tabs"), self._draw_tabs, place="window"),
+            WindowPart(_("The welcome view"), partial(_welcome, previews=previews), place="window"),
+            WindowPart(_("The guide"), self._draw_guide, place="window"),
             WindowPart(
-                "The dialog",
+                _("The dialog"),
                 partial(self._dialogs.draw, thumbnail=thumbnail),
                 place="window",
                 dismissal=do(close_dialog),
             ),
-            WindowPart("The messages", toasts.draw_toasts, place="window"),
+            WindowPart(_("The messages"), toasts.draw_toasts, place="window"),
         )
         bars_around = (
-            WindowPart("The menu bar", self._draw_menus, place="bar"),
-            WindowPart("The status bar", draw_status_bar, place="bar"),
-            WindowPart("The icon bar", _with_project(draw_icon_bar), place="bar"),
+            WindowPart(MENU_BAR, self._draw_menus, place="bar"),
+            WindowPart(STATUS_BAR, draw_status_bar, place="bar"),
+            WindowPart(ICON_BAR, _with_project(draw_icon_bar), place="bar"),
         )
         menus = [
             WindowPart(
-                f"The menu {title}",
+                _name_menu(title),
                 partial(draw_main_menu, title=title, panels=panels),
                 place="menu",
             )
             for title in MENUS
         ]
-        docked = [
-            WindowPart(f"The panel {each.title}", _with_project(each.draw)) for each in panels
-        ]
+        docked = [WindowPart(_name_panel(each), _with_project(each.draw)) for each in panels]
         grounds = [
-            WindowPart(f"The picture in {each.title}", _with_project(each.draw_background))
+            WindowPart(_name_picture(each), _with_project(each.draw_background))
             for each in panels
             if each.draw_background is not None
         ]
@@ -143,15 +143,15 @@ class WindowFrame:
         calls.setup_imgui_config = self._configure
         calls.setup_imgui_style = self._apply_theme
         calls.pre_new_frame = partial(self.run_guarded, self._begin_frame)
-        calls.show_menus = partial(self._ask, "The menu bar")
-        calls.show_status = partial(self._ask, "The status bar")
+        calls.show_menus = partial(self._ask, MENU_BAR)
+        calls.show_status = partial(self._ask, STATUS_BAR)
         calls.show_gui = self._draw_over_panels
         calls.before_imgui_render = self._apply_actions
         calls.confirm_exit = self._may_exit
         options = hello_imgui.EdgeToolbarOptions()
         options.size_em = 2.7
         options.window_padding_em = ImVec2(0.35, 0.5)
-        icons = partial(self._ask, "The icon bar")
+        icons = partial(self._ask, ICON_BAR)
         calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, icons, options)
         params.fps_idling.fps_idle = IDLE_FPS
         params.fps_idling.time_active_after_last_event = AWAKE
@@ -179,10 +179,10 @@ class WindowFrame:
 
     def _report_error(self, error: Exception) -> None:
         if isinstance(error, EXPECTED_ERRORS):
-            self.session.show_notice(as_sentence(str(error)), tone="error")
+            self.session.show_notice(as_sentence(message_of(error)), tone="error")
         else:
             error_reports.report_unexpected_error(
-                self.session, f"That did not work: {error}", error
+                self.session, _("That did not work: {error}").format(error=error), error
             )
 
     def _step(self, run: Callable[[Session], None]) -> FrameStep:
@@ -220,8 +220,8 @@ class WindowFrame:
 
     def _draw_panel(self, panel: Panel) -> None:
         if panel.draw_background is not None:
-            self._ask(f"The picture in {panel.title}")
-        self._ask(f"The panel {panel.title}")
+            self._ask(_name_picture(panel))
+        self._ask(_name_panel(panel))
 
     def _ask(self, name: str) -> None:
         """Draw a part, and collect its actions."""
@@ -229,8 +229,8 @@ class WindowFrame:
 
     def _draw_menus(self, *_: object) -> list[Action]:
         for title in MENUS:
-            if imgui.begin_menu(title):
-                self._ask(f"The menu {title}")
+            if imgui.begin_menu(_(title)):
+                self._ask(_name_menu(title))
                 imgui.end_menu()
         return []
 
@@ -318,6 +318,18 @@ class WindowFrame:
         return False
 
 
+def _name_menu(title: str) -> str:
+    return _("The menu {menu}").format(menu=_(title))
+
+
+def _name_panel(panel: Panel) -> str:
+    return _("The panel {panel}").format(panel=_(panel.title))
+
+
+def _name_picture(panel: Panel) -> str:
+    return _("The picture in {panel}").format(panel=_(panel.title))
+
+
 def _with_project(
     draw: Callable[[Session, Look, Project], list[Action]],
 ) -> Callable[[Session, Look], list[Action]]:
@@ -351,6 +363,6 @@ def _awaits_in_between(session: Session) -> bool:
         return False
     if session.export is not None or session.toasts or session.dialog is not None:
         return False
-    shows = [puppet.shown for puppet in project.layer_runtimes.values()]
+    shows = [runtime.shown for runtime in project.layer_runtimes.values()]
     awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
     return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)

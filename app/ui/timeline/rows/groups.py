@@ -7,7 +7,7 @@ from app.editor import Action, KeysByRow, TurnDrag, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import select_layers, set_active_layer, toggle_tree_row
-from app.texts import _
+from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -40,7 +40,7 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():
-            imgui.text_unformatted(_("Click to choose all layers in it"))
+            imgui.text_unformatted(_("Click to select all of its layers"))
             imgui.end_tooltip()
         if bands.button(_("fold"), ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
             actions.append(do(toggle_tree_row, row.toggle))
@@ -98,8 +98,12 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
             actions += [do(editing.select_keys_in_rows, keys), do(playback.scrub, frame)]
         is_chosen = all(frame in chosen_of.get(row, ()) for row in keys)
         if begin_tooltip():
-            count = f"{len(keys)} keys" if len(keys) > 1 else "A key"
-            imgui.text_unformatted(f"{count} at frame {frame}: click to choose all of them")
+            text = ngettext(
+                "A key at frame {frame}: click to select it",
+                "{count} keys at frame {frame}: click to select them",
+                len(keys),
+            )
+            imgui.text_unformatted(text.format(count=len(keys), frame=frame))
             imgui.end_tooltip()
         palette = bands.look.palette
         colour = (
@@ -135,8 +139,14 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup
             text = shorten_text(document.layer(seen).name, right - left - 0.9 * em)
             draw_list.add_text(ImVec2(left + 0.45 * em, top), colour_u32(palette.text), text)
         if begin_tooltip():
-            imgui.text_unformatted(f"{document.layer(seen).name} from frame {start} on")
-            imgui.text_disabled(_("Right click for another one, drag where it begins to move that"))
+            imgui.text_unformatted(
+                _("{layer} from frame {frame} on").format(
+                    layer=document.layer(seen).name, frame=start
+                )
+            )
+            imgui.text_disabled(
+                _("Right click to show another layer, drag the beginning to move it")
+            )
             imgui.end_tooltip()
         actions += _menu(bands, choice, start)
     for start in starts[1:]:

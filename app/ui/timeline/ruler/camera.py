@@ -32,7 +32,7 @@ def draw_camera_row(bands: TimelineLayout) -> list[Action]:
     middle = (top + bottom) / 2
     if bands.has_names:
         place = ImVec2(bands.corner.x + 0.6 * em, middle - imgui.get_text_line_height() / 2)
-        draw_list.add_text(place, colour_u32(palette.dim), f"{icons.ICON_FA_VIDEO}  Camera")
+        draw_list.add_text(place, colour_u32(palette.dim), f"{icons.ICON_FA_VIDEO}  {_('Camera')}")
     draw_list.push_clip_rect(
         ImVec2(bands.left, top), ImVec2(bands.right, bottom), intersect_with_current_clip_rect=True
     )
@@ -74,7 +74,7 @@ def _point(bands: TimelineLayout, key: CameraKey) -> list[Action]:
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"{MENU} {key.frame}")
     if bands.project.timeline.gesture is None and begin_tooltip():
-        imgui.text_unformatted(f"Camera, {key.zoom:.3g} times as large")
+        imgui.text_unformatted(_("Camera, {zoom:.3g} times as large").format(zoom=key.zoom))
         imgui.same_line()
         imgui.text_disabled(f"{key.frame}, {format_seconds(key.frame, document.fps)}")
         imgui.text_disabled(_("Click to go there, drag to move it"))
@@ -105,7 +105,7 @@ def _menu(bands: TimelineLayout, key: CameraKey) -> list[Action]:
         turn = _field(bands.look, _("Turn"), degrees(key.turn), "%.4g°")
         if turn is not None:
             actions.append(do(change_camera_key, key.frame, turn=radians(turn)))
-        draw_tooltip(_("By how much things are seen turned, counter-clockwise"))
+        draw_tooltip(_("Rotation of the picture, counter-clockwise"))
         imgui.separator()
         for name in ("key camera", "look through"):
             actions += draw_action_item(bands.session, name)

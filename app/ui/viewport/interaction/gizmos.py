@@ -98,7 +98,7 @@ def add_mirror_axis_gizmo(session: Session, look: Look, screen: ScreenMapping) -
     imgui.invisible_button("mirror axis", ImVec2(2 * radius, 2 * radius))
     if is_hovered_or_held():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    draw_tooltip(_("Poses are flipped here: drag it where the drawing has its middle"))
+    draw_tooltip(_("Poses are flipped at this axis: drag it to the middle of the drawing"))
     return MirrorAxisGizmo(x, is_hovered_or_held(), is_pressed())
 
 
