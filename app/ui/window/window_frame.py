@@ -227,7 +227,7 @@ class WindowFrame:
         """Draw a part, and collect its actions."""
         self._actions += self.parts[name].draw_guarded(self.session, self.look)
 
-    def _draw_menus(self, *_: object) -> list[Action]:
+    def _draw_menus(self, *_rest: object) -> list[Action]:
         for title in MENUS:
             if imgui.begin_menu(_(title)):
                 self._ask(_name_menu(title))
