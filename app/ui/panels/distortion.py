@@ -23,7 +23,7 @@ from app.ui.style.widgets import (
     text_button,
 )
 from app.ui.viewport.canvas import heat_limits
-from app.ui.viewport.gpu_resources import measure_distortion
+from app.ui.viewport.picture.gpu_resources import measure_distortion
 from engine.arrays import Floats
 from engine.domain.meshing.mesh import Mesh
 from engine.maps import Bounds

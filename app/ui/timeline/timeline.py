@@ -26,14 +26,16 @@ from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import Look
 from app.ui.timeline.bar import draw_transport_bar
 from app.ui.timeline.dropping import accept_dropped_pose
-from app.ui.timeline.keys import draw_key_box, draw_keys, draw_track_background
+from app.ui.timeline.keys import draw_keys
 from app.ui.timeline.layout import THIN, TimelineLayout, TrackLane, format_seconds, was_dragged
+from app.ui.timeline.rows.background import draw_key_box, draw_track_background
+from app.ui.timeline.rows.cycles import draw_cycle_bars
 from app.ui.timeline.rows.layers import draw_layer_rows
 from app.ui.timeline.ruler.camera import draw_camera_row
 from app.ui.timeline.ruler.edges import draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers
 from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
-from app.ui.timeline.segments import draw_cycle_bars, draw_pose_segments
+from app.ui.timeline.segments import draw_pose_segments
 from app.ui.timeline.tracks import draw_track_keys
 
 ZOOM_STEP = 1.2  # per notch of the wheel

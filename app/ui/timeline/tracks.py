@@ -91,7 +91,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
     low = ImVec2(bands.corner.x, lane.top)
     high = ImVec2(bands.left - 0.3 * em, lane.bottom)
     actions: list[Action] = []
-    if bands.button(_("name"), low, high):
+    if bands.button("name", low, high):
         actions += select_row(row, {})
         actions.append(do(editing.select_handles, frozenset(track.handles)))
     if lane.is_chosen or is_hovered_or_held():
@@ -108,7 +108,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
         colour = colour_u32(palette.text if track.enabled else palette.dim)
         draw_list.add_text(ImVec2(low.x + 1.4 * em, top), colour_u32(palette.dim), icon)
         draw_list.add_text(ImVec2(low.x + 2.9 * em, top), colour, text)
-    clicked = bands.button(_("switch"), ImVec2(switch, lane.top), high)
+    clicked = bands.button("switch", ImVec2(switch, lane.top), high)
     draw_tooltip(
         _("Switch the track off: its keys stay") if track.enabled else _("Switch the track on")
     )

@@ -35,14 +35,14 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         high = ImVec2(bands.left - 0.3 * em, lane.bottom)
         left = low.x + INDENT * row.depth * em
         imgui.push_id(row.key)
-        if bands.button(_("name"), low, high):
+        if bands.button("name", low, high):
             actions.append(do(select_layers, *row.layers))
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():
             imgui.text_unformatted(_("Click to select all of its layers"))
             imgui.end_tooltip()
-        if bands.button(_("fold"), ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
+        if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
             actions.append(do(toggle_tree_row, row.toggle))
         caret = icons.ICON_FA_CARET_DOWN if row.is_open else icons.ICON_FA_CARET_RIGHT
         icon = icons.ICON_FA_FOLDER if row.switch_group is None else icons.ICON_FA_MASKS_THEATER

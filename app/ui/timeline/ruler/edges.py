@@ -61,7 +61,7 @@ def _clear(bands: TimelineLayout, left: float, right: float) -> list[Action]:
     if x - max(left, bands.left) < 3 * GRIP * em or not bands.shows(x - GRIP * em, x + GRIP * em):
         return []
     low, high = ImVec2(x - GRIP * em, bands.top), ImVec2(x + GRIP * em, bands.ruler_top)
-    clicked = bands.button(_("clear preview"), low, high)
+    clicked = bands.button("clear preview", low, high)
     colour = colour_u32(palette.text, 1.0 if is_hovered_or_held() else 0.7)
     for side in (-1, 1):
         start, end = ImVec2(x - half, y - side * half), ImVec2(x + half, y + side * half)
@@ -100,7 +100,7 @@ def _animation_end(bands: TimelineLayout) -> list[Action]:
         return []
     low = ImVec2(x, bands.track_top)
     high = ImVec2(x + 0.75 * em, bands.track_top + 1.35 * em)
-    bands.button(_("animation end"), ImVec2(x - 0.2 * em, low.y), ImVec2(x + 1.1 * em, high.y))
+    bands.button("animation end", ImVec2(x - 0.2 * em, low.y), ImVec2(x + 1.1 * em, high.y))
     hot = is_hovered_or_held()
     if hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)

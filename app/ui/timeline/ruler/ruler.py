@@ -5,7 +5,6 @@ from imgui_bundle import ImVec2, imgui
 from app.document import Layer, memoized_on
 from app.editor import Action, ScrubDrag, do
 from app.editor.actions.timing import timeline_drag
-from app.texts import _
 from app.ui.style.drawing import draw_centred_text
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import is_hovered_or_held, is_pressed, push_text_size
@@ -20,7 +19,7 @@ MULTIPLES = (2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 18000)
 def draw_ruler(bands: TimelineLayout, frame: int) -> list[Action]:
     """Draw frame numbers and seconds. A press moves the playhead."""
     bands.button(
-        _("ruler"), ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.markers_top)
+        "ruler", ImVec2(bands.left, bands.ruler_top), ImVec2(bands.right, bands.markers_top)
     )
     bands.look.note_place("ruler")
     actions: list[Action] = []
@@ -96,7 +95,7 @@ def draw_playhead(bands: TimelineLayout, frame: int) -> list[Action]:
     high = low + ImVec2(width, RULER_TAG * em)
     actions: list[Action] = []
     if bands.shows(low.x, high.x):
-        bands.button(_("playhead"), low, high)
+        bands.button("playhead", low, high)
         bands.look.note_place("playhead")
         if is_pressed():
             scrub = ScrubDrag(offset=frame - bands.pointed)
@@ -147,7 +146,7 @@ def draw_overview(bands: TimelineLayout, frame: int) -> list[Action]:
     top, bottom = bands.bottom - 0.5 * em, bands.bottom
     per_frame = bands.size.x / (high - low)
     left, right = (bands.left + (at - low) * per_frame for at in (strip.start, end))
-    bands.button(_("overview"), ImVec2(left, top), ImVec2(right, bottom))
+    bands.button("overview", ImVec2(left, top), ImVec2(right, bottom))
     rounding = (bottom - top) / 2
     draw_list.add_rect_filled(
         ImVec2(bands.left, top), ImVec2(bands.right, bottom), colour_u32(palette.desk), rounding
