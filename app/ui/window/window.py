@@ -1,19 +1,16 @@
 """The window: the session, its OpenGL objects, and the main loop."""
 
-import io
 import os
 import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 from imgui_bundle import (  # before glfw: it brings the library itself
     glfw_utils,
     hello_imgui,
     icons_fontawesome_6 as icons,
 )
-from PIL import Image
 
 from app.editor.layering.pictures import drop_files
 from app.ui.panels.layers.tab import draw_layers_panel
@@ -27,7 +24,7 @@ from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu.context import describe_graphics, is_software
-from app.storage import app_icon, sample_images
+from app.storage import sample_images
 from app.texts import N_, _, message_of
 from app.ui.panel import Panel
 from app.ui.panels import deform, distortion, export, handle, poses
@@ -37,6 +34,7 @@ from app.ui.timeline import timeline
 from app.ui.viewport import viewport
 from app.ui.viewport.canvas import Canvas
 from app.ui.viewport.split_view import SplitTextures
+from app.ui.window.desktop import name_application, show_icon
 from app.ui.window.events.drag_and_drop import accept_files
 from app.ui.window.events.input_queue import InputQueue
 from app.ui.window.events.modifiers import release_stuck_modifiers
@@ -48,9 +46,7 @@ from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 
 SIZE = (1280, 800)
-APPLICATION = "lissom"  # the name of the program's desktop entry
 PAUSE = 0.1  # seconds between frames that only update the time of a job
-ICON_SIDES = (16, 32, 64)  # pixels
 # Environment variables that name the display of X11 or Wayland.
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 
@@ -58,26 +54,6 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 def has_display() -> bool:
     """Return whether the environment names a screen for the window."""
     return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
-
-
-def _show_icon() -> None:
-    """Set the window's icon, on systems where a program provides it."""
-    if glfw.get_platform() not in {glfw.PLATFORM_X11, glfw.PLATFORM_WIN32}:
-        return
-    with Image.open(io.BytesIO(app_icon())) as icon:
-        pictures = [np.asarray(icon.resize((side, side))) for side in ICON_SIDES]
-    # As lists, because glfw reads them much faster than arrays.
-    images = [(*picture.shape[:2], picture.tolist()) for picture in pictures]
-    window = glfw_utils.glfw_window_hello_imgui()
-    glfw.set_window_icon(window, len(images), images)  # type: ignore[arg-type]  # tuples of theirs
-
-
-def _name_application() -> None:
-    """Set the window's application name, so that the desktop finds its menu entry."""
-    glfw.init()
-    glfw.window_hint_string(glfw.WAYLAND_APP_ID, APPLICATION)
-    glfw.window_hint_string(glfw.X11_INSTANCE_NAME, APPLICATION)
-    glfw.window_hint_string(glfw.X11_CLASS_NAME, NAME)
 
 
 class Window:
@@ -148,7 +124,7 @@ class Window:
         params.app_window_params.window_title = self._title
         calls = params.callbacks
         calls.enqueue_post_init(self._accept_files)
-        calls.enqueue_post_init(_show_icon)
+        calls.enqueue_post_init(show_icon)
         calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
         calls.pre_new_frame = hello_imgui.sequence_functions(
             release_stuck_modifiers, calls.pre_new_frame
@@ -159,7 +135,7 @@ class Window:
         params.ini_disable = params.ini_filename != ini  # ImGui writes only UTF-8 names
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
-        _name_application()
+        name_application()
         try:
             hello_imgui.manual_render.setup_from_runner_params(params)
         except RuntimeError as error:

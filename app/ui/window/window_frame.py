@@ -4,11 +4,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from imgui_bundle import ImVec2, hello_imgui, imgui, implot
+from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.editor import (
     Action,
-    FileDialog,
     Project,
     Session,
     as_sentence,
@@ -31,17 +30,15 @@ from app.ui.dialogs.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts.key_input import collect_key_actions
 from app.ui.shortcuts.table import MENUS
-from app.ui.style.theme import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
+from app.ui.style.theme import Look, interface_scale
+from app.ui.window.appearance import Appearance
 from app.ui.window.docking import Docking
-from app.ui.window.guard import FrameStep, WindowPart, allow_recovery
+from app.ui.window.guard import FrameStep, WindowPart
+from app.ui.window.idling import AWAKE, IDLE_FPS, FramePace
 from app.ui.window.tutorial.card import Callout
 
 # A saved layout with another number is ignored, because its panels have other names.
 LAYOUT = 1
-# Input and running jobs wake the window at once.
-IDLE_FPS = 0.2
-AWAKE = 0.5  # seconds of full frame rate after that, for its consequences
-REPEATS = 2  # frames after which further frames would show nothing new
 LEFT = imgui.MouseButton_.left
 MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The icon bar")
 # Actions that follow automatically in each frame, and not from the person.
@@ -70,8 +67,7 @@ class WindowFrame:
         self.session = session
         self._panels = panels
         self._docking = Docking(panels)
-        self._bold: imgui.ImFont | None = None
-        self._themed: tuple[str, float] | None = None
+        self._appearance = Appearance(session)
         self._dialogs = Dialogs()
         self.callout = Callout()
         # Rectangles of items in this frame, and in the frame before.
@@ -79,8 +75,7 @@ class WindowFrame:
         self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._actions: list[Action] = []
         self._asked: list[Action] = []
-        self._awake_until = 0.0
-        self._idle_frames = 0
+        self._pace = FramePace()
         previews = welcome.Previews(thumbnail, moments)
         over = (
             # Hello ImGui draws the tabs themselves.
@@ -139,9 +134,9 @@ class WindowFrame:
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         params.docking_params = self._layout()
         calls = params.callbacks
-        calls.load_additional_fonts = self._load_fonts
-        calls.setup_imgui_config = self._configure
-        calls.setup_imgui_style = self._apply_theme
+        calls.load_additional_fonts = self._appearance.load_fonts
+        calls.setup_imgui_config = self._appearance.configure
+        calls.setup_imgui_style = self._appearance.apply_theme
         calls.pre_new_frame = partial(self.run_guarded, self._begin_frame)
         calls.show_menus = partial(self._ask, MENU_BAR)
         calls.show_status = partial(self._ask, STATUS_BAR)
@@ -164,7 +159,7 @@ class WindowFrame:
     @property
     def awaits_worker(self) -> bool:
         """Whether further frames would repeat the shown one and slow down the worker."""
-        return self._idle_frames >= REPEATS
+        return self._pace.awaits_worker
 
     def release(self) -> None:
         """Close the system's dialog."""
@@ -190,15 +185,7 @@ class WindowFrame:
 
     @property
     def look(self) -> Look:
-        if self._bold is None:
-            raise RuntimeError("the window has no fonts before its first frame")
-        preferences = self.session.preferences
-        return Look(
-            palette=PALETTES[preferences.theme],
-            bold=self._bold,
-            em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
-            places=self._places,
-        )
+        return self._appearance.look(self._places)
 
     def _layout(self) -> hello_imgui.DockingParams:
         layout = hello_imgui.DockingParams()
@@ -244,46 +231,17 @@ class WindowFrame:
     def _collect_key_actions(self) -> None:
         self._actions += collect_key_actions(self.session)
 
-    def _load_fonts(self) -> None:
-        self._bold = load_fonts()
-
-    def _configure(self) -> None:
-        io = imgui.get_io()
-        io.config_flags |= imgui.ConfigFlags_.docking_enable
-        io.config_windows_move_from_title_bar_only = True
-        # One click on a number edits it. Then typed keys are input and not shortcuts.
-        io.config_drag_click_to_input_text = True
-        allow_recovery()
-        implot.create_context()
-
-    def _apply_theme(self) -> None:
-        preferences = self.session.preferences
-        self._themed = self._theme
-        palette = PALETTES[preferences.theme]
-        apply_theme(palette, preferences.scale)
-        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.panel
-
-    @property
-    def _theme(self) -> tuple[str, float]:
-        """The inputs of the style: the theme, and the interface scale on this screen."""
-        preferences = self.session.preferences
-        return preferences.theme, interface_scale(preferences.scale)
-
     def _begin_frame(self) -> None:
         session = self.session
         self._seen, self._places = self._places, {}
-        if self._themed != self._theme:
-            self._apply_theme()
+        self._appearance.begin_frame()
         self._docking.begin_frame(interface_scale(session.preferences.scale))
         # The tabs that show these set them again in every frame.
         session.export_frame = session.pointed_layer = None
         playback.stop_playback_at_end(session)
         # Before the panels, which read the playhead's frame.
         self._follow.run_guarded(session)
-        if _is_busy(session):
-            self._awake_until = session.clock() + AWAKE
-        if session.clock() < self._awake_until:
-            hello_imgui.request_refresh()
+        self._pace.begin_frame(session)
 
     def _draw_over_panels(self) -> None:
         self.run_guarded(self._collect_key_actions)
@@ -308,7 +266,7 @@ class WindowFrame:
         self.run_guarded(self.session.jobs.deliver)
         for step in self._update_steps:
             step.run_guarded(self.session)
-        self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
+        self._pace.end_frame(self.session)
         if self.session.is_quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 
@@ -343,26 +301,3 @@ def _with_project(
 
 def _welcome(session: Session, look: Look, previews: welcome.Previews) -> list[Action]:
     return [] if session.project else welcome.draw_welcome(session, look, pictures=previews)
-
-
-def _is_busy(session: Session) -> bool:
-    """Return whether something changes without input."""
-    project = session.project
-    is_moving = project is not None and project.playhead.since is not None
-    # The system's dialog has its own input. Its answer is polled.
-    asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
-    is_working = bool(session.jobs.kinds) or session.export is not None
-    is_working |= project is not None and bool(project.stale or project.afterwards)
-    return is_moving or is_working or asks_system or bool(session.toasts)
-
-
-def _awaits_in_between(session: Session) -> bool:
-    """Return whether a placeholder stands for an in-between, and nothing else is active."""
-    project = session.project
-    if project is None or project.playhead.since is not None or session.active_tool is not None:
-        return False
-    if session.export is not None or session.toasts or session.dialog is not None:
-        return False
-    shows = [runtime.shown for runtime in project.layer_runtimes.values()]
-    awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
-    return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)
