@@ -198,10 +198,10 @@ class Window:
         if project is not None and saving.has_unsaved_changes(project):
             try:
                 saving.autosave_now(session)
-                sentences.append(_("A recovery copy of the unsaved work was saved."))
+                sentences.append(_("The unsaved work was kept."))
             except EXPECTED_ERRORS as reason:
                 sentences.append(
-                    _("The unsaved work could not be saved ({reason}).").format(
+                    _("The unsaved work could not be kept ({reason}).").format(
                         reason=message_of(reason)
                     )
                 )

@@ -125,8 +125,8 @@ def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
         window.show_tab(tab)
         check(tab)
     solved = loose.layer.poses[:-1]
-    renewal = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
-    loose.pending.append(Promise(label="Solving the keys", key_resolver=renewal))
+    resolver = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
+    loose.pending.append(Promise(label="Solving the keys", key_resolver=resolver))
     window.show_tab("Deform")
     check("progress")
 

@@ -75,9 +75,9 @@ def test_over_the_drawing_the_pose_at_the_playhead_is_copied(window, loose, play
         hand.to_drawing()
         hand.press(COPY)
 
-    told = play(copy)
+    notices = play(copy)
     assert loose.selected_frames == {24}
-    assert told == [f"Pose at frame {frame} copied."]
+    assert notices == [f"Pose at frame {frame} copied."]
     (copied,) = window.session.copied
     (key,) = copied.keys
     f = loose.layer.map_of(key.pose)
@@ -131,7 +131,7 @@ def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):
     def over_a_tab(hand):
         hand.robot.mouse_move("###Handle")
 
-    for begin, told in (
+    for begin, notice in (
         (lambda hand: hand.click_key(24), "Pose at frame 24 copied."),
         (Hand.to_drawing, "Pose at frame 12 copied."),
     ):
@@ -148,7 +148,7 @@ def test_where_the_pointer_is_in_neither_the_focus_tells(window, play):
             over_a_tab(hand)
             hand.press(COPY)
 
-        assert play(copy)[-1] == told
+        assert play(copy)[-1] == notice
 
 
 def test_the_menu_says_what_would_be_copied_and_selected(window, play):

@@ -182,18 +182,18 @@ def test_menus_are_made_from_the_table(window):
 
 def test_greyed_entries_tell_what_is_on_without_a_project(window):
     window.act(viewing.toggle_overlay, "wireframe")
-    told = {}
+    checked = {}
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
         robot.menu_click("View")
         for label in ("Wireframe", "Handles", "Outline"):
-            told[label] = robot.item_is_checked(f"//$FOCUSED/{label}")
+            checked[label] = robot.item_is_checked(f"//$FOCUSED/{label}")
             assert robot.item_info(f"//$FOCUSED/{label}").item_flags & imgui.ItemFlags_.disabled
         robot.popup_close_all()
 
     window.run(look)
-    assert told == {"Wireframe": True, "Handles": True, "Outline": False}
+    assert checked == {"Wireframe": True, "Handles": True, "Outline": False}
     assert not BINDINGS["loop"].is_active(window.session)
 
 
@@ -301,7 +301,7 @@ def test_the_mirror_axis_has_another_key_on_macos():
     assert [format_chord(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]
 
 
-def test_a_tab_that_is_out_of_sight_is_found_by_its_name(window):
+def test_a_tab_that_is_out_of_view_is_found_by_its_name(window):
     window.again(Harness.open, sample_images() / "ring.png")
     window.resize((1280, 800), 2.0)
 

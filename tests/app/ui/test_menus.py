@@ -159,7 +159,7 @@ def test_a_tab_that_is_an_icon_has_its_name_in_a_tooltip(window):
 
 def test_a_long_tooltip_wraps(window):
     window.open(sample_images() / "bar.png")
-    told = []
+    places = []
     width = 30 * window.text_height()
 
     def draw():
@@ -174,9 +174,9 @@ def test_a_long_tooltip_wraps(window):
     calls.show_gui = hello_imgui.sequence_functions(usual, draw)
     try:
         window.frames(3)
-        told.append(tooltip_at(window, ImVec2(200, 200)))
+        places.append(tooltip_at(window, ImVec2(200, 200)))
     finally:
         calls.show_gui = usual
-    (box,) = told
+    (box,) = places
     assert box is not None
     assert box.get_width() < width

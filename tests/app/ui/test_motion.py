@@ -138,7 +138,7 @@ def test_one_side_is_mirrored_onto_the_other(window, child):
     assert right.imag == pytest.approx(left.imag, abs=1)
 
 
-def test_what_a_motion_needs_is_told(window, child):
+def test_missing_needs_of_a_motion_are_named(window, child):
     joint_placement.exclude_joint(window.session, "foot.R")
     window.frames()
     assert "needs foot.R" in preset_setup.apply_motion_disabled_reason(child)
@@ -206,8 +206,8 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     playback.scrub(window.session, key.frame)
     window.settle()
     identity, target = next(iter(key.pose.targets.items()))
-    wish = replace(target, position=target.position + 4j)
-    set_targets(window.session, {identity: wish})
+    moved = replace(target, position=target.position + 4j)
+    set_targets(window.session, {identity: moved})
     window.settle()
     preset_setup.begin_motion_setup(window.session)
     window.frames(3)

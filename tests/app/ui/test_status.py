@@ -23,7 +23,7 @@ def facts(window):
     return [fact.text for fact in list_status_items(window.session)]
 
 
-def test_frames_per_second_are_told_while_it_plays(window, loose):
+def test_frames_per_second_are_shown_while_it_plays(window, loose):
     """Else nothing is drawn, and their number says nothing of the machine."""
     del loose
     assert not any("fps" in fact for fact in facts(window))
@@ -78,17 +78,17 @@ def test_a_bound_that_is_reached_warns(window):
     assert not list_status_items(window.session)[1].is_warning
 
 
-def test_a_pull_that_is_held_back_is_told_with_its_remedy(window, loose):
+def test_a_pull_that_is_held_back_is_shown_with_its_remedy(window, loose):
     assert describe_pose_limit(window.session) == ""
     width, height = loose.document.canvas
     set_targets(window.session, {1: Target(position=complex(2.4 * width, 0.5 * height))})
     window.settle()
     layer = loose.layer
     lag = layer.target_errors(layer.key(24).pose)[1]
-    told = describe_pose_limit(window.session)
+    report = describe_pose_limit(window.session)
     assert re.fullmatch(
-        r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", told
-    ), told
+        r"Stretch limit reached – handle \d is \d+ px short(, 1 more too)?", report
+    ), report
     steps = loose.history.undo_label
 
     def loosen(robot):
@@ -138,7 +138,7 @@ def test_extremes_between_the_times_that_were_measured(loose):
         ("There is no key at frame 3.", "There is no key at frame 3."),
     ],
 )
-def test_an_error_is_told_in_a_sentence(window, text, wanted):
+def test_an_error_is_shown_as_a_sentence(window, text, wanted):
     def fail(_):
         raise LissomError(text)
 
