@@ -29,8 +29,8 @@ def describe_residual(project: Project, layer: Layer, track: Track, frame: int) 
     limits = correction.limits if correction else ()
     if limits:
         text = ngettext(
-            "Misses its track by {error:.0f} px at frame {frame}, by this limit: {limits}",
-            "Misses its track by {error:.0f} px at frame {frame}, by these limits: {limits}",
+            "Misses its track by {error:.0f} px at frame {frame}; limit: {limits}",
+            "Misses its track by {error:.0f} px at frame {frame}; limits: {limits}",
             len(limits),
         )
     else:
