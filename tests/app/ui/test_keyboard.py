@@ -10,6 +10,7 @@ from app.editor.actions import viewing
 from app.editor.actions.viewing import show_dialog
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
+from app.ui.shortcuts import keys as shortcut_keys
 from app.ui.shortcuts.keys import format_chord, format_modified, parse_chords
 from app.ui.shortcuts.table import BINDINGS, MENUS
 
@@ -135,6 +136,13 @@ def test_keys_are_written_as_the_system_writes_them():
     assert format_chord(ALT | int(imgui.Key.up_arrow), is_mac=True) == "⌥Up"
     assert format_modified(ALT, "drag", is_mac=False) == "Alt+drag"
     assert format_modified(ALT, "drag", is_mac=True) == "⌥ drag"
+
+
+def test_keys_have_names_of_the_persons_language(monkeypatch):
+    monkeypatch.setattr(shortcut_keys, "_", {"Ctrl": "Strg"}.get)
+    assert format_chord.__wrapped__(CTRL | int(imgui.Key.s), is_mac=False) == "Strg+S"
+    assert format_modified.__wrapped__(CTRL, "drag", is_mac=False) == "Strg+drag"
+    assert parse_chords.__wrapped__("Ctrl+S") == (CTRL | int(imgui.Key.s),)
 
 
 def test_chords_are_read_as_the_table_has_them():

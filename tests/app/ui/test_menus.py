@@ -11,6 +11,7 @@ from app.document.commands import handle_commands
 from app.document.commands.command import Command
 from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
+from app.ui import panel
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.widgets import draw_tooltip
 from app.ui.viewport.viewport import CANVAS
@@ -180,3 +181,9 @@ def test_a_long_tooltip_wraps(window):
     (box,) = places
     assert box is not None
     assert box.get_width() < width
+
+
+def test_a_tab_shows_its_title_translated_and_keeps_its_id(monkeypatch):
+    monkeypatch.setattr(panel, "_", str.upper)
+    mesh = panel.Panel("Mesh", "i", lambda *_: [])
+    assert mesh.labels == ("i  MESH###Mesh", "MESH###Mesh", "i###Mesh")
