@@ -142,14 +142,14 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
     chosen = key.frame in bands.project.selected_keys.get(row.layer.id, ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
-    passing, centre = key.shown_tangent_mode, ImVec2(x, y)
+    tangent, centre = key.shown_tangent_mode, ImVec2(x, y)
     if chosen:
-        draw_key_mark(passing, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
-    draw_key_mark(passing, centre, radius + 0.12 * em, colour_u32(palette.desk))
-    draw_key_mark(passing, centre, radius, colour_u32(fill))
+        draw_key_mark(tangent, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
+    draw_key_mark(tangent, centre, radius + 0.12 * em, colour_u32(palette.desk))
+    draw_key_mark(tangent, centre, radius, colour_u32(fill))
     label_dragged_key(bands, row.layer.id, key.frame, x)
     if warns and chosen:
-        draw_key_mark(passing, centre, 0.45 * radius, colour_u32(warns))
+        draw_key_mark(tangent, centre, 0.45 * radius, colour_u32(warns))
     if warns and row.is_active:
         draw_list.add_circle_filled(
             ImVec2(x, bands.bar_top - 0.1 * em), 0.2 * em, colour_u32(warns)
@@ -170,11 +170,11 @@ def label_dragged_key(bands: TimelineLayout, row: KeyRow, frame: int, x: float) 
         draw_time_tag(bands, x, f"{frame}  ({gesture.by:+d})")
 
 
-def draw_key_mark(passing: TangentMode, centre: ImVec2, radius: float, colour: int) -> None:
+def draw_key_mark(tangent: TangentMode, centre: ImVec2, radius: float, colour: int) -> None:
     """Draw a key's mark by tangent mode: round, pointed, pinched, or square for a hold."""
     draw_list, x, y = imgui.get_window_draw_list(), centre.x, centre.y
     across = radius / 2**0.5
-    match passing:
+    match tangent:
         case TangentMode.SMOOTH:
             draw_list.add_circle_filled(centre, 0.86 * radius, colour)
         case TangentMode.HOLD:

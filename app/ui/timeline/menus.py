@@ -46,10 +46,10 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
     if imgui.menu_item_simple(_("Go to this key"), _("Click")):
         actions.append(do(playback.scrub, seen))
     if imgui.begin_menu(_("Tangent")):
-        for passing, (name, hint) in TANGENT_MODES.items():
-            chosen = key.shown_tangent_mode is passing
-            if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
-                actions.append(do(keys.set_tangent_mode, taken, passing))
+        for tangent, (name, hint) in TANGENT_MODES.items():
+            chosen = key.shown_tangent_mode is tangent
+            if imgui.menu_item(f"{name}###{tangent}", "", chosen)[0]:
+                actions.append(do(keys.set_tangent_mode, taken, tangent))
             draw_tooltip(hint)
         imgui.end_menu()
     if imgui.begin_menu(_("Easing")):

@@ -132,7 +132,7 @@ def draw_track_segments(bands: TimelineLayout) -> None:
             draw_list.add_rect_filled(low, high, colour_u32(palette.accent, 0.16))
         draw_list.add_line(ImVec2(low.x, high.y), high, colour_u32(palette.line))
         colour = colour_u32(palette.text if lane.track.enabled else palette.dim, 0.35)
-        for first, last in _stretches(bands, lane.track):
+        for first, last in _active_ranges(bands, lane.track):
             half = SEGMENT_HEIGHT / 2 * em
             draw_list.add_rect_filled(
                 ImVec2(bands.x(first), lane.middle - half),
@@ -149,7 +149,7 @@ def draw_track_segments(bands: TimelineLayout) -> None:
             )
 
 
-def _stretches(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
+def _active_ranges(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
     """Return a track's active ranges. The end of a loop splits the range in two."""
     document = bands.project.document
     first, last = track.keys[0].frame + track.delay, track.keys[-1].frame + track.delay
@@ -227,14 +227,14 @@ def _key(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> list[Action]:
 def _draw_key(
     bands: TimelineLayout, lane: TrackLane, key: TrackKey, centre: ImVec2, radius: float
 ) -> None:
-    palette, em, passing = bands.look.palette, bands.look.em, key.shown_tangent_mode
+    palette, em, tangent = bands.look.palette, bands.look.em, key.shown_tangent_mode
     row = TrackRow(lane.layer.id, lane.track.handles[0])
     is_chosen = key.frame in bands.project.selected_keys.get(row, ())
     colour = palette.text if lane.track.enabled else palette.dim
     if is_chosen:
-        draw_key_mark(passing, centre, radius + 0.2 * em, colour_u32(palette.accent, 0.35))
-    draw_key_mark(passing, centre, radius + 0.1 * em, colour_u32(palette.desk))
-    draw_key_mark(passing, centre, radius, colour_u32(palette.accent if is_chosen else colour))
+        draw_key_mark(tangent, centre, radius + 0.2 * em, colour_u32(palette.accent, 0.35))
+    draw_key_mark(tangent, centre, radius + 0.1 * em, colour_u32(palette.desk))
+    draw_key_mark(tangent, centre, radius, colour_u32(palette.accent if is_chosen else colour))
 
 
 def _draw_track_key_tooltip(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> None:
