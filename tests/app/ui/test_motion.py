@@ -14,6 +14,7 @@ from app.editor.actions.posing.motion_presets import apply_motion, joint_placeme
 from app.editor.actions.posing.pose_drag import set_targets
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
+from app.ui.shortcuts.table import BINDINGS
 
 
 def draft_child(window):
@@ -80,7 +81,8 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     before = project.document
     # Whatever tab was in front, the motion's own comes there.
     window.show_tab("Handle")
-    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Give it a motion…"))
+    entry = f"//##MainMenuBar/Motion/{BINDINGS['give motion'].label}"
+    window.run(lambda robot: robot.menu_click(entry))
     window.frames(4)
     assert is_in_front("Motion")
     assert (project.motion_setup.kind, project.motion_setup.motion) == ("biped-side", "walk")
