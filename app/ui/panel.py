@@ -19,7 +19,7 @@ class Panel:
     it is not called.
     """
 
-    title: str
+    title: str  # its name in the program; the tab shows it in the person's language
     icon: str
     draw: Callable[[Session, Look, Project], list[Action]]
     place: Literal["MainDockSpace", "side", "bottom"] = "side"

@@ -302,7 +302,7 @@ def refused_gl(_: np.random.Generator, __: int) -> dict[str, float]:
         with screen() as shown:
             for variables in WITHOUT_GL:
                 words = _run_app([], {**variables, "DISPLAY": shown.name})
-                expect("the window cannot be opened" in words, words)
+                expect("The window cannot be opened" in words, words)
                 expect("lissom doctor" in words, words)
                 tried += 1
     for display in ("", ":9999"):

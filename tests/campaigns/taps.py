@@ -31,17 +31,17 @@ import time
 
 from app.cli.main import main
 from app.ui.timeline import timeline
-from app.ui.window import Window
+from app.ui.window.window import Window
 
 rest, *words = sys.argv[1:]
-draw, run, told = timeline.draw_ruler, Window.run, None
+draw, run, printed = timeline.draw_ruler, Window.run, None
 
 def draw_ruler(track, frame):
-    global told
+    global printed
     places = track.x(0), track.x(1), (track.ruler_top + track.markers_top) / 2
-    if places != told:
+    if places != printed:
         print(*places, flush=True)
-    told = places
+    printed = places
     return draw(track, frame)
 
 def run_slowly(window, is_over, farewell):
@@ -56,9 +56,9 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Tap at all paces, on a quiet and a busy machine, and where pictures are slow."""
     rng = np.random.default_rng(seed)
     paces = {"as quick as can be": (0.0, 0.0), "20 ms": (0.02, 0.02), "to 1 s": (0.02, 1.0)}
-    for told, pace in paces.items():
+    for name, pace in paces.items():
         for busy in (0, 2 * (os.cpu_count() or 1)):
-            where = f"{told}, {busy} others at work"
+            where = f"{name}, {busy} others at work"
             yield where, tapped(rng, amount, pace=pace, busy=busy)
     yield "3 pictures a second", tapped(rng, amount // 4, pace=(0.1, 0.5), rest=1 / 3)
 

@@ -213,4 +213,6 @@ def _part(node: ast.expr) -> str:
 def _seen(text: str) -> str:
     """Return what is seen of a label, without its icons, its identity, and a number in it."""
     shown = re.sub("[\ue000-\uf8ff]", "", text).partition("##")[0]
+    # The fields of a text of the catalogue, such as {count:,}, are gaps too.
+    shown = re.sub(r"\{\w*(:[^}]*)?\}", GAP, shown)
     return re.sub(r" %[\d.]*[dfg](%%)?$", "", shown).strip()

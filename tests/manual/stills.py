@@ -71,7 +71,7 @@ def _timing(window: Film, path: Path) -> None:
     def ask(robot: Robot) -> None:
         robot.item_click("###Timeline/**/key 24", RIGHT)
         robot.yield_(2)
-        robot.mouse_move("//$FOCUSED/Passing")
+        robot.mouse_move("//$FOCUSED/Tangent")
         robot.yield_(30)
 
     save(window.seen_by(ask).crop((0, 180, *SIZE)), path)

@@ -21,7 +21,7 @@ from app.ui.panels.distortion_curves import (
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, heading, option_buttons, small_text
 from app.ui.viewport.canvas import heat_limits
-from app.ui.viewport.gpu_resources import measure_distortion
+from app.ui.viewport.picture.gpu_resources import measure_distortion
 from engine.arrays import Floats
 from engine.domain.meshing.mesh import Mesh
 

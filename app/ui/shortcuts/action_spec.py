@@ -25,7 +25,7 @@ class ActionSpec:
     # Whether the action needs an open project. Without a project, `detail` and `condition` are not
     # called.
     needs_project: bool = True
-    # Text that follows the label in the menu: the present effect of the action.
+    # The text of the menu entry with the present effect of the action; empty: the label.
     detail: Callable[[Session, Project], str] | None = None
     condition: Test | None = None  # whether the action is possible now; None: always
     # A sentence why the action is disabled now; empty if it is possible. It replaces `condition`.
@@ -46,7 +46,7 @@ class ActionSpec:
         """The text of the menu entry now. Its ImGui id is the label."""
         project = session.project
         detail = self.detail(session, project) if self.detail and project else ""
-        return f"{self.label} {detail}###{self.label}" if detail else self.label
+        return f"{detail}###{self.label}" if detail else self.label
 
     def is_possible(self, session: Session) -> bool:
         if session.project is None:

@@ -5,22 +5,24 @@ from functools import cache
 
 from imgui_bundle import imgui
 
+from app.texts import N_, _
+
 Key = imgui.Key
 # On macOS Dear ImGui treats the command key as Ctrl.
 IS_MAC = sys.platform == "darwin"
 # Plain integers: combined as enum members, these keys fail to form a flag in Python 3.11.2.
 CTRL, SHIFT, ALT = int(Key.mod_ctrl), int(Key.mod_shift), int(Key.mod_alt)
-MODIFIERS = {CTRL: "Ctrl", SHIFT: "Shift", ALT: "Alt"}
+MODIFIERS = {CTRL: N_("Ctrl"), SHIFT: N_("Shift"), ALT: N_("Alt")}
 # In Apple's order.
 MAC_MODIFIERS = {ALT: "⌥", SHIFT: "⇧", CTRL: "⌘"}
 KEY_NAMES = {
-    "UpArrow": "Up",
-    "DownArrow": "Down",
-    "LeftArrow": "Left",
-    "RightArrow": "Right",
-    "PageUp": "PgUp",
-    "PageDown": "PgDn",
-    "Delete": "Del",
+    "UpArrow": _("Up"),
+    "DownArrow": _("Down"),
+    "LeftArrow": _("Left"),
+    "RightArrow": _("Right"),
+    "PageUp": _("PgUp"),
+    "PageDown": _("PgDn"),
+    "Delete": _("Del"),
     "Equal": "+",
     "Minus": "−",
     "LeftBracket": "[",
@@ -44,13 +46,13 @@ def parse_chords(text: str) -> tuple[int, ...]:
 @cache
 def format_chord(chord: int, *, is_mac: bool = IS_MAC) -> str:
     """Return a key chord as menus show it: "Ctrl+Shift+S", or "⇧⌘S" on macOS."""
-    names = MAC_MODIFIERS if is_mac else MODIFIERS
     key = imgui.get_key_name(Key(chord & ~sum(MODIFIERS)))
-    parts = [name for modifier, name in names.items() if chord & modifier]
+    names = MAC_MODIFIERS if is_mac else MODIFIERS
+    parts = [_(name) for modifier, name in names.items() if chord & modifier]
     return ("" if is_mac else "+").join([*parts, KEY_NAMES.get(key, key)])
 
 
 @cache
 def format_modified(modifier: int, what: str, *, is_mac: bool = IS_MAC) -> str:
     """Return a pointer gesture with a modifier: "Ctrl+click", or "⌘ click" on macOS."""
-    return f"{MAC_MODIFIERS[modifier]} {what}" if is_mac else f"{MODIFIERS[modifier]}+{what}"
+    return f"{MAC_MODIFIERS[modifier]} {what}" if is_mac else f"{_(MODIFIERS[modifier])}+{what}"

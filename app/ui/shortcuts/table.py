@@ -27,51 +27,68 @@ from app.editor.layering.layer_channels import key_camera, toggle_camera_view
 from app.editor.layering.layer_list import ask_layer_name
 from app.editor.poses import copying, library, paste_destinations, pasting
 from app.editor.tools import move_tool
+from app.texts import N_, _, ngettext
 from app.ui.panel import bring_to_front
 from app.ui.shortcuts.action_spec import ActionSpec
 from app.ui.shortcuts.manual import open_manual_page
 
 
-def _undo_label(_: Session, project: Project) -> str:
+def _undo_text(_session: Session, project: Project) -> str:
+    step = project.history.undo_label
     if project.motion_setup is not None and project.motion_setup.past:
-        return "“Move a joint”"
-    label = "Give a motion" if project.motion_job is not None else project.history.undo_label
-    return "" if label is None else f"“{label}”"
+        step = _("Move a joint")
+    elif project.motion_job is not None:
+        step = _("Apply motion preset")
+    return "" if step is None else _("Undo “{step}”").format(step=step)
 
 
-def _redo_label(_: Session, project: Project) -> str:
-    label = project.history.redo_label
-    return "" if label is None else f"“{label}”"
+def _redo_text(_session: Session, project: Project) -> str:
+    step = project.history.redo_label
+    return "" if step is None else _("Redo “{step}”").format(step=step)
 
 
 def _looks_through(session: Session) -> bool:
     return session.project is not None and session.project.is_camera_view
 
 
-def _copied(session: Session, project: Project) -> str:
+def _copy_text(session: Session, project: Project) -> str:
     if copying.is_copying_keys(session, project):
-        return f"{project.selected_key_count} keys" if project.selected_key_count > 1 else "pose"
-    layers = len(project.selected_layers)
-    return f"poses of {layers} layers" if layers > 1 else "pose"
+        count = project.selected_key_count
+        return ngettext("Copy {count} key", "Copy {count} keys", count).format(count=count)
+    count = len(project.selected_layers)
+    return ngettext("Copy pose", "Copy poses of {count} layers", count).format(count=count)
 
 
-def _stretch(_: Session, project: Project) -> str:
-    stretch = cycles.selected_range(project)
-    return "" if stretch is None else f"frames {stretch[0]} to {stretch[1]}"
+def _repeat_text(_session: Session, project: Project) -> str:
+    frames = cycles.selected_range(project)
+    if frames is None:
+        return ""
+    return _("Repeat frames {first} to {last}").format(first=frames[0], last=frames[1])
 
 
-def _onto(session: Session, project: Project, way: paste_destinations.PasteMode) -> str:
+# By the way of pasting: onto another layer than the active one, and onto several layers.
+PASTE_TEXTS: dict[paste_destinations.PasteMode, tuple[str, str]] = {
+    "as it is": (_("Paste onto {layer}"), _("Paste onto {count} layers")),
+    "flipped": (_("Paste flipped onto {layer}"), _("Paste flipped onto {count} layers")),
+    "swapped": (_("Paste swapped onto {layer}"), _("Paste swapped onto {count} layers")),
+}
+
+
+def _paste_text(session: Session, project: Project, way: paste_destinations.PasteMode) -> str:
     """Name the layers that receive the paste, unless it is only the active layer."""
     onto = [
         each.layer for each in paste_destinations.find_paste_destinations(session, project, way)
     ]
+    onto_layer, onto_layers = PASTE_TEXTS[way]
     if len(onto) > 1:
-        return f"onto {len(onto)} layers"
-    return "".join(f"onto {layer.name}" for layer in onto if layer.id != project.active)
+        return onto_layers.format(count=len(onto))
+    return "".join(
+        onto_layer.format(layer=layer.name) for layer in onto if layer.id != project.active
+    )
 
 
-def _all(session: Session, _: Project) -> str:
-    return "keys" if session.is_timeline_focused else "handles"
+def _select_text(session: Session, _project: Project) -> str:
+    return _("Select all keys") if session.is_timeline_focused else _("Select all handles")
 
 
 def _is_idle(session: Session, project: Project) -> bool:
@@ -177,507 +194,533 @@ def _reset_layout(_: Session) -> None:
 
 
 MENUS: dict[str, dict[str, ActionSpec]] = {
-    "File": {
-        "open": ActionSpec("Open…", do(files.ask_file_to_open), "Ctrl+O", needs_project=False),
-        "save": ActionSpec("Save", do(saving.save), "Ctrl+S", has_separator=True),
-        "save as": ActionSpec("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
-        "export": ActionSpec("Export…", do(_export), "Ctrl+E", has_separator=True),
-        "export again": ActionSpec("Export again", do(exporting.repeat_export), "Ctrl+Shift+E"),
-        "copy picture": ActionSpec("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
+    N_("File"): {
+        "open": ActionSpec(_("Open…"), do(files.ask_file_to_open), "Ctrl+O", needs_project=False),
+        "save": ActionSpec(_("Save"), do(saving.save), "Ctrl+S", has_separator=True),
+        "save as": ActionSpec(_("Save as…"), do(saving.save_as), "Ctrl+Shift+S"),
+        "export": ActionSpec(_("Export…"), do(_export), "Ctrl+E", has_separator=True),
+        "export again": ActionSpec(_("Export again"), do(exporting.repeat_export), "Ctrl+Shift+E"),
+        "copy picture": ActionSpec(_("Copy picture"), do(exporting.copy_picture), "Ctrl+Shift+C"),
         "unsaved work": ActionSpec(
-            "Unsaved work…", do(files.show_recovery), has_separator=True, needs_project=False
+            _("Unsaved work…"), do(files.show_recovery), has_separator=True, needs_project=False
         ),
-        "close": ActionSpec("Close", do(saving.close_project), "Ctrl+W", has_separator=True),
-        "quit": ActionSpec("Quit", do(saving.request_quit), "Ctrl+Q", needs_project=False),
+        "close": ActionSpec(_("Close"), do(saving.close_project), "Ctrl+W", has_separator=True),
+        "quit": ActionSpec(_("Quit"), do(saving.request_quit), "Ctrl+Q", needs_project=False),
     },
-    "Edit": {
+    N_("Edit"): {
         "undo": ActionSpec(
-            "Undo",
+            _("Undo"),
             do(editing.undo),
             "Ctrl+Z",
-            condition=_undo_label,
+            condition=_undo_text,
             repeats_while_held=True,
-            detail=_undo_label,
+            detail=_undo_text,
         ),
         "redo": ActionSpec(
-            "Redo",
+            _("Redo"),
             do(editing.redo),
             "Ctrl+Shift+Z, Ctrl+Y",
-            condition=_redo_label,
+            condition=_redo_text,
             repeats_while_held=True,
-            detail=_redo_label,
+            detail=_redo_text,
         ),
         "copy": ActionSpec(
-            "Copy", do(copying.copy_pose_or_keys), "Ctrl+C", has_separator=True, detail=_copied
+            _("Copy"),
+            do(copying.copy_pose_or_keys),
+            "Ctrl+C",
+            has_separator=True,
+            detail=_copy_text,
         ),
         "copy all": ActionSpec(
-            "Copy poses of all layers",
+            _("Copy poses of all layers"),
             do(copying.copy_all_poses),
             "Ctrl+Alt+C",
             condition=lambda _, project: len(project.document.layers) > 1,
         ),
         "paste": ActionSpec(
-            "Paste",
+            _("Paste"),
             do(pasting.paste_copied),
             "Ctrl+V",
-            detail=partial(_onto, way="as it is"),
+            detail=partial(_paste_text, way="as it is"),
             explain_disabled=partial(pasting.paste_disabled_reason, way="as it is"),
         ),
         "paste flipped": ActionSpec(
-            "Paste flipped",
+            _("Paste flipped"),
             do(pasting.paste_copied, "flipped"),
             "Ctrl+Shift+V",
             icon=icons.ICON_FA_PASTE,
-            hint="Put what was copied in a key at this frame, mirrored: left and right exchange",
-            detail=partial(_onto, way="flipped"),
+            hint=_("Paste into a key at this frame, mirrored: left and right change places"),
+            detail=partial(_paste_text, way="flipped"),
             explain_disabled=partial(pasting.paste_disabled_reason, way="flipped"),
         ),
         "paste swapped": ActionSpec(
-            "Paste swapped",
+            _("Paste swapped"),
             do(pasting.paste_copied, "swapped"),
             "Ctrl+Shift+X",
             icon=icons.ICON_FA_RIGHT_LEFT,
-            hint="Put what was copied in a key at this frame: near and far, or left and right, "
-            "exchange, and nothing is mirrored",
-            detail=partial(_onto, way="swapped"),
+            hint=_(
+                "Paste into a key at this frame: near and far, or left and right, change places. "
+                "Nothing is mirrored."
+            ),
+            detail=partial(_paste_text, way="swapped"),
             explain_disabled=partial(pasting.paste_disabled_reason, way="swapped"),
         ),
         "paste on selected": ActionSpec(
-            "Paste on selected handles",
+            _("Paste on selected handles"),
             do(pasting.paste_on_selected),
             "Ctrl+Alt+V",
             explain_disabled=partial(pasting.paste_on_selected_disabled_reason, way="as it is"),
         ),
         "flip on selected": ActionSpec(
-            "Paste flipped on selected",
+            _("Paste flipped on selected"),
             do(pasting.paste_on_selected, "flipped"),
             "Ctrl+Alt+Shift+V",
             explain_disabled=partial(pasting.paste_on_selected_disabled_reason, way="flipped"),
         ),
         "keep pose": ActionSpec(
-            "Save pose",
+            _("Save pose"),
             do(library.save_pose_to_library),
             "Shift+K",
             icon=icons.ICON_FA_PLUS,
-            hint="Put this pose into the library of poses",
+            hint=_("Add this pose to the library"),
         ),
         "select all": ActionSpec(
-            "Select all", do(editing.select_all), "Ctrl+A", has_separator=True, detail=_all
+            _("Select all"),
+            do(editing.select_all),
+            "Ctrl+A",
+            has_separator=True,
+            detail=_select_text,
         ),
         "deselect": ActionSpec(
-            "Deselect", do(editing.deselect_all), "Escape", condition=_can_deselect
+            _("Deselect"), do(editing.deselect_all), "Escape", condition=_can_deselect
         ),
         "move": ActionSpec(
-            "Move whole drawing",
+            _("Move whole drawing"),
             do(move_tool.toggle_move_tool),
             "V",
             icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,
-            hint="Drags and arrows move all of the layer, as it is, in this frame",
+            hint=_("Move the whole layer in this frame, by drags and arrow keys"),
             active=lambda session: session.moves,
             has_separator=True,
         ),
         "cut out": ActionSpec(
-            "Cut out by a brush",
+            _("Cut out by a brush"),
             do(cut_out_editing.toggle_cut_brush),
             "X",
             active=lambda session: session.cutting is not None,
         ),
         "smaller brush": ActionSpec(
-            "Smaller brush",
+            _("Smaller brush"),
             do(cut_out_editing.shrink_brush),
             "LeftBracket",
             condition=_brushes,
             repeats_while_held=True,
         ),
         "larger brush": ActionSpec(
-            "Larger brush",
+            _("Larger brush"),
             do(cut_out_editing.enlarge_brush),
             "RightBracket",
             condition=_brushes,
             repeats_while_held=True,
         ),
         "pose": ActionSpec(
-            "Back to posing", do(move_tool.return_to_posing), "Escape", condition=_can_pose
+            _("Back to posing"), do(move_tool.return_to_posing), "Escape", condition=_can_pose
         ),
         "delete": ActionSpec(
-            "Delete",
+            _("Delete"),
             do(editing.delete_selection),
             "Delete, Backspace",
             condition=_can_delete,
         ),
-        "rename layer": ActionSpec("Rename layer", do(_rename_layer), "F2", has_separator=True),
+        "rename layer": ActionSpec(_("Rename layer"), do(_rename_layer), "F2", has_separator=True),
     },
-    "Handles": {
+    N_("Handles"): {
         "suggest handles": ActionSpec(
-            "Suggest handles",
+            _("Suggest handles"),
             do(suggest_handles),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
-            hint="Put handles on body and head and at tips and joints of limbs, each with a name",
+            hint=_("Add named handles on body and head, and at tips and joints of limbs"),
         ),
         "pin here": ActionSpec(
-            "Pin here",
+            _("Pin here"),
             do(pin_selected_handles),
             "P",
             icon=icons.ICON_FA_THUMBTACK,
-            hint="Let the selected handles stay where they are in this frame",
+            hint=_("Keep the selected handles where they are in this frame"),
             condition=_selected,
             has_separator=True,
         ),
         "lock": ActionSpec(
-            "Lock",
+            _("Lock"),
             do(editing.toggle_handles_locked),
             "Shift+L",
             icon=icons.ICON_FA_LOCK,
-            hint="Locked handles hold their places and are not dragged",
+            hint=_("Locked handles keep their places and cannot be dragged"),
             condition=_selected,
             active=_all_locked,
         ),
         "key handle": ActionSpec(
-            "Key this handle only",
+            _("Key this handle only"),
             do(tracks.key_selected_handles),
             "Shift+I",
             icon=icons.ICON_FA_KEY,
-            hint="Give it a key of its own in this frame: it gets a track beside the keys of poses",
+            hint=_("Key only this handle at this frame, on a track of its own"),
             condition=_selected,
             has_separator=True,
         ),
         "stiffen": ActionSpec(
-            "Make parts stiff",
+            _("Make parts stiff"),
             do(stiffness_editing.toggle_stiffness_tool, "stiff"),
             "G",
             icon=icons.ICON_FA_CUBE,
-            hint="Brush over what is to bend and stretch less than the rest",
+            hint=_("Brush over parts that bend and stretch less than the rest"),
             active=lambda session: session.material in stiffness_editing.BRUSHES,
             has_separator=True,
         ),
         "bone": ActionSpec(
-            "Draw bones",
+            _("Draw bones"),
             do(stiffness_editing.toggle_stiffness_tool, "bone"),
             "Shift+B",
             icon=icons.ICON_FA_BONE,
-            hint="Drag from a handle to another one: the limb between them is stiff",
+            hint=_("Drag from one handle to another: the limb between them is stiff"),
             active=lambda session: session.material == "bone",
         ),
         "bone between": ActionSpec(
-            "Bone between two handles",
+            _("Bone between two handles"),
             do(stiffness_editing.add_bone_between_selected),
             condition=lambda _, project: len(project.selected_handles) == 2,
         ),
         "group": ActionSpec(
-            "Group",
+            _("Group"),
             do(editing.group_handles),
             "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
-            hint="Select and drag these handles together from now on",
+            hint=_("Select and drag these handles together from now on"),
             condition=lambda _, project: len(project.selected_handles) > 1,
             has_separator=True,
         ),
         "ungroup": ActionSpec(
-            "Ungroup",
+            _("Ungroup"),
             do(editing.ungroup_handles),
             "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
-            hint="Let each of these handles be dragged alone",
+            hint=_("Drag each of these handles alone again"),
             condition=_grouped,
         ),
         "mirror": ActionSpec(
-            "Mirror",
+            _("Mirror"),
             do(mirror_handles),
             icon=icons.ICON_FA_LEFT_RIGHT,
-            hint="Add partners on the other side, named by .L and .R or left and right",
+            hint=_("Add partners on the other side, named with .L and .R or left and right"),
             condition=_selected,
             has_separator=True,
         ),
         "mirrored": ActionSpec(
-            "Select partners",
+            _("Select partners"),
             do(editing.select_mirrored),
             "Shift+M",
             icon=icons.ICON_FA_RIGHT_LEFT,
-            hint="Select the handles on the other side that have the same names",
+            hint=_("Select the handles with the same names on the other side"),
             condition=_selected,
         ),
     },
-    "Motion": {
+    N_("Motion"): {
         "give motion": ActionSpec(
-            "Apply motion preset…",
+            _("Apply motion preset…"),
             do(preset_setup.begin_motion_setup),
             "A",
             icon=icons.ICON_FA_PERSON_WALKING,
-            hint="Let it walk, wave or breathe: say where its joints are, and which motion it is",
+            hint=_("Make the layer walk, wave or breathe: place its joints and choose a motion"),
             explain_disabled=preset_setup.motion_disabled_reason,
             active=lambda session: session.project is not None and session.project.motion_setup,
         ),
         "mirror joints": ActionSpec(
-            "Mirror joints",
+            _("Mirror joints"),
             do(joint_placement.mirror_joints),
             icon=icons.ICON_FA_LEFT_RIGHT,
-            hint="Put the joints of one side where those of the other one are, seen in a mirror",
+            hint=_("Mirror the joints of one side to the other side"),
             condition=_has_sides,
             has_separator=True,
         ),
         "find joints": ActionSpec(
-            "Detect joints",
+            _("Detect joints"),
             do(joint_placement.reset_joints),
             icon=icons.ICON_FA_WAND_MAGIC_SPARKLES,
-            hint="Put all joints back where they were found",
+            hint=_("Move all joints back to where they were detected"),
             condition=lambda _, project: (
                 project.motion_setup is not None and project.motion_setup.suggested
             ),
         ),
         "no motion": ActionSpec(
-            "Cancel motion preset",
+            _("Cancel motion preset"),
             do(apply_motion.cancel_motion_job),
             "Escape",
             condition=_gives,
             has_separator=True,
         ),
     },
-    "View": {
+    N_("View"): {
         "fit": ActionSpec(
-            "Fit pose",
+            _("Fit pose"),
             do(viewing.zoom_to_pose),
             "Home",
             icon=icons.ICON_FA_EXPAND,
-            hint="Show all of the shape as it is in this frame",
+            hint=_("Show the whole shape in this frame"),
         ),
-        "fit motion": ActionSpec("Fit motion", do(viewing.zoom_to_motion), "Shift+Home"),
-        "fit selection": ActionSpec("Fit selection", do(viewing.zoom_to_selection), "F"),
-        "fit picture": ActionSpec("Fit picture", do(viewing.set_view, None)),
-        "actual size": ActionSpec("Actual size", do(viewing.zoom_to_actual_size), "1"),
+        "fit motion": ActionSpec(_("Fit motion"), do(viewing.zoom_to_motion), "Shift+Home"),
+        "fit selection": ActionSpec(_("Fit selection"), do(viewing.zoom_to_selection), "F"),
+        "fit picture": ActionSpec(_("Fit picture"), do(viewing.set_view, None)),
+        "actual size": ActionSpec(_("Actual size"), do(viewing.zoom_to_actual_size), "1"),
         "look through": ActionSpec(
-            "Look through the camera",
+            _("Look through the camera"),
             do(toggle_camera_view),
-            hint="Show what the camera shows in each frame, until you look elsewhere",
+            hint=_("Show the camera's picture in each frame, until you move the view"),
             condition=lambda _, project: bool(project.document.camera),
             active=_looks_through,
         ),
         "handles": _overlay(
-            "Handles",
+            _("Handles"),
             "handles",
             "H",
             icon=icons.ICON_FA_CIRCLE_DOT,
-            hint="Show or hide the handles",
+            hint=_("Show or hide the handles"),
             has_separator=True,
         ),
         "wireframe": _overlay(
-            "Wireframe",
+            _("Wireframe"),
             "wireframe",
             "W",
             icon=icons.ICON_FA_DRAW_POLYGON,
-            hint="Show the triangles",
+            hint=_("Show the triangles"),
         ),
         "outline": _overlay(
-            "Outline",
+            _("Outline"),
             "outline",
             "C",
             icon=icons.ICON_FA_VECTOR_SQUARE,
-            hint="Show the edge of the shape",
+            hint=_("Show the edge of the shape"),
         ),
         "heat map": ActionSpec(
-            "Heat map",
+            _("Heat map"),
             do(viewing.toggle_heat_map),
             "D",
             icon=icons.ICON_FA_TEMPERATURE_HALF,
-            hint="Colour the shape by its distortion",
+            hint=_("Colour the shape by its distortion"),
             active=lambda session: session.overlays.heat_map != "none",
         ),
         "split view": ActionSpec(
-            "Split view",
+            _("Split view"),
             do(viewing.toggle_comparison),
             "U",
             icon=icons.ICON_FA_TABLE_COLUMNS,
-            hint="Compare with another method, under a divider that can be dragged",
+            hint=_("Compare with another method, beside a divider that can be dragged"),
             active=lambda session: session.compare_view is not None,
         ),
         "onion skin": _overlay(
-            "Onion skin",
+            _("Onion skin"),
             "onion",
             "O",
             icon=icons.ICON_FA_GHOST,
-            hint="Show the poses before and after",
+            hint=_("Show the poses before and after"),
         ),
-        "mirror axis": _overlay("Mirror axis", "mirror", "Ctrl+M", mac_keys="Ctrl+Shift+M"),
+        "mirror axis": _overlay(_("Mirror axis"), "mirror", "Ctrl+M", mac_keys="Ctrl+Shift+M"),
         "motion paths": _overlay(
-            "Motion paths",
+            _("Motion paths"),
             "paths",
             "J",
             icon=icons.ICON_FA_ROUTE,
-            hint="Show where the selected handles go, with a dot for each frame",
+            hint=_("Show the paths of the selected handles, with a dot for each frame"),
         ),
         "theme": ActionSpec(
-            "Light or dark", do(viewing.toggle_theme), needs_project=False, has_separator=True
+            _("Light or dark"), do(viewing.toggle_theme), needs_project=False, has_separator=True
         ),
         "larger": ActionSpec(
-            "Larger interface",
+            _("Larger interface"),
             do(viewing.enlarge_interface),
             "Ctrl+Equal, Ctrl+KeypadAdd",
             needs_project=False,
         ),
         "smaller": ActionSpec(
-            "Smaller interface",
+            _("Smaller interface"),
             do(viewing.shrink_interface),
             "Ctrl+Minus, Ctrl+KeypadSubtract",
             needs_project=False,
         ),
         "reset layout": ActionSpec(
-            "Reset layout", do(_reset_layout), has_separator=True, needs_project=False
+            _("Reset layout"), do(_reset_layout), has_separator=True, needs_project=False
         ),
     },
-    "Time": {
+    N_("Time"): {
         "play": ActionSpec(
-            "Play",
+            _("Play"),
             do(playback.toggle_play),
             icon=icons.ICON_FA_PLAY,
-            hint="Play or stop",
+            hint=_("Play or stop"),
             active=_plays,
-            key_text="Space",
+            key_text=_("Space"),
         ),
         "start": ActionSpec(
-            "First frame", do(playback.go_to_start), "Ctrl+PageUp", icon=icons.ICON_FA_BACKWARD_FAST
+            _("First frame"),
+            do(playback.go_to_start),
+            "Ctrl+PageUp",
+            icon=icons.ICON_FA_BACKWARD_FAST,
         ),
         "end": ActionSpec(
-            "Last frame", do(playback.go_to_end), "Ctrl+PageDown", icon=icons.ICON_FA_FORWARD_FAST
+            _("Last frame"),
+            do(playback.go_to_end),
+            "Ctrl+PageDown",
+            icon=icons.ICON_FA_FORWARD_FAST,
         ),
         "back": ActionSpec(
-            "Previous frame",
+            _("Previous frame"),
             do(playback.step_frames, -1),
             "PageUp",
             icon=icons.ICON_FA_BACKWARD_STEP,
             repeats_while_held=True,
         ),
         "on": ActionSpec(
-            "Next frame",
+            _("Next frame"),
             do(playback.step_frames, 1),
             "PageDown",
             icon=icons.ICON_FA_FORWARD_STEP,
             repeats_while_held=True,
         ),
         "previous key": ActionSpec(
-            "Previous key",
+            _("Previous key"),
             do(playback.go_to_key, -1),
             "DownArrow",
             condition=_frees_arrows,
             repeats_while_held=True,
         ),
         "next key": ActionSpec(
-            "Next key",
+            _("Next key"),
             do(playback.go_to_key, 1),
             "UpArrow",
             condition=_frees_arrows,
             repeats_while_held=True,
         ),
         "insert key": ActionSpec(
-            "Insert key",
+            _("Insert key"),
             do(keys.insert_key_in_row),
             "I",
             icon=icons.ICON_FA_DIAMOND,
-            hint="Keep this pose in a key",
+            hint=_("Set a key with this pose"),
             has_separator=True,
         ),
         "loop": ActionSpec(
-            "Loop",
+            _("Loop"),
             do(keys.toggle_loop),
             "L",
             icon=icons.ICON_FA_REPEAT,
-            hint="Loop: the end leads back to the start",
+            hint=_("Loop the animation: its end leads back to its start"),
             active=_loops,
         ),
         "auto-key": ActionSpec(
-            "Auto-key",
+            _("Auto-key"),
             do(viewing.toggle_auto_key),
             "K",
             icon=icons.ICON_FA_KEY,
-            hint="Posing makes and changes keys",
+            hint=_("Set and change keys by posing"),
             active=lambda session: session.preferences.auto_key,
         ),
         "record": ActionSpec(
-            "Record a drag",
+            _("Record a drag"),
             do(toggle_recording_armed),
             "R",
             icon=icons.ICON_FA_CIRCLE,
-            hint="Record how the next handle is dragged, while the timeline plays",
+            hint=_("Record the next drag of a handle, while the timeline plays"),
             condition=lambda session, _: session.cutting is None,
             active=lambda session: session.records,
         ),
         "record nothing": ActionSpec(
-            "Discard recording", do(discard_recording), "Escape", condition=_records
+            _("Discard recording"), do(discard_recording), "Escape", condition=_records
         ),
         "preview start": ActionSpec(
-            "Start preview range here", do(keys.start_preview_at_playhead), "B", has_separator=True
+            _("Start preview range here"),
+            do(keys.start_preview_at_playhead),
+            "B",
+            has_separator=True,
         ),
-        "preview end": ActionSpec("End preview range here", do(keys.end_preview_at_playhead), "N"),
+        "preview end": ActionSpec(
+            _("End preview range here"), do(keys.end_preview_at_playhead), "N"
+        ),
         "preview none": ActionSpec(
-            "Play all frames",
+            _("Play all frames"),
             do(keys.clear_preview_range),
             "Alt+P",
             condition=lambda _, project: project.document.preview is not None,
         ),
         "marker": ActionSpec(
-            "Add marker", do(keys.add_marker_at_playhead), "M", has_separator=True
+            _("Add marker"), do(keys.add_marker_at_playhead), "M", has_separator=True
         ),
         "key camera": ActionSpec(
-            "Key the camera",
+            _("Key the camera"),
             do(key_camera),
             icon=icons.ICON_FA_VIDEO,
-            hint="From here on frames show what the viewport shows now",
+            hint=_("Key the camera at this frame: it shows what the viewport shows now"),
         ),
         "previous marker": ActionSpec(
-            "Previous marker",
+            _("Previous marker"),
             do(playback.go_to_marker, -1),
             "Shift+PageUp",
             repeats_while_held=True,
         ),
         "next marker": ActionSpec(
-            "Next marker", do(playback.go_to_marker, 1), "Shift+PageDown", repeats_while_held=True
+            _("Next marker"),
+            do(playback.go_to_marker, 1),
+            "Shift+PageDown",
+            repeats_while_held=True,
         ),
         "fit time": ActionSpec(
-            "Fit timeline",
+            _("Fit timeline"),
             do(timeline_drag.fit_timeline),
             "Ctrl+Home",
             icon=icons.ICON_FA_ARROWS_LEFT_RIGHT_TO_LINE,
-            hint="Show all frames",
+            hint=_("Show all frames"),
         ),
     },
-    "Keys": {
-        "pass": ActionSpec("Next tangent mode", do(keys.use_next_tangent_mode), "T"),
-        "ease": ActionSpec("Ease in and out", do(keys.ease_selected_keys, PRESETS["in-out"]), "F9"),
-        "ease in": ActionSpec("Ease in", do(keys.ease_selected_keys, PRESETS["in"]), "Shift+F9"),
-        "ease out": ActionSpec(
-            "Ease out", do(keys.ease_selected_keys, PRESETS["out"]), "Ctrl+Shift+F9"
+    N_("Keys"): {
+        "pass": ActionSpec(_("Next tangent mode"), do(keys.use_next_tangent_mode), "T"),
+        "ease": ActionSpec(
+            _("Ease in and out"), do(keys.ease_selected_keys, PRESETS["in-out"]), "F9"
         ),
-        "ease not": ActionSpec("Linear", do(keys.ease_selected_keys, LINEAR), "Alt+F9"),
+        "ease in": ActionSpec(_("Ease in"), do(keys.ease_selected_keys, PRESETS["in"]), "Shift+F9"),
+        "ease out": ActionSpec(
+            _("Ease out"), do(keys.ease_selected_keys, PRESETS["out"]), "Ctrl+Shift+F9"
+        ),
+        "ease not": ActionSpec(_("Linear"), do(keys.ease_selected_keys, LINEAR), "Alt+F9"),
         "repeat": ActionSpec(
-            "Repeat",
+            _("Repeat"),
             do(cycles.create_cycle),
-            detail=_stretch,
+            detail=_repeat_text,
             condition=lambda _, project: cycles.selected_range(project),
             has_separator=True,
         ),
         "repeats into keys": ActionSpec(
-            "Bake repeats", do(cycles.bake_cycle), condition=cycles.cycle_at_playhead
+            _("Bake repeats"), do(cycles.bake_cycle), condition=cycles.cycle_at_playhead
         ),
         "repeat no more": ActionSpec(
-            "Stop repeating", do(cycles.end_cycle), condition=cycles.cycle_at_playhead
+            _("Stop repeating"), do(cycles.end_cycle), condition=cycles.cycle_at_playhead
         ),
     },
-    "Help": {
-        "manual": ActionSpec("Manual", do(open_manual_page), "F1", needs_project=False),
+    N_("Help"): {
+        "manual": ActionSpec(_("Manual"), do(open_manual_page), "F1", needs_project=False),
         "shortcuts": ActionSpec(
-            "Keys and mouse", do(viewing.show_shortcuts), "Shift+F1", needs_project=False
+            _("Keys and mouse"), do(viewing.show_shortcuts), "Shift+F1", needs_project=False
         ),
         "first animation": ActionSpec(
-            "Make a giraffe bow",
+            _("Make a giraffe bow"),
             do(tutorials.begin_tutorial),
             needs_project=False,
             has_separator=True,
         ),
         "leave guide": ActionSpec(
-            "Leave the guide", do(tutorials.end_tutorial), "Escape", condition=_can_leave
+            _("Leave the guide"), do(tutorials.end_tutorial), "Escape", condition=_can_leave
         ),
         "report": ActionSpec(
-            "Report a problem…", do(error_reports.show_kept_or_new_report), needs_project=False
+            _("Report a problem…"), do(error_reports.show_kept_or_new_report), needs_project=False
         ),
-        "import": ActionSpec("Import log", do(files.show_import_log), condition=_has_summary),
+        "import": ActionSpec(_("Import log"), do(files.show_import_log), condition=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

@@ -9,6 +9,7 @@ from app.editor.actions import playback, viewing
 from app.editor.actions.timing import keys
 from app.editor.actions.tracking.recording import RECORDING_SPEEDS, set_recording_speed
 from app.storage import LARGEST_GHOST_STEP, MOST_GHOSTS
+from app.texts import _
 from app.ui.bars.methods import draw_method_menu
 from app.ui.methods import VARIANTS
 from app.ui.shortcuts.table import BINDINGS
@@ -76,7 +77,7 @@ def _recording_speed(session: Session, look: Look) -> list[Action]:
             if imgui.selectable(f"{speed:.0%}", speed == session.recording_speed)[0]
         ]
         imgui.end_combo()
-    draw_tooltip("How fast the timeline plays while a drag is recorded")
+    draw_tooltip(_("Speed of the timeline while a drag is recorded"))
     return actions
 
 
@@ -104,7 +105,7 @@ def _key_buttons(session: Session, look: Look, project: Project) -> list[Action]
     imgui.same_line(0, TIGHT * look.em)
     actions += draw_action_button(session, look, "auto-key")
     imgui.same_line(0, TIGHT * look.em)
-    if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", "Reverse, scale time, preview range"):
+    if icon_button(look, icons.ICON_FA_ELLIPSIS, "more", _("Reverse, scale time, preview range")):
         imgui.open_popup("menu of time")
     return actions + draw_time_menu(session, look, project)
 
@@ -124,16 +125,16 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     changed, wanted = imgui.drag_int(
         "##frame", frame, 0.2, document.frames.first, document.frames.last
     )
-    draw_tooltip("The present frame: drag, or click to type")
+    draw_tooltip(_("The present frame: drag, or click to type"))
     if changed:
         actions.append(do(playback.scrub, wanted))
     imgui.same_line(0, GAP * look.em)
-    imgui.text_disabled("of")
+    imgui.text_disabled(_("of"))
     imgui.same_line(0, GAP * look.em)
     imgui.set_next_item_width(3.8 * look.em)
     flags = imgui.InputTextFlags_.enter_returns_true
     changed, last = imgui.input_int("##last", document.frames.last, 0, 0, flags)
-    draw_tooltip("The last frame: type it, or drag the end on the track")
+    draw_tooltip(_("The last frame: type it, or drag the end on the track"))
     if changed:
         actions.append(do(keys.set_last_frame, last))
     imgui.same_line(0, 0.8 * look.em)
@@ -175,7 +176,7 @@ def _width(look: Look, parts: list[tuple[float, Callable[[], list[Action]]]]) ->
 def _fps(project: Project) -> list[Action]:
     fps = project.document.fps
     changed, wanted = imgui.drag_float("##fps", fps, 0.1, SLOWEST, FASTEST, "%.4g fps")
-    draw_tooltip("Frames per second: drag, or click to type")
+    draw_tooltip(_("Frames per second: drag, or click to type"))
     return [do(keys.set_fps, round(wanted, 3))] if changed else []
 
 
@@ -189,7 +190,7 @@ def _speed(project: Project) -> list[Action]:
             if imgui.selectable(f"{speed:g}×", speed == current)[0]
         ]
         imgui.end_combo()
-    draw_tooltip("How fast it plays here; the animation itself stays as it is")
+    draw_tooltip(_("Speed of playback here; the animation itself stays the same"))
     return actions
 
 
@@ -197,7 +198,7 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     actions: list[Action] = []
     overlays, preferences = session.overlays, session.preferences
     binding = BINDINGS["onion skin"]
-    hint = "Onion skin: what is shown before and after"
+    hint = _("Onion skin: the poses shown before and after this frame")
     if icon_button(look, binding.icon, "onion skin", hint, active=overlays.onion):
         imgui.open_popup("menu of onion skin")
     if not imgui.begin_popup("menu of onion skin"):
@@ -209,16 +210,16 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
     values = [preferences.ghosts_before, preferences.ghosts_after, preferences.ghost_step]
     before = list(values)
     sliders = (
-        *(("before", 0, MOST_GHOSTS), ("after", 0, MOST_GHOSTS)),
-        ("frames apart", 1, LARGEST_GHOST_STEP),
+        *((_("before"), 0, MOST_GHOSTS), (_("after"), 0, MOST_GHOSTS)),
+        (_("frames apart"), 1, LARGEST_GHOST_STEP),
     )
     for index, (name, low, high) in enumerate(sliders):
         imgui.set_next_item_width(8 * look.em)
         values[index] = imgui.slider_int(name, values[index], low, high)[1]
     if values != before:
         actions.append(do(viewing.set_onion_skin, *values))
-    changed, in_front = imgui.checkbox("In front of the drawing", preferences.ghosts_in_front)
-    draw_tooltip("Over all layers, and not behind those that are posed")
+    changed, in_front = imgui.checkbox(_("In front of the drawing"), preferences.ghosts_in_front)
+    draw_tooltip(_("In front of all layers, not behind the posed layers"))
     if changed:
         actions.append(do(viewing.set_onion_skin_in_front, in_front))
     imgui.end_popup()
@@ -230,5 +231,5 @@ def _variant(project: Project) -> list[Action]:
     if imgui.begin_combo("##variant", VARIANTS[project.layer.variant].name):
         actions += draw_method_menu(project)
         imgui.end_combo()
-    draw_tooltip("How in-betweens are made")
+    draw_tooltip(_("Method for the in-betweens"))
     return actions

@@ -5,6 +5,7 @@ from imgui_bundle import ImVec2, imgui
 from app.document import MAX_REVOLUTIONS, PRESETS, Easing, Keyframe
 from app.editor import Action, KeysByRow, Project, do
 from app.editor.actions.timing import keys
+from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, Look, colour_u32
 from app.ui.style.widgets import (
     bold_text,
@@ -17,7 +18,13 @@ from app.ui.style.widgets import (
 
 SIDE = 12.0  # em: side of the editor
 TILE = 4.4  # em: width of a preset
-LABELS = {"linear": "Linear", "in": "In", "out": "Out", "in-out": "In-out", "hold": "Hold"}
+LABELS = {
+    "linear": _("Linear"),
+    "in": _("In"),
+    "out": _("Out"),
+    "in-out": _("In-out"),
+    "hold": _("Hold"),
+}
 DIGITS = 3  # decimals of a dragged control point
 
 
@@ -73,9 +80,13 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
         return []
     taken = project.keys_with(project.active, key.frame)
     count = sum(map(len, taken.values()))
-    bold_text(look, "Easing")
+    bold_text(look, _("Easing"))
     imgui.same_line()
-    imgui.text_disabled(f"after {count} keys" if count > 1 else f"after frame {key.frame}")
+    imgui.text_disabled(
+        ngettext("after frame {frame}", "after {count} keys", count).format(
+            frame=key.frame, count=count
+        )
+    )
     actions: list[Action] = []
     chosen = _presets(look, key.easing)
     chosen = _editor(look, key.easing) or chosen
@@ -83,9 +94,9 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
     if chosen is not None:
         actions.append(do(keys.set_easing, taken, chosen))
     actions += _draw_revolutions(look, key, taken)
-    if imgui.button("Use for new keys"):
+    if imgui.button(_("Use for new keys")):
         actions.append(do(keys.set_default_easing, key.easing))
-    draw_tooltip("Ways from keys that are made later begin like this one")
+    draw_tooltip(_("New keys get this easing"))
     imgui.end_popup()
     return actions
 
@@ -165,7 +176,7 @@ def _control_points(
         imgui.invisible_button(f"control {index + 1}", ImVec2(2 * radius, 2 * radius))
         hot = is_hovered_or_held()
         draw_tooltip(
-            "Drag: both points stay inside the square, so that in-betweens keep their limits"
+            _("Drag the point. It stays inside the square, so that in-betweens keep their limits.")
         )
         draw_list.add_circle_filled(
             centre, 0.5 * em if hot else 0.42 * em, colour_u32(palette.desk)
@@ -186,19 +197,19 @@ def _control_points(
 
 def _numbers(look: Look, easing: Easing) -> Easing | None:
     if easing.curve is None:
-        small_text(look, "Holds the pose until the next key.")
+        small_text(look, _("Holds the pose until the next key."))
         return None
     imgui.set_next_item_width(SIDE * 1.9 * look.em)
     changed, values = imgui.drag_float4("##numbers", list(easing.curve), 0.005, 0.0, 1.0, "%.2f")
-    draw_tooltip("x and y of the first control point, then of the second")
+    draw_tooltip(_("x and y of the first control point, then of the second"))
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
 def _draw_revolutions(look: Look, key: Keyframe, taken: KeysByRow) -> list[Action]:
-    label(look, "Whole turns")
+    label(look, _("Whole turns"))
     changed, turns = imgui.input_int("##turns", key.revolutions, 1, 1)
     draw_tooltip(
-        "Full turns on the way to the next key, counter-clockwise; negative ones go clockwise"
+        _("Full turns to the next key, counter-clockwise; negative numbers turn clockwise")
     )
     turns = min(max(turns, -MAX_REVOLUTIONS), MAX_REVOLUTIONS)
     return [do(keys.set_revolutions, taken, turns)] if changed and turns != key.revolutions else []

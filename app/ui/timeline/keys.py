@@ -5,7 +5,6 @@ from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 from app.document import Keyframe, TangentMode
 from app.editor import (
     Action,
-    KeyBox,
     KeyDrag,
     KeyRow,
     KeysByRow,
@@ -16,65 +15,25 @@ from app.editor import (
     layer_of,
 )
 from app.editor.actions import editing
-from app.editor.actions.timing import keys, timeline_drag, tracks
+from app.editor.actions.timing import timeline_drag, tracks
 from app.editor.layering.layer_selection import set_active_layer
+from app.texts import _
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import colour_u32
-from app.ui.style.widgets import begin_tooltip, draw_tooltip, is_hovered_or_held, is_pressed
+from app.ui.style.widgets import begin_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import (
-    ROUNDING,
     LayerRow,
     TimelineLayout,
-    TrackLane,
     draw_time_tag,
     find_least_gap,
     format_seconds,
-    was_dragged,
 )
-from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu, draw_track_menu
-from app.ui.timeline.track_residuals import describe_residual
+from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal: normally, and if keys are dense
 SMALLER = 0.7  # size of other layers' keys, relative to the active layer's
+KEY_GESTURES = _("Drag to move, {gesture} to copy, right click for more")
 GRIP = 1.45  # half the side of a key's hit box, relative to half its diagonal
-
-
-def draw_track_background(bands: TimelineLayout) -> list[Action]:
-    """Draw the animation's frames, and handle the pointer on the empty area."""
-    palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
-    low, high = ImVec2(bands.left, bands.track_top), ImVec2(bands.right, bands.track_bottom)
-    draw_list.add_rect_filled(low, high, colour_u32(palette.desk), ROUNDING * bands.look.em)
-    draw_list.push_clip_rect(low, high, intersect_with_current_clip_rect=True)
-    document = bands.project.document
-    for frames, alpha in ((document.frames, 0.45), (document.played_frames, 1.0)):
-        begin, end = bands.x(frames.first), bands.x(frames.last)
-        draw_list.add_rect_filled(
-            ImVec2(begin, low.y), ImVec2(end, high.y), colour_u32(palette.panel, alpha)
-        )
-    draw_list.pop_clip_rect()
-    return _press_background(bands, low, high)
-
-
-def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[Action]:
-    actions: list[Action] = []
-    clicked = bands.button("ground", low, high, right=True)
-    if is_pressed():
-        actions += begin_key_box(bands)
-    if clicked and is_plain_click():
-        actions += select_row(bands.pointed_keys, {})
-    twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
-    row, lane = bands.pointed_keys, bands.pointed_row
-    if isinstance(lane, TrackLane) and bands.project.timeline.gesture is None:
-        miss = describe_residual(bands.project, lane.layer, lane.track, round(bands.pointed))
-        if miss:
-            draw_tooltip(miss)
-    if twice and round(bands.pointed) in bands.project.document.frames:
-        actions.append(do(keys.insert_key_in_row_at, round(bands.pointed)))
-    if imgui.is_item_clicked(imgui.MouseButton_.right):
-        if row != bands.project.row:
-            actions += select_row(row, {})
-        imgui.open_popup("menu of track")
-    return actions + draw_track_menu(bands)
 
 
 def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
@@ -84,34 +43,6 @@ def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
         do(tracks.select_track, row.handle if isinstance(row, TrackRow) else None),
         do(editing.select_keys_in_rows, chosen_of),
     ]
-
-
-def begin_key_box(bands: TimelineLayout) -> list[Action]:
-    """Begin a box selection of keys. With Shift, it adds to the selected keys."""
-    keeps = bands.project.selected_keys if imgui.get_io().key_shift else {}
-    box = KeyBox(start=bands.pointed, row=bands.pointed_keys, keeps=keeps)
-    return [do(timeline_drag.begin_timeline_drag, box, bands.time_view)]
-
-
-def is_plain_click() -> bool:
-    """Return whether the left button was released without a drag and without Shift."""
-    released = imgui.is_mouse_released(imgui.MouseButton_.left)
-    return released and not was_dragged() and not imgui.get_io().key_shift
-
-
-def draw_key_box(bands: TimelineLayout) -> None:
-    gesture = bands.project.timeline.gesture
-    if not isinstance(gesture, KeyBox) or not was_dragged():
-        return
-    draw_list, accent = imgui.get_window_draw_list(), bands.look.palette.accent
-    mouse = imgui.get_mouse_pos()
-    delta = imgui.get_mouse_drag_delta(imgui.MouseButton_.left)
-    top, bottom = sorted((mouse.y - delta.y, mouse.y))
-    left, right = sorted((bands.x(gesture.start), mouse.x))
-    low = ImVec2(left, max(top, bands.track_top))
-    high = ImVec2(right, min(bottom, bands.track_bottom))
-    draw_list.add_rect_filled(low, high, colour_u32(accent, 0.14), 2.0)
-    draw_list.add_rect(low, high, colour_u32(accent, 0.8), 2.0)
 
 
 def draw_keys(bands: TimelineLayout) -> list[Action]:
@@ -211,14 +142,14 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
     chosen = key.frame in bands.project.selected_keys.get(row.layer.id, ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
-    passing, centre = key.shown_tangent_mode, ImVec2(x, y)
+    tangent, centre = key.shown_tangent_mode, ImVec2(x, y)
     if chosen:
-        draw_key_mark(passing, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
-    draw_key_mark(passing, centre, radius + 0.12 * em, colour_u32(palette.desk))
-    draw_key_mark(passing, centre, radius, colour_u32(fill))
+        draw_key_mark(tangent, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
+    draw_key_mark(tangent, centre, radius + 0.12 * em, colour_u32(palette.desk))
+    draw_key_mark(tangent, centre, radius, colour_u32(fill))
     label_dragged_key(bands, row.layer.id, key.frame, x)
     if warns and chosen:
-        draw_key_mark(passing, centre, 0.45 * radius, colour_u32(warns))
+        draw_key_mark(tangent, centre, 0.45 * radius, colour_u32(warns))
     if warns and row.is_active:
         draw_list.add_circle_filled(
             ImVec2(x, bands.bar_top - 0.1 * em), 0.2 * em, colour_u32(warns)
@@ -239,11 +170,11 @@ def label_dragged_key(bands: TimelineLayout, row: KeyRow, frame: int, x: float) 
         draw_time_tag(bands, x, f"{frame}  ({gesture.by:+d})")
 
 
-def draw_key_mark(passing: TangentMode, centre: ImVec2, radius: float, colour: int) -> None:
+def draw_key_mark(tangent: TangentMode, centre: ImVec2, radius: float, colour: int) -> None:
     """Draw a key's mark by tangent mode: round, pointed, pinched, or square for a hold."""
     draw_list, x, y = imgui.get_window_draw_list(), centre.x, centre.y
     across = radius / 2**0.5
-    match passing:
+    match tangent:
         case TangentMode.SMOOTH:
             draw_list.add_circle_filled(centre, 0.86 * radius, colour)
         case TangentMode.HOLD:
@@ -276,7 +207,9 @@ def describe_target_errors(project: Project, key: Keyframe) -> list[str]:
     short = project.timeline.target_errors.value.get(key.pose, {})
     names = {handle.id: handle.name for handle in project.layer.handles}
     return [
-        f"{names[identity]} is {lag:.0f} px short of its target"
+        _("{handle} is {error:.0f} px short of its target").format(
+            handle=names[identity], error=lag
+        )
         for identity, lag in short.items()
         if identity in names
     ]
@@ -286,19 +219,19 @@ def _draw_key_tooltip(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> No
     if not begin_tooltip():
         return
     palette, document = bands.look.palette, bands.project.document
-    imgui.text_unformatted(f"Key at frame {key.frame}")
+    imgui.text_unformatted(_("Key at frame {frame}").format(frame=key.frame))
     imgui.same_line()
     imgui.text_disabled(format_seconds(key.frame, document.fps))
     name, hint = TANGENT_MODES[key.shown_tangent_mode]
-    imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
+    imgui.text_unformatted(name)
+    imgui.text_disabled(hint)
     if not key.pose.certificate.is_certified:
         imgui.text_colored(
             palette.danger,
-            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  Beyond the limits: in-betweens may fold here",
+            f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  "
+            + _("Beyond the limits: in-betweens may fold here"),
         )
     for text in describe_target_errors(bands.project, key) if row.is_active else ():
         imgui.text_colored(palette.warning, f"{icons.ICON_FA_TRIANGLE_EXCLAMATION}  {text}")
-    imgui.text_disabled(
-        f"Drag to move, {format_modified(CTRL, 'drag')} to copy, right click for more"
-    )
+    imgui.text_disabled(KEY_GESTURES.format(gesture=format_modified(CTRL, _("drag"))))
     imgui.end_tooltip()

@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import LAST_FRAME, Layer, Track, TreeRow, memoized_on
 from app.editor import KeyRow, Project, Session, TimeRangeView, display_frame, row_of
+from app.texts import _
 from app.ui.style.drawing import draw_tag, tag_size
 from app.ui.style.theme import Look
 
@@ -288,4 +289,5 @@ def was_dragged() -> bool:
 
 
 def format_seconds(frame: float, fps: float) -> str:
-    return f"{frame / fps:.2f}".rstrip("0").rstrip(".") + " s"
+    number = f"{frame / fps:.2f}".rstrip("0").rstrip(".")
+    return _("{seconds} s").format(seconds=number)

@@ -7,6 +7,7 @@ from app.editor import Action, KeyRow, Project, Session, TrackRow, display_frame
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import cycles, keys, tracks
 from app.editor.poses import copying
+from app.texts import _, ngettext
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import Look
@@ -15,13 +16,13 @@ from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.layout import TimelineLayout
 
 TANGENT_MODES = {
-    TangentMode.SMOOTH: ("Smooth", "The motion goes on smoothly, between two other keys"),
-    TangentMode.CORNER: ("Corner", "The motion comes and goes straight, and turns sharply"),
-    TangentMode.STOP: ("Stop", "The motion slows down to rest, and starts again"),
-    TangentMode.HOLD: ("Hold", "The pose stays until the next key"),
+    TangentMode.SMOOTH: (_("Smooth"), _("The motion goes on smoothly, between two other keys")),
+    TangentMode.CORNER: (_("Corner"), _("The motion is straight on both sides, and turns sharply")),
+    TangentMode.STOP: (_("Stop"), _("The motion slows down to rest, and starts again")),
+    TangentMode.HOLD: (_("Hold"), _("The pose stays until the next key")),
 }
 NAME = 9.0  # em: largest width of a layer's name
-FACTORS = ((0.5, "Half as long"), (2.0, "Twice as long"))
+FACTORS = ((0.5, _("Half as long")), (2.0, _("Twice as long")))
 
 
 def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) -> list[Action]:
@@ -32,25 +33,26 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
     project = bands.project
     taken = project.keys_with(row, key.frame)
     count = sum(map(len, taken.values()))
-    many = f" {count} keys" if count > 1 else ""
     delete = BINDINGS["delete"]
-    if imgui.menu_item_simple(f"Delete{many}###Delete", delete.shown_keys):
+    text = ngettext("Delete", "Delete {count} keys", count).format(count=count)
+    if imgui.menu_item_simple(f"{text}###Delete", delete.shown_keys):
         actions.append(delete.action)
-    if imgui.menu_item_simple(f"Copy{many}###Copy", BINDINGS["copy"].shown_keys):
+    text = ngettext("Copy", "Copy {count} keys", count).format(count=count)
+    if imgui.menu_item_simple(f"{text}###Copy", BINDINGS["copy"].shown_keys):
         actions.append(do(copying.copy_keys))
     seen = display_frame(project.document, project.track_in(row), key.frame)
     actions += _paste_items(bands.session, seen)
     imgui.separator()
-    if imgui.menu_item_simple("Go to this key", "Click"):
+    if imgui.menu_item_simple(_("Go to this key"), _("Click")):
         actions.append(do(playback.scrub, seen))
-    if imgui.begin_menu("Tangent"):
-        for passing, (name, hint) in TANGENT_MODES.items():
-            chosen = key.shown_tangent_mode is passing
-            if imgui.menu_item(f"{name}###{passing}", "", chosen)[0]:
-                actions.append(do(keys.set_tangent_mode, taken, passing))
+    if imgui.begin_menu(_("Tangent")):
+        for tangent, (name, hint) in TANGENT_MODES.items():
+            chosen = key.shown_tangent_mode is tangent
+            if imgui.menu_item(f"{name}###{tangent}", "", chosen)[0]:
+                actions.append(do(keys.set_tangent_mode, taken, tangent))
             draw_tooltip(hint)
         imgui.end_menu()
-    if imgui.begin_menu("Easing"):
+    if imgui.begin_menu(_("Easing")):
         for name, preset in PRESETS.items():
             if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:
                 actions.append(do(keys.set_easing, taken, preset))
@@ -80,27 +82,29 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
     opened = imgui.get_mouse_pos_on_opening_current_popup()
     frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
     row = bands.project.row
-    if imgui.menu_item_simple(f"Insert key at frame {frame}###Insert key"):
+    text = _("Insert key at frame {frame}").format(frame=frame)
+    if imgui.menu_item_simple(f"{text}###Insert key"):
         actions.append(do(keys.insert_key_in_row_at, frame))
     track = bands.project.track_in(row)
     if track is not None and not track.is_scene_space:
-        if imgui.menu_item_simple("Back to body pose###Insert in pose"):
+        if imgui.menu_item_simple(_("Back to body pose") + "###Insert in pose"):
             actions += [
                 do(playback.scrub, frame),
                 do(tracks.set_handle_value, track.handles[0], 0j, 0.0),
             ]
         draw_tooltip(
-            "Where the pose has the handle: the track begins and ends there without a jump"
+            _("Key the handle's place in the pose, so that the track begins or ends smoothly")
         )
     actions += _paste_items(bands.session, frame)
-    if imgui.menu_item_simple(f"Add marker at frame {frame}###Add marker"):
+    text = _("Add marker at frame {frame}").format(frame=frame)
+    if imgui.menu_item_simple(f"{text}###Add marker"):
         actions.append(do(keys.add_marker, frame))
     actions += _cycle_items(bands, frame)
     imgui.separator()
     actions += _time_items(bands.session, bands.look, bands.project)
     if track is not None:
         imgui.separator()
-        if imgui.menu_item_simple("Delete track"):
+        if imgui.menu_item_simple(_("Delete track")):
             actions.append(do(editing.edit_layer, track_commands.remove_tracks, track.handles[:1]))
     imgui.end_popup()
     return actions
@@ -120,12 +124,14 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     if cycle is None or isinstance(bands.project.row, TrackRow):
         return actions
     imgui.separator()
-    if imgui.menu_item_simple("Bake repeats"):
+    if imgui.menu_item_simple(_("Bake repeats")):
         actions.append(do(cycles.bake_cycle, frame))
     draw_tooltip(
-        f"{cycle.description.capitalize()} are edited in one place; then each repeat is by itself"
+        _("Turn the repeats of frames {first} to {last} into keys, to edit each by itself").format(
+            first=cycle.first, last=cycle.last
+        )
     )
-    if imgui.menu_item_simple("Stop repeating"):
+    if imgui.menu_item_simple(_("Stop repeating")):
         actions.append(do(cycles.end_cycle, frame))
     return actions
 
@@ -134,23 +140,26 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     actions += draw_action_item(session, "repeat")
     count, chosen = len(frames_in(project.document, project.row)), project.selected_key_count
-    several = f"{chosen} keys" if chosen > 1 else "all keys"
     # Scaling changes the whole scene, reversing only the active layer.
-    is_scene = chosen < 2 and len(project.document.layers) > 1
-    whose = (
-        f"{several} of {shorten_text(project.layer.name, NAME * look.em)}" if is_scene else several
-    )
-    if imgui.menu_item_simple(f"Reverse {whose}###Reverse", enabled=max(count, chosen) > 1):
+    reverse, scale = _("Reverse all keys"), _("Scale time of all keys")
+    if chosen > 1:
+        reverse = ngettext("Reverse {count} key", "Reverse {count} keys", chosen)
+        scale = ngettext("Scale time of {count} key", "Scale time of {count} keys", chosen)
+    elif len(project.document.layers) > 1:
+        reverse = _("Reverse all keys of {layer}")
+    name = shorten_text(project.layer.name, NAME * look.em)
+    reverse, scale = (text.format(count=chosen, layer=name) for text in (reverse, scale))
+    if imgui.menu_item_simple(f"{reverse}###Reverse", enabled=max(count, chosen) > 1):
         actions.append(do(keys.reverse_selected_keys))
-    if imgui.begin_menu(f"Scale time of {several}###Scale time"):
+    if imgui.begin_menu(f"{scale}###Scale time"):
         actions += [
             do(keys.scale_selected_keys, factor)
-            for factor, name in FACTORS
-            if imgui.menu_item_simple(name)
+            for factor, text in FACTORS
+            if imgui.menu_item_simple(text)
         ]
         imgui.set_next_item_width(5 * look.em)
         entered, percent = imgui.input_float(
-            "of its length###percent",
+            _("of its length") + "###percent",
             100.0,
             0,
             0,
@@ -161,7 +170,9 @@ def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
             actions.append(do(keys.scale_selected_keys, percent / 100))
             imgui.close_current_popup()
         imgui.end_menu()
-    if imgui.menu_item_simple("Copy first pose to last key", enabled=len(project.layer.keys) > 1):
+    if imgui.menu_item_simple(
+        _("Copy first pose to last key"), enabled=len(project.layer.keys) > 1
+    ):
         actions.append(do(keys.match_loop_ends))
     imgui.separator()
     for name in ("preview start", "preview end", "preview none"):

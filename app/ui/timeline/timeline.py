@@ -21,18 +21,21 @@ from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.tools import tool_pointer
+from app.texts import _, ngettext
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import Look
 from app.ui.timeline.bar import draw_transport_bar
 from app.ui.timeline.dropping import accept_dropped_pose
-from app.ui.timeline.keys import draw_key_box, draw_keys, draw_track_background
+from app.ui.timeline.keys import draw_keys
 from app.ui.timeline.layout import THIN, TimelineLayout, TrackLane, format_seconds, was_dragged
+from app.ui.timeline.rows.background import draw_key_box, draw_track_background
+from app.ui.timeline.rows.cycles import draw_cycle_bars
 from app.ui.timeline.rows.layers import draw_layer_rows
 from app.ui.timeline.ruler.camera import draw_camera_row
 from app.ui.timeline.ruler.edges import draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers
 from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
-from app.ui.timeline.segments import draw_cycle_bars, draw_pose_segments
+from app.ui.timeline.segments import draw_pose_segments
 from app.ui.timeline.tracks import draw_track_keys
 
 ZOOM_STEP = 1.2  # per notch of the wheel
@@ -191,11 +194,23 @@ def _follow_active(bands: TimelineLayout) -> list[Action]:
 def _hint(bands: TimelineLayout) -> str:
     gesture = bands.project.timeline.gesture
     if isinstance(gesture, KeyDrag):
-        what = "Copied" if gesture.copies else "Moved"
-        seconds = format_seconds(gesture.by, bands.project.document.fps)
-        return f"{what} by {gesture.by:+d} frames, {seconds}: Esc takes it back"
+        text = (
+            ngettext(
+                "Copied by {count:+d} frame, {time}: Esc takes it back",
+                "Copied by {count:+d} frames, {time}: Esc takes it back",
+                abs(gesture.by),
+            )
+            if gesture.copies
+            else ngettext(
+                "Moved by {count:+d} frame, {time}: Esc takes it back",
+                "Moved by {count:+d} frames, {time}: Esc takes it back",
+                abs(gesture.by),
+            )
+        )
+        time = format_seconds(gesture.by, bands.project.document.fps)
+        return text.format(count=gesture.by, time=time)
     if gesture is not None:
-        return "Esc takes it back" if isinstance(gesture, TimeDrag) else ""
+        return _("Esc takes it back") if isinstance(gesture, TimeDrag) else ""
     return _hint_of_place(bands)
 
 
@@ -203,21 +218,22 @@ def _hint_of_place(bands: TimelineLayout) -> str:
     x, y = imgui.get_mouse_pos()
     if x < bands.left:
         if isinstance(bands.pointed_row, TrackLane):
-            return "Click a track to choose it: keys and drags of its handle go there then"
-        return "Click a layer to see its handles and keys, wheel to see more layers"
+            return _(
+                "Click a track to select it: then keys and drags of its handle go to the track"
+            )
+        return _("Click a layer to see its handles and keys, wheel to see more layers")
     if y < bands.ruler_top:
-        return "Drag the ends of the preview range, double-click to play all frames"
-    if bands.markers_top <= y < bands.track_top:
-        if y >= bands.camera_top:
-            what, more = "a key of the camera", "right-click for more"
-        else:
-            what, more = "a marker", "double-click to name it"
-        return f"Click {what} to go there, drag it to move it, {more}"
-    if y < bands.track_top:
-        return (
-            f"Drag to move the playhead, wheel to scroll, {format_modified(CTRL, 'wheel')} to zoom"
+        return _("Drag the ends of the preview range, double-click to play all frames")
+    if bands.camera_top <= y < bands.track_top:
+        text = _("Click a camera key to go there, drag it to move it, right click for more")
+    elif bands.markers_top <= y < bands.camera_top:
+        text = _("Click a marker to go there, drag it to move it, double-click to name it")
+    elif y < bands.track_top:
+        text = _("Drag to move the playhead, wheel to scroll, {gesture} to zoom").format(
+            gesture=format_modified(CTRL, _("wheel"))
         )
-    return (
-        f"Drag keys to move them, {format_modified(CTRL, 'drag')} to copy, click between "
-        "keys for easing"
-    )
+    else:
+        text = _("Drag keys to move them, {gesture} to copy, click between keys for easing").format(
+            gesture=format_modified(CTRL, _("drag"))
+        )
+    return text

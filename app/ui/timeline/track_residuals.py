@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from app.document import Layer, Track, misses_target
 from app.editor import Project
+from app.texts import _, ngettext
 
 
 def find_residuals(project: Project, layer: Layer, track: Track) -> Mapping[int, float]:
@@ -26,8 +27,12 @@ def describe_residual(project: Project, layer: Layer, track: Track, frame: int) 
     corrected = project.layer_runtimes[layer.id].corrected
     correction = corrected.at(corrected.clip, frame) if corrected else None
     limits = correction.limits if correction else ()
-    if len(limits) > 1:
-        why = f"the limits of {', '.join(limits[:-1])} and {limits[-1]} hold"
+    if limits:
+        text = ngettext(
+            "Misses its track by {error:.0f} px at frame {frame}; limit: {limits}",
+            "Misses its track by {error:.0f} px at frame {frame}; limits: {limits}",
+            len(limits),
+        )
     else:
-        why = f"the limit of {limits[0]} holds" if limits else "the shape's stiffness holds"
-    return f"Misses its track by {miss:.0f} px at frame {frame}: {why} it back"
+        text = _("Misses its track by {error:.0f} px at frame {frame}: the shape is too stiff")
+    return text.format(error=miss, frame=frame, limits=", ".join(map(_, limits)))

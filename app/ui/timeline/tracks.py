@@ -9,6 +9,7 @@ from app.document import Layer, Track, TrackKey, track_commands
 from app.editor import Action, KeyDrag, TrackRow, do, row_of
 from app.editor.actions import editing
 from app.editor.actions.timing import timeline_drag
+from app.texts import _, ngettext
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
@@ -19,6 +20,7 @@ from app.ui.style.widgets import (
     shorten_text,
 )
 from app.ui.timeline.keys import (
+    KEY_GESTURES,
     begin_key_drag,
     draw_key_mark,
     find_drag_origin,
@@ -61,8 +63,10 @@ def draw_expander(bands: TimelineLayout, row: LayerRow, left: float) -> list[Act
     )
     clicked = bands.button(f"fold {layer.id}", low, high)
     is_open = layer.id in bands.project.timeline.expanded_layers
-    many = f"{len(layer.tracks)} tracks" if len(layer.tracks) > 1 else "its track"
-    draw_tooltip(f"Fold {many} away" if is_open else f"Show {many}")
+    count = len(layer.tracks)
+    hide = ngettext("Hide the track", "Hide {count} tracks", count)
+    show = ngettext("Show the track", "Show {count} tracks", count)
+    draw_tooltip((hide if is_open else show).format(count=count))
     palette = bands.look.palette
     icon = icons.ICON_FA_CARET_DOWN if is_open else icons.ICON_FA_CARET_RIGHT
     top = row.middle - imgui.get_text_line_height() / 2
@@ -95,7 +99,7 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
             colour_u32(palette.accent, CHOSEN) if lane.is_chosen else colour_u32(palette.hovered)
         )
         draw_list.add_rect_filled(low, high, colour, 0.2 * em)
-    draw_tooltip("Click to choose the track: drags of its handle and keys go there then")
+    draw_tooltip(_("Click to select the track: then keys and drags of its handle go to the track"))
     switch = high.x - 2.0 * em
     with push_text_size(SMALL):
         top = lane.middle - imgui.get_text_line_height() / 2
@@ -105,7 +109,9 @@ def _draw_name(bands: TimelineLayout, lane: TrackLane) -> list[Action]:
         draw_list.add_text(ImVec2(low.x + 1.4 * em, top), colour_u32(palette.dim), icon)
         draw_list.add_text(ImVec2(low.x + 2.9 * em, top), colour, text)
     clicked = bands.button("switch", ImVec2(switch, lane.top), high)
-    draw_tooltip("Switch the track off: its keys stay" if track.enabled else "Switch the track on")
+    draw_tooltip(
+        _("Switch the track off: its keys stay") if track.enabled else _("Switch the track on")
+    )
     icon = icons.ICON_FA_TOGGLE_ON if track.enabled else icons.ICON_FA_TOGGLE_OFF
     colour = colour_u32(palette.accent if track.enabled else palette.dim)
     with push_text_size(SMALL):
@@ -126,7 +132,7 @@ def draw_track_segments(bands: TimelineLayout) -> None:
             draw_list.add_rect_filled(low, high, colour_u32(palette.accent, 0.16))
         draw_list.add_line(ImVec2(low.x, high.y), high, colour_u32(palette.line))
         colour = colour_u32(palette.text if lane.track.enabled else palette.dim, 0.35)
-        for first, last in _stretches(bands, lane.track):
+        for first, last in _active_ranges(bands, lane.track):
             half = SEGMENT_HEIGHT / 2 * em
             draw_list.add_rect_filled(
                 ImVec2(bands.x(first), lane.middle - half),
@@ -143,7 +149,7 @@ def draw_track_segments(bands: TimelineLayout) -> None:
             )
 
 
-def _stretches(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
+def _active_ranges(bands: TimelineLayout, track: Track) -> list[tuple[int, int]]:
     """Return a track's active ranges. The end of a loop splits the range in two."""
     document = bands.project.document
     first, last = track.keys[0].frame + track.delay, track.keys[-1].frame + track.delay
@@ -221,31 +227,38 @@ def _key(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> list[Action]:
 def _draw_key(
     bands: TimelineLayout, lane: TrackLane, key: TrackKey, centre: ImVec2, radius: float
 ) -> None:
-    palette, em, passing = bands.look.palette, bands.look.em, key.shown_tangent_mode
+    palette, em, tangent = bands.look.palette, bands.look.em, key.shown_tangent_mode
     row = TrackRow(lane.layer.id, lane.track.handles[0])
     is_chosen = key.frame in bands.project.selected_keys.get(row, ())
     colour = palette.text if lane.track.enabled else palette.dim
     if is_chosen:
-        draw_key_mark(passing, centre, radius + 0.2 * em, colour_u32(palette.accent, 0.35))
-    draw_key_mark(passing, centre, radius + 0.1 * em, colour_u32(palette.desk))
-    draw_key_mark(passing, centre, radius, colour_u32(palette.accent if is_chosen else colour))
+        draw_key_mark(tangent, centre, radius + 0.2 * em, colour_u32(palette.accent, 0.35))
+    draw_key_mark(tangent, centre, radius + 0.1 * em, colour_u32(palette.desk))
+    draw_key_mark(tangent, centre, radius, colour_u32(palette.accent if is_chosen else colour))
 
 
 def _draw_track_key_tooltip(bands: TimelineLayout, lane: TrackLane, key: TrackKey) -> None:
     if not begin_tooltip():
         return
     document, track = bands.project.document, lane.track
-    imgui.text_unformatted(f"Key of {format_track_name(lane.layer, track)} at frame {key.frame}")
+    imgui.text_unformatted(
+        _("Key of {track} at frame {frame}").format(
+            track=format_track_name(lane.layer, track), frame=key.frame
+        )
+    )
     if track.delay:
         imgui.same_line()
         imgui.text_disabled(
-            f"{track.delay} frames late, {format_seconds(track.delay, document.fps)}"
+            ngettext(
+                "{count} frame late, {time}", "{count} frames late, {time}", track.delay
+            ).format(count=track.delay, time=format_seconds(track.delay, document.fps))
         )
     name, hint = TANGENT_MODES[key.shown_tangent_mode]
-    imgui.text_unformatted(f"{name}: {hint[0].lower()}{hint[1:]}")
+    imgui.text_unformatted(name)
+    imgui.text_disabled(hint)
     if key.velocity is not None:
-        imgui.text_disabled("At a velocity of its own, until a passing or an easing is chosen")
-    imgui.text_disabled(
-        f"Drag to move, {format_modified(CTRL, 'drag')} to copy, right click for more"
-    )
+        imgui.text_disabled(
+            _("The key has its own velocity, until you choose a tangent or an easing")
+        )
+    imgui.text_disabled(KEY_GESTURES.format(gesture=format_modified(CTRL, _("drag"))))
     imgui.end_tooltip()

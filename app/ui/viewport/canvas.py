@@ -3,33 +3,28 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from itertools import takewhile
 
 import numpy as np
 
 from app.document import (
-    CompositeGroup,
     Layer,
     composite_layers,
     is_visible,
-    segment_time_at,
     without_foreign_clips,
 )
 from app.editor import HeatMap, LayerRuntime, Project, Session
 from app.motion import DeformMesh, DisplayedFrame
-from app.render import Ghost, Heat, Painted, Renderer, Scene, Wireframe
-from app.render.gpu.mesh import PosedMesh
+from app.render import Heat, Painted, Renderer, Scene, Wireframe
 from app.render.gpu.target import RenderTarget
 from app.ui.style.theme import PALETTES
 from app.ui.viewport.backdrop import make_backdrop
 from app.ui.viewport.cutout_overlay import mark_holes
-from app.ui.viewport.gpu_resources import GpuResources
 from app.ui.viewport.marks import clear_mark_caches, mark_all, pixel_scale, to_rgba
-from app.ui.viewport.pose_thumbnails import PosePictures
+from app.ui.viewport.picture.gpu_resources import GpuResources
+from app.ui.viewport.picture.onion_skin import count_meshes_behind, make_ghosts
+from app.ui.viewport.picture.pose_thumbnails import PosePictures
 from engine.arrays import Floats
 
-GHOST_BEFORE, GHOST_AFTER = (0.93, 0.36, 0.36), (0.30, 0.62, 0.98)
-GHOST_OPACITY = 0.38
 # One picture poses a mesh several times. The copies are numbered: 0 is the drawing, ghosts count
 # from 1, the compared method and the library's thumbnails have their own numbers.
 COMPARISON, SMALL_PICTURE = -2, -1
@@ -69,8 +64,8 @@ class Canvas:
         if project is None or project.layer_runtime.shown is None:
             self.pose_pictures.release()
             return
-        twins = [puppet.comparison for puppet in project.layer_runtimes.values()]
-        is_split = all(twin is not None and twin.shown is not None for twin in twins)
+        comparisons = [runtime.comparison for runtime in project.layer_runtimes.values()]
+        is_split = all(each is not None and each.shown is not None for each in comparisons)
         is_split &= session.cutting is None
         self._fit_targets(session.screen, 1 + is_split)
         if self.resources is None:
@@ -83,8 +78,8 @@ class Canvas:
             scene = _scene(session, project, project.layer_runtime.shown, self.resources)
             self._renderer.draw(self._targets[0], view, scene)
             if is_split:
-                twin = _comparison_scene(session, project, scene, self.resources)
-                self._renderer.draw(self._targets[1], view, twin)
+                comparison = _comparison_scene(session, project, scene, self.resources)
+                self._renderer.draw(self._targets[1], view, comparison)
             self._drawn = inputs
 
     def release(self) -> None:
@@ -115,16 +110,16 @@ class Canvas:
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all inputs of the picture. While they are equal, the picture is unchanged."""
     return (
-        *(puppet.shown for puppet in project.layer_runtimes.values()),
-        *(puppet.cut.value for puppet in project.layer_runtimes.values()),
+        *(runtime.shown for runtime in project.layer_runtimes.values()),
+        *(runtime.cut.value for runtime in project.layer_runtimes.values()),
         *(
-            puppet.comparison.shown
-            for puppet in project.layer_runtimes.values()
-            if puppet.comparison
+            runtime.comparison.shown
+            for runtime in project.layer_runtimes.values()
+            if runtime.comparison
         ),
         *(
-            puppet.store.whole
-            for puppet in project.layer_runtimes.values()
+            runtime.store.whole
+            for runtime in project.layer_runtimes.values()
             if session.overlays.onion
         ),
         project.layer_runtime.store.sampler,
@@ -172,8 +167,8 @@ def _scene(
 ) -> Scene:
     palette = PALETTES[session.preferences.theme]
     overlays = session.overlays
-    puppets = project.layer_runtimes.values()
-    drawing.release_but({mesh for puppet in puppets for mesh in _meshes(puppet)})
+    runtimes = project.layer_runtimes.values()
+    drawing.release_but({mesh for runtime in runtimes for mesh in _meshes(runtime)})
     drawing.refresh()
     if session.cutting is not None:
         scale = pixel_scale(session)
@@ -184,7 +179,7 @@ def _scene(
             meshes=drawing.cut_view().meshes(),
             discs=mark_holes(project, palette, scale) if session.cutting == "holes" else (),
         )
-    shows = {layer: puppet.shown for layer, puppet in project.layer_runtimes.items()}
+    shows = {layer: runtime.shown for layer, runtime in project.layer_runtimes.items()}
     heat = None
     if session.tint is not None:
         heat = Heat(low=-1.0, high=1.0, contours=0, strength=0.6, two_sided=True)
@@ -201,8 +196,8 @@ def _scene(
         meshes=meshes,
         heat=heat,
         wireframe=wireframe,
-        ghosts=_ghosts(session, project, drawing) if overlays.onion else (),
-        ghosts_over=_behind_ghosts(session, project, len(meshes)) if overlays.onion else 0,
+        ghosts=make_ghosts(session, project, drawing) if overlays.onion else (),
+        ghosts_over=count_meshes_behind(session, project, len(meshes)) if overlays.onion else 0,
         lines=lines,
         discs=discs,
     )
@@ -213,15 +208,15 @@ def _comparison_scene(
 ) -> Scene:
     """Return the scene by the compared method, without ghosts."""
     shows = {
-        layer: puppet.comparison.shown
-        for layer, puppet in project.layer_runtimes.items()
-        if puppet.comparison
+        layer: runtime.comparison.shown
+        for layer, runtime in project.layer_runtimes.items()
+        if runtime.comparison
     }
     meshes = _posed(session, project, shows, drawing, number=COMPARISON)
-    twin = replace(scene, meshes=meshes, ghosts=())
+    comparison = replace(scene, meshes=meshes, ghosts=())
     # Handles are at the positions of the drawing's own method. Beside it they would be wrong.
     is_beside = session.compare_view is not None and session.compare_view.is_side_by_side
-    return replace(twin, lines=(), discs=()) if is_beside else twin
+    return replace(comparison, lines=(), discs=()) if is_beside else comparison
 
 
 def _posed(
@@ -266,85 +261,9 @@ def _tinted(
     return shown.mesh.order.depths(shown.clip, shown.frame)
 
 
-def _meshes(puppet: LayerRuntime) -> set[DeformMesh]:
+def _meshes(runtime: LayerRuntime) -> set[DeformMesh]:
     """Return the meshes of a layer that are shown now or may be shown soon."""
-    meshes = {store.mesh for store in (puppet.store, puppet.fine) if store is not None}
-    twin = puppet.comparison
-    shows = (puppet.shown, None if twin is None else twin.shown)
+    meshes = {store.mesh for store in (runtime.store, runtime.fine) if store is not None}
+    comparison = runtime.comparison
+    shows = (runtime.shown, None if comparison is None else comparison.shown)
     return meshes | {shown.mesh for shown in shows if shown is not None}
-
-
-def _ghosts(session: Session, project: Project, drawing: GpuResources) -> tuple[Ghost, ...]:
-    """Return the onion skins of all layers that are visible then and look different."""
-    if project.playhead.since is not None or project.layer_runtime.shown is None:
-        return ()
-    choice, now = session.preferences, project.layer_runtime.shown.frame
-    ghosts = []
-    sides = ((-1, choice.ghosts_before, GHOST_BEFORE), (1, choice.ghosts_after, GHOST_AFTER))
-    number = 0
-    for direction, count, tint in sides:
-        for step in range(count, 0, -1):
-            number += 1
-            at = now + direction * step * choice.ghost_step
-            poses = {
-                layer.id: _ghost(project, drawing, layer, now, at, number)
-                for layer in project.document.layers
-            }
-            seen = {layer: pose for layer, pose in poses.items() if pose is not None}
-            if seen:
-                meshes = composite_layers(project.document, seen, project.document.loop_frame(at))
-                ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
-    return tuple(ghosts)
-
-
-def _ghost(
-    project: Project, drawing: GpuResources, layer: Layer, now: int, at: int, number: int
-) -> PosedMesh | None:
-    """Return a layer at another frame; None if it looks the same or is not visible there.
-
-    If a parent layer has just moved, the ghost is omitted until its place is computed.
-    """
-    document, puppet = project.document, project.layer_runtimes[layer.id]
-    # During a drag, in-betweens arrive later. Until then the last ones stay.
-    known = puppet.store.whole
-    if known is None or (at not in known.frames and not known.loop):
-        return None
-    placed = project.placed_at(layer.id, [now, at])
-    if project.solo and layer.id not in project.solo:
-        return None
-    was_seen, is_seen = (is_visible(document, layer, document.loop_frame(f)) for f in (now, at))
-    stays = (
-        segment_time_at(known, at) == segment_time_at(known, now)
-        and placed
-        and placed[0] == placed[1]
-    )
-    if placed is None or not is_seen or (was_seen and stays):
-        return None
-    correction = puppet.corrected.at(known, at) if puppet.corrected else None
-    find = partial(puppet.store.vertices, known, at, correction=correction)
-    of = puppet.store.mesh, known, at, correction
-    vertices = drawing.ghost(layer.id, number, of, find)
-    if vertices is None:
-        return None
-    drawn = drawing.drawn_mesh(layer.id, puppet.store.mesh, number)
-    return drawn.pose(vertices, placement=placed[1])
-
-
-def _behind_ghosts(session: Session, project: Project, meshes: int) -> int:
-    """Return how many meshes lie behind the ghosts: all, or only a background's."""
-    if session.preferences.ghosts_in_front:
-        return meshes
-    document, shows = project.document, project.layer_runtimes
-    frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
-    still = {
-        each.id: each.still and not each.transform_keys
-        for each in document.layers
-        if (shown := shows[each.id].shown) is not None
-        and is_visible(document, each, shown.frame)
-        and (not project.solo or each.id in project.solo)
-    }
-    return sum(1 for _ in takewhile(_is_still, composite_layers(document, still, frame)))
-
-
-def _is_still(part: bool | CompositeGroup[bool]) -> bool:  # noqa: FBT001 - of a composition
-    return all(map(_is_still, part.parts)) if isinstance(part, CompositeGroup) else part

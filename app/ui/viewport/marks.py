@@ -63,11 +63,11 @@ def mark_all(
 
 
 def _handles(session: Session, project: Project, shown: DisplayedFrame) -> list[HandleMark]:
-    layer, wishes = shown.clip.layer, find_off_target(project, shown)
+    layer, targets = shown.clip.layer, find_off_target(project, shown)
     return [
         HandleMark(
             place=_on(shown, place),
-            target=_on(shown, wishes[handle.id]) if handle.id in wishes else None,
+            target=_on(shown, targets[handle.id]) if handle.id in targets else None,
             anchor=handle.position == layer.anchor,
             selected=handle.id in project.selected_handles,
             hovered=handle.id == session.hovered,
@@ -185,9 +185,9 @@ def _others(project: Project, scale: float) -> tuple[Disc, ...]:
     """Return faint marks of the other layers' handles."""
     return tuple(
         Disc(centre=complex(place), radius=FAINT * scale, fill=(1.0, 1.0, 1.0, 0.35))
-        for layer, puppet in project.layer_runtimes.items()
-        if layer != project.active and puppet.shown is not None
-        for place in puppet.shown.placement.apply(puppet.shown.handle_positions)
+        for layer, runtime in project.layer_runtimes.items()
+        if layer != project.active and runtime.shown is not None
+        for place in runtime.shown.placement.apply(runtime.shown.handle_positions)
     )
 
 

@@ -67,11 +67,11 @@ def _places(project: Project, track: Track, frames: list[int]) -> list[tuple[int
         return []
     if not track.is_scene_space and project.placed_at(project.active, frames) is None:
         return []
-    wished = [track_target(project, track, frame) for frame in frames]
+    targets = [track_target(project, track, frame) for frame in frames]
     # A scene-space track is independent of its layer's placement.
     placements = project.placements(frames, shown.placement)
     return [
         (frame, placement.apply(np.array([place])))
-        for frame, place, placement in zip(frames, wished, placements, strict=True)
+        for frame, place, placement in zip(frames, targets, placements, strict=True)
         if place is not None
     ]

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 from app.document import Baseline, Variant
 from app.editor import Action, Project, Session, do
 from app.editor.actions import viewing
+from app.texts import _
 from app.ui.methods import METHODS
 from app.ui.style.drawing import draw_centred_text, draw_knob, outline_strokes
 from app.ui.style.theme import Look, colour_u32
@@ -44,7 +45,7 @@ def divide_viewport(session: Session, corner: ImVec2, room: ImVec2) -> SplitLayo
     return SplitLayout(corner, room, corner.x + split.divider * room.x)
 
 
-def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
+def draw_split_pictures(parts: SplitLayout, own: int, comparison: int | None) -> None:
     """Show the drawing, and right of the divider the compared method's picture."""
     draw_list = imgui.get_window_draw_list()
     corner, room = parts.corner, parts.room
@@ -56,13 +57,13 @@ def draw_split_pictures(parts: SplitLayout, own: int, twin: int | None) -> None:
         ImVec2(0, 1),
         ImVec2(1, 0),
     )
-    if twin is None:
+    if comparison is None:
         return
     is_beside = parts.divider >= corner.x + room.x
     left = 0.0 if is_beside else (parts.divider - corner.x) / room.x
     end = parts.divider + room.x if is_beside else corner.x + room.x
     draw_list.add_image(
-        imgui.ImTextureRef(twin),
+        imgui.ImTextureRef(comparison),
         ImVec2(parts.divider, corner.y),
         ImVec2(end, bottom),
         ImVec2(left, 1),
@@ -91,7 +92,7 @@ def draw_divider(session: Session, look: Look, parts: SplitLayout, room: float) 
         if imgui.is_item_active() and imgui.get_io().mouse_delta.x:
             place = (imgui.get_mouse_pos().x - parts.corner.x) / room
             actions.append(do(viewing.move_comparison_divider, place))
-        draw_tooltip("Drag to compare")
+        draw_tooltip(_("Drag to compare"))
     palette = look.palette
     colour = palette.accent if is_hot else palette.text
     for tone, width in outline_strokes(look, colour_u32(colour), LINE):

@@ -14,6 +14,7 @@ from app.editor.actions.posing.pose_drag import free_rotation
 from app.editor.layering.layer_selection import reset_tree_rows
 from app.editor.tools import tool_pointer
 from app.editor.tools.tool import PointerHit
+from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.keys import ALT, CTRL, format_modified
 from app.ui.shortcuts.widgets import draw_action_item
@@ -52,7 +53,7 @@ CANVAS = (
     ("fit", "fit motion", "actual size"),
     ("handles", "outline", "onion skin"),
 )
-DEPTHS = {"In front": 1.0, "In its usual order": 0.0, "Behind": -1.0}
+DEPTHS = {_("In front"): 1.0, _("In its usual order"): 0.0, _("Behind"): -1.0}
 
 
 def draw_viewport_pictures(
@@ -125,7 +126,7 @@ def draw_viewport_panel(
     draw_cuts(look, screen)
     if on_canvas or session.active_tool is not None:
         draw_brush_ring(session, look, imgui.get_mouse_pos(), screen.scale)
-    return actions + draw_mode_badge(look, "Cutting out", corner, parts.room)
+    return actions + draw_mode_badge(look, _("Cutting out"), corner, parts.room)
 
 
 def _fit(session: Session, room: ImVec2) -> list[Action]:
@@ -239,30 +240,31 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     chosen = screen.project.selected_handles | {identity}
     target = screen.shown.pose.targets.get(identity) if screen.shown.pose else None
     item = imgui.internal.menu_item_ex  # like menu_item_simple, with a column for icons
-    if item("Delete", icons.ICON_FA_TRASH, format_modified(ALT, "click")):
+    if item(_("Delete"), icons.ICON_FA_TRASH, format_modified(ALT, _("click"))):
         actions.append(do(remove_handles, chosen))
     actions += draw_action_item(session, "pin here") + draw_action_item(session, "lock")
     actions += draw_action_item(session, "key handle")
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
-    label = "Automatic anchor" if handle.position == layer.anchor else "Make it the anchor"
-    if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, "click")):
+    is_anchor = handle.position == layer.anchor
+    label = _("Automatic anchor") if is_anchor else _("Make it the anchor")
+    if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
         actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
-    if item("Let it turn freely", icons.ICON_FA_ROTATE, enabled=is_turned):
+    if item(_("Let it turn freely"), icons.ICON_FA_ROTATE, enabled=is_turned):
         actions.append(do(free_rotation, identity))
     imgui.end_popup()
     return actions
 
 
 def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
-    if not imgui.begin_menu("Hold"):
+    if not imgui.begin_menu(_("Hold")):
         return []
     weigh = handle_commands.set_handle_weight
     actions = [
         do(editing.edit_layer, weigh, chosen, weight)
         for word, weight in WEIGHT_PRESETS.items()
-        if imgui.menu_item(word, "", handle.weight == weight)[0]
+        if imgui.menu_item(_(word), "", handle.weight == weight)[0]
     ]
     imgui.end_menu()
     return actions
@@ -270,7 +272,7 @@ def _hold(handle: Handle, chosen: frozenset[int]) -> list[Action]:
 
 def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Action]:
     """Draw the handle's depth: in front or behind where the drawing overlaps itself."""
-    if not imgui.begin_menu("Depth"):
+    if not imgui.begin_menu(_("Depth")):
         return []
     front = editing.depth_at_playhead(session, screen.project, handle)
     actions = [

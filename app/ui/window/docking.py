@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
+from app.texts import _
 from app.ui.panel import Panel, is_in_front
 from app.ui.style.theme import FONT_SIZE
 
@@ -63,7 +64,7 @@ class Docking:
                 continue
             flags = window.dc.dock_tab_item_status_flags
             if flags & imgui.internal.ItemStatusFlags_.hovered_rect:
-                imgui.set_tooltip(panel.title)
+                imgui.set_tooltip(_(panel.title))
 
     def _windows(self) -> list[imgui.internal.Window | None]:
         return [imgui.internal.find_window_by_name(name) for name in self._names]
@@ -74,8 +75,8 @@ class Docking:
             # The node is new, or a person moved its edge. A person may exceed the largest share.
             before = self._scale if node.id_ in self._given else scale
             self._requests[node.id_] = _SizeRequest(size / before, max(MOST[axis], size / room))
-        wish = self._requests[node.id_]
-        wanted = min(wish.size * scale, wish.most * room)
+        request = self._requests[node.id_]
+        wanted = min(request.size * scale, request.most * room)
         if abs(wanted - size) > 1.0:
             sizes = [node.size_ref.x, node.size_ref.y]
             sizes[axis] = wanted

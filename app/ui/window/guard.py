@@ -7,6 +7,7 @@ from typing import Literal
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx, implot
 
 from app.editor import Action, Session, do, error_reports
+from app.texts import _
 from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, small_text
 
@@ -20,7 +21,8 @@ ALONE = (
     | imgui.WindowFlags_.no_docking
     | imgui.WindowFlags_.no_saved_settings
 )
-TRY_AGAIN, COPY, REPORT, CLOSE, DETAILS = "Try again", "Copy", "Report…", "Close", "Details"
+TRY_AGAIN, COPY, REPORT = _("Try again"), _("Copy"), _("Report…")
+CLOSE, DETAILS = _("Close"), _("Details")
 
 
 def allow_recovery() -> None:
@@ -34,7 +36,9 @@ def allow_recovery() -> None:
 
 def format_failure(name: str) -> str:
     """The title of the notice about a failed part."""
-    return f"{name} cannot be shown; the rest works, and your work can be saved."
+    return _("{part} cannot be shown. The rest works, and your work can be saved.").format(
+        part=name
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +98,7 @@ class WindowPart:
 
     def _show_notice(self, failure: _Failure, look: Look) -> list[Action]:
         actions: list[Action] = []
-        width, popup = WIDTH * look.em, f"Failure of {self.name}"
+        width, popup = WIDTH * look.em, _("Failure of {part}").format(part=self.name)
         match self.place:
             case "panel":
                 with imgui_ctx.push_style_color(imgui.Col_.child_bg, look.palette.panel):

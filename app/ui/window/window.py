@@ -1,19 +1,16 @@
 """The window: the session, its OpenGL objects, and the main loop."""
 
-import io
 import os
 import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 from imgui_bundle import (  # before glfw: it brings the library itself
     glfw_utils,
     hello_imgui,
     icons_fontawesome_6 as icons,
 )
-from PIL import Image
 
 from app.editor.layering.pictures import drop_files
 from app.ui.panels.layers.tab import draw_layers_panel
@@ -27,7 +24,8 @@ from app.editor.actions import exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu.context import describe_graphics, is_software
-from app.storage import app_icon, sample_images
+from app.storage import sample_images
+from app.texts import N_, _, message_of
 from app.ui.panel import Panel
 from app.ui.panels import deform, distortion, export, handle, poses
 from app.ui.panels.layer_setup import cut_out, domain, material
@@ -36,20 +34,19 @@ from app.ui.timeline import timeline
 from app.ui.viewport import viewport
 from app.ui.viewport.canvas import Canvas
 from app.ui.viewport.split_view import SplitTextures
-from app.ui.window.drag_and_drop import accept_files
+from app.ui.window.desktop import name_application, show_icon
+from app.ui.window.events.drag_and_drop import accept_files
+from app.ui.window.events.input_queue import InputQueue
+from app.ui.window.events.modifiers import release_stuck_modifiers
 from app.ui.window.exporter import Exporter
 from app.ui.window.guard import FrameStep
-from app.ui.window.input_queue import InputQueue
 from app.ui.window.memory import FreeMemory
-from app.ui.window.modifiers import release_stuck_modifiers
 from app.ui.window.title import NAME, window_title
 from app.ui.window.window_frame import WindowFrame
 from engine.arrays import Bytes
 
 SIZE = (1280, 800)
-APPLICATION = "lissom"  # the name of the program's desktop entry
 PAUSE = 0.1  # seconds between frames that only update the time of a job
-ICON_SIDES = (16, 32, 64)  # pixels
 # Environment variables that name the display of X11 or Wayland.
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 
@@ -57,26 +54,6 @@ DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
 def has_display() -> bool:
     """Return whether the environment names a screen for the window."""
     return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
-
-
-def _show_icon() -> None:
-    """Set the window's icon, on systems where a program provides it."""
-    if glfw.get_platform() not in {glfw.PLATFORM_X11, glfw.PLATFORM_WIN32}:
-        return
-    with Image.open(io.BytesIO(app_icon())) as icon:
-        pictures = [np.asarray(icon.resize((side, side))) for side in ICON_SIDES]
-    # As lists, because glfw reads them much faster than arrays.
-    images = [(*picture.shape[:2], picture.tolist()) for picture in pictures]
-    window = glfw_utils.glfw_window_hello_imgui()
-    glfw.set_window_icon(window, len(images), images)  # type: ignore[arg-type]  # tuples of theirs
-
-
-def _name_application() -> None:
-    """Set the window's application name, so that the desktop finds its menu entry."""
-    glfw.init()
-    glfw.window_hint_string(glfw.WAYLAND_APP_ID, APPLICATION)
-    glfw.window_hint_string(glfw.X11_INSTANCE_NAME, APPLICATION)
-    glfw.window_hint_string(glfw.X11_CLASS_NAME, NAME)
 
 
 class Window:
@@ -135,7 +112,7 @@ class Window:
         is_over : callable
             Asked once a frame. If true, the window closes without a question.
         farewell : callable
-            Called before all objects are released, because the release may hang or crash. Also
+            Called before all objects are released, because the release may block or crash. Also
             called if an exception ends the window; then nothing is released.
 
         Raises
@@ -147,7 +124,7 @@ class Window:
         params.app_window_params.window_title = self._title
         calls = params.callbacks
         calls.enqueue_post_init(self._accept_files)
-        calls.enqueue_post_init(_show_icon)
+        calls.enqueue_post_init(show_icon)
         calls.pre_new_frame = hello_imgui.sequence_functions(self._rename, calls.pre_new_frame)
         calls.pre_new_frame = hello_imgui.sequence_functions(
             release_stuck_modifiers, calls.pre_new_frame
@@ -158,14 +135,16 @@ class Window:
         params.ini_disable = params.ini_filename != ini  # ImGui writes only UTF-8 names
         params.app_window_params.window_geometry.size = SIZE
         params.app_window_params.restore_previous_geometry = True
-        _name_application()
+        name_application()
         try:
             hello_imgui.manual_render.setup_from_runner_params(params)
         except RuntimeError as error:
             raise LissomError(
-                f"the window cannot be opened ({error}): it needs a display with OpenGL 3.3; "
-                "'lissom doctor' tells what there is, LIBGL_ALWAYS_SOFTWARE=1 draws without a "
-                "graphics card, and the command line needs no display"
+                _(
+                    "The window cannot be opened ({error}). It needs a display with OpenGL 3.3. "
+                    "'lissom doctor' checks the graphics, LIBGL_ALWAYS_SOFTWARE=1 draws without a "
+                    "graphics card, and the command line needs no display."
+                ).format(error=error)
             ) from error
         self._is_open = True
         self.session.jobs.wake = self.wake
@@ -215,43 +194,42 @@ class Window:
         """Report that OpenGL fails, as after a driver reset, and save a recovery copy at once."""
         session = self.session
         project = session.project
-        kept = ""
+        sentences = [_("The picture cannot be drawn: {error}.").format(error=error)]
         if project is not None and saving.has_unsaved_changes(project):
-            kept = " Unsaved work was kept."
             try:
                 saving.autosave_now(session)
+                sentences.append(_("The unsaved work was kept."))
             except EXPECTED_ERRORS as reason:
-                kept = f" Unsaved work could not be kept ({reason})."
-        error_reports.report_unexpected_error(
-            session,
-            f"The picture cannot be drawn: {error}.{kept} If the picture does not come back, save "
-            "and start Lissom again.",
-            error,
-            topic="drawing",
-        )
+                sentences.append(
+                    _("The unsaved work could not be kept ({reason}).").format(
+                        reason=message_of(reason)
+                    )
+                )
+        sentences.append(_("If the picture does not come back, save and start Lissom again."))
+        error_reports.report_unexpected_error(session, " ".join(sentences), error, topic="drawing")
 
     def _panels(self) -> list[Panel]:
         draw_layers = partial(draw_layers_panel, pictures=self._layer_picture)
         draw_poses = partial(poses.draw_poses_panel, pictures=self._pose_picture)
         return [
             Panel(
-                "Viewport",
+                N_("Viewport"),
                 icons.ICON_FA_IMAGE,
                 self._draw_viewport,
                 place="MainDockSpace",
                 draw_background=self._draw_ground,
             ),
-            Panel("Timeline", icons.ICON_FA_FILM, timeline.draw_timeline_panel, place="bottom"),
-            Panel("Handle", icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
-            Panel("Layers", icons.ICON_FA_LAYER_GROUP, draw_layers),
-            Panel("Poses", icons.ICON_FA_PERSON_RUNNING, draw_poses),
-            Panel("Motion", icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
-            Panel("Deform", icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
-            Panel("Material", icons.ICON_FA_CUBE, material.draw_material_panel),
-            Panel("Distortion", icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
-            Panel("Mesh", icons.ICON_FA_SHAPES, domain.draw_domain_panel),
-            Panel("Cut-out", icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
-            Panel("Export", icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
+            Panel(N_("Timeline"), icons.ICON_FA_FILM, timeline.draw_timeline_panel, place="bottom"),
+            Panel(N_("Handle"), icons.ICON_FA_CIRCLE_DOT, handle.draw_handle_panel),
+            Panel(N_("Layers"), icons.ICON_FA_LAYER_GROUP, draw_layers),
+            Panel(N_("Poses"), icons.ICON_FA_PERSON_RUNNING, draw_poses),
+            Panel(N_("Motion"), icons.ICON_FA_PERSON_WALKING, draw_motion_panel),
+            Panel(N_("Deform"), icons.ICON_FA_SLIDERS, deform.draw_deform_panel),
+            Panel(N_("Material"), icons.ICON_FA_CUBE, material.draw_material_panel),
+            Panel(N_("Distortion"), icons.ICON_FA_CHART_LINE, distortion.draw_distortion_panel),
+            Panel(N_("Mesh"), icons.ICON_FA_SHAPES, domain.draw_domain_panel),
+            Panel(N_("Cut-out"), icons.ICON_FA_SCISSORS, cut_out.draw_cut_out_panel),
+            Panel(N_("Export"), icons.ICON_FA_FILE_EXPORT, export.draw_export_panel),
         ]
 
     def _draw_ground(self, session: Session, _: Look, project: Project) -> list[Action]:

@@ -4,11 +4,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from imgui_bundle import ImVec2, hello_imgui, imgui, implot
+from imgui_bundle import ImVec2, hello_imgui, imgui
 
 from app.editor import (
     Action,
-    FileDialog,
     Project,
     Session,
     as_sentence,
@@ -22,6 +21,7 @@ from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer
 from app.errors import EXPECTED_ERRORS
 from app.render import Thumbnail
+from app.texts import _, message_of
 from app.ui import toasts, welcome
 from app.ui.bars.icons import draw_icon_bar
 from app.ui.bars.menus import draw_main_menu
@@ -30,18 +30,17 @@ from app.ui.dialogs.dialogs import Dialogs
 from app.ui.panel import Panel, bring_to_front
 from app.ui.shortcuts.key_input import collect_key_actions
 from app.ui.shortcuts.table import MENUS
-from app.ui.style.theme import FONT_SIZE, PALETTES, Look, apply_theme, interface_scale, load_fonts
+from app.ui.style.theme import Look, interface_scale
+from app.ui.window.appearance import Appearance
 from app.ui.window.docking import Docking
-from app.ui.window.guard import FrameStep, WindowPart, allow_recovery
+from app.ui.window.guard import FrameStep, WindowPart
+from app.ui.window.idling import AWAKE, IDLE_FPS, FramePace
 from app.ui.window.tutorial.card import Callout
 
 # A saved layout with another number is ignored, because its panels have other names.
 LAYOUT = 1
-# Input and running jobs wake the window at once.
-IDLE_FPS = 0.2
-AWAKE = 0.5  # seconds of full frame rate after that, for its consequences
-REPEATS = 2  # frames after which further frames would show nothing new
 LEFT = imgui.MouseButton_.left
+MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The icon bar")
 # Actions that follow automatically in each frame, and not from the person.
 UNLOGGED = {
     dismiss_toast,
@@ -68,8 +67,7 @@ class WindowFrame:
         self.session = session
         self._panels = panels
         self._docking = Docking(panels)
-        self._bold: imgui.ImFont | None = None
-        self._themed: tuple[str, float] | None = None
+        self._appearance = Appearance(session)
         self._dialogs = Dialogs()
         self.callout = Callout()
         # Rectangles of items in this frame, and in the frame before.
@@ -77,40 +75,37 @@ class WindowFrame:
         self._seen: dict[str, tuple[ImVec2, ImVec2]] = {}
         self._actions: list[Action] = []
         self._asked: list[Action] = []
-        self._awake_until = 0.0
-        self._idle_frames = 0
+        self._pace = FramePace()
         previews = welcome.Previews(thumbnail, moments)
         over = (
             # Hello ImGui draws the tabs themselves.
-            WindowPart("The names of the tabs", self._draw_tabs, place="window"),
-            WindowPart("The welcome view", partial(_welcome, previews=previews), place="window"),
-            WindowPart("The guide", self._draw_guide, place="window"),
+            WindowPart(_("The names of the tabs"), self._draw_tabs, place="window"),
+            WindowPart(_("The welcome view"), partial(_welcome, previews=previews), place="window"),
+            WindowPart(_("The guide"), self._draw_guide, place="window"),
             WindowPart(
-                "The dialog",
+                _("The dialog"),
                 partial(self._dialogs.draw, thumbnail=thumbnail),
                 place="window",
                 dismissal=do(close_dialog),
             ),
-            WindowPart("The messages", toasts.draw_toasts, place="window"),
+            WindowPart(_("The messages"), toasts.draw_toasts, place="window"),
         )
         bars_around = (
-            WindowPart("The menu bar", self._draw_menus, place="bar"),
-            WindowPart("The status bar", draw_status_bar, place="bar"),
-            WindowPart("The icon bar", _with_project(draw_icon_bar), place="bar"),
+            WindowPart(MENU_BAR, self._draw_menus, place="bar"),
+            WindowPart(STATUS_BAR, draw_status_bar, place="bar"),
+            WindowPart(ICON_BAR, _with_project(draw_icon_bar), place="bar"),
         )
         menus = [
             WindowPart(
-                f"The menu {title}",
+                _name_menu(title),
                 partial(draw_main_menu, title=title, panels=panels),
                 place="menu",
             )
             for title in MENUS
         ]
-        docked = [
-            WindowPart(f"The panel {each.title}", _with_project(each.draw)) for each in panels
-        ]
+        docked = [WindowPart(_name_panel(each), _with_project(each.draw)) for each in panels]
         grounds = [
-            WindowPart(f"The picture in {each.title}", _with_project(each.draw_background))
+            WindowPart(_name_picture(each), _with_project(each.draw_background))
             for each in panels
             if each.draw_background is not None
         ]
@@ -139,19 +134,19 @@ class WindowFrame:
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         params.docking_params = self._layout()
         calls = params.callbacks
-        calls.load_additional_fonts = self._load_fonts
-        calls.setup_imgui_config = self._configure
-        calls.setup_imgui_style = self._apply_theme
+        calls.load_additional_fonts = self._appearance.load_fonts
+        calls.setup_imgui_config = self._appearance.configure
+        calls.setup_imgui_style = self._appearance.apply_theme
         calls.pre_new_frame = partial(self.run_guarded, self._begin_frame)
-        calls.show_menus = partial(self._ask, "The menu bar")
-        calls.show_status = partial(self._ask, "The status bar")
+        calls.show_menus = partial(self._ask, MENU_BAR)
+        calls.show_status = partial(self._ask, STATUS_BAR)
         calls.show_gui = self._draw_over_panels
         calls.before_imgui_render = self._apply_actions
         calls.confirm_exit = self._may_exit
         options = hello_imgui.EdgeToolbarOptions()
         options.size_em = 2.7
         options.window_padding_em = ImVec2(0.35, 0.5)
-        icons = partial(self._ask, "The icon bar")
+        icons = partial(self._ask, ICON_BAR)
         calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.left, icons, options)
         params.fps_idling.fps_idle = IDLE_FPS
         params.fps_idling.time_active_after_last_event = AWAKE
@@ -164,7 +159,7 @@ class WindowFrame:
     @property
     def awaits_worker(self) -> bool:
         """Whether further frames would repeat the shown one and slow down the worker."""
-        return self._idle_frames >= REPEATS
+        return self._pace.awaits_worker
 
     def release(self) -> None:
         """Close the system's dialog."""
@@ -179,10 +174,10 @@ class WindowFrame:
 
     def _report_error(self, error: Exception) -> None:
         if isinstance(error, EXPECTED_ERRORS):
-            self.session.show_notice(as_sentence(str(error)), tone="error")
+            self.session.show_notice(as_sentence(message_of(error)), tone="error")
         else:
             error_reports.report_unexpected_error(
-                self.session, f"That did not work: {error}", error
+                self.session, _("That did not work: {error}").format(error=error), error
             )
 
     def _step(self, run: Callable[[Session], None]) -> FrameStep:
@@ -190,15 +185,7 @@ class WindowFrame:
 
     @property
     def look(self) -> Look:
-        if self._bold is None:
-            raise RuntimeError("the window has no fonts before its first frame")
-        preferences = self.session.preferences
-        return Look(
-            palette=PALETTES[preferences.theme],
-            bold=self._bold,
-            em=imgui.get_font_size() or FONT_SIZE * interface_scale(preferences.scale),
-            places=self._places,
-        )
+        return self._appearance.look(self._places)
 
     def _layout(self) -> hello_imgui.DockingParams:
         layout = hello_imgui.DockingParams()
@@ -220,17 +207,17 @@ class WindowFrame:
 
     def _draw_panel(self, panel: Panel) -> None:
         if panel.draw_background is not None:
-            self._ask(f"The picture in {panel.title}")
-        self._ask(f"The panel {panel.title}")
+            self._ask(_name_picture(panel))
+        self._ask(_name_panel(panel))
 
     def _ask(self, name: str) -> None:
         """Draw a part, and collect its actions."""
         self._actions += self.parts[name].draw_guarded(self.session, self.look)
 
-    def _draw_menus(self, *_: object) -> list[Action]:
+    def _draw_menus(self, *_rest: object) -> list[Action]:
         for title in MENUS:
-            if imgui.begin_menu(title):
-                self._ask(f"The menu {title}")
+            if imgui.begin_menu(_(title)):
+                self._ask(_name_menu(title))
                 imgui.end_menu()
         return []
 
@@ -244,46 +231,17 @@ class WindowFrame:
     def _collect_key_actions(self) -> None:
         self._actions += collect_key_actions(self.session)
 
-    def _load_fonts(self) -> None:
-        self._bold = load_fonts()
-
-    def _configure(self) -> None:
-        io = imgui.get_io()
-        io.config_flags |= imgui.ConfigFlags_.docking_enable
-        io.config_windows_move_from_title_bar_only = True
-        # One click on a number edits it. Then typed keys are input and not shortcuts.
-        io.config_drag_click_to_input_text = True
-        allow_recovery()
-        implot.create_context()
-
-    def _apply_theme(self) -> None:
-        preferences = self.session.preferences
-        self._themed = self._theme
-        palette = PALETTES[preferences.theme]
-        apply_theme(palette, preferences.scale)
-        hello_imgui.get_runner_params().imgui_window_params.background_color = palette.panel
-
-    @property
-    def _theme(self) -> tuple[str, float]:
-        """The inputs of the style: the theme, and the interface scale on this screen."""
-        preferences = self.session.preferences
-        return preferences.theme, interface_scale(preferences.scale)
-
     def _begin_frame(self) -> None:
         session = self.session
         self._seen, self._places = self._places, {}
-        if self._themed != self._theme:
-            self._apply_theme()
+        self._appearance.begin_frame()
         self._docking.begin_frame(interface_scale(session.preferences.scale))
         # The tabs that show these set them again in every frame.
         session.export_frame = session.pointed_layer = None
         playback.stop_playback_at_end(session)
         # Before the panels, which read the playhead's frame.
         self._follow.run_guarded(session)
-        if _is_busy(session):
-            self._awake_until = session.clock() + AWAKE
-        if session.clock() < self._awake_until:
-            hello_imgui.request_refresh()
+        self._pace.begin_frame(session)
 
     def _draw_over_panels(self) -> None:
         self.run_guarded(self._collect_key_actions)
@@ -308,7 +266,7 @@ class WindowFrame:
         self.run_guarded(self.session.jobs.deliver)
         for step in self._update_steps:
             step.run_guarded(self.session)
-        self._idle_frames = self._idle_frames + 1 if _awaits_in_between(self.session) else 0
+        self._pace.end_frame(self.session)
         if self.session.is_quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
 
@@ -316,6 +274,18 @@ class WindowFrame:
         # The close button of the window. The answer follows as an action.
         self._actions.append(do(saving.request_quit))
         return False
+
+
+def _name_menu(title: str) -> str:
+    return _("The menu {menu}").format(menu=_(title))
+
+
+def _name_panel(panel: Panel) -> str:
+    return _("The panel {panel}").format(panel=_(panel.title))
+
+
+def _name_picture(panel: Panel) -> str:
+    return _("The picture in {panel}").format(panel=_(panel.title))
 
 
 def _with_project(
@@ -331,26 +301,3 @@ def _with_project(
 
 def _welcome(session: Session, look: Look, previews: welcome.Previews) -> list[Action]:
     return [] if session.project else welcome.draw_welcome(session, look, pictures=previews)
-
-
-def _is_busy(session: Session) -> bool:
-    """Return whether something changes without input."""
-    project = session.project
-    is_moving = project is not None and project.playhead.since is not None
-    # The system's dialog has its own input. Its answer is polled.
-    asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
-    is_working = bool(session.jobs.kinds) or session.export is not None
-    is_working |= project is not None and bool(project.stale or project.afterwards)
-    return is_moving or is_working or asks_system or bool(session.toasts)
-
-
-def _awaits_in_between(session: Session) -> bool:
-    """Return whether a placeholder stands for an in-between, and nothing else is active."""
-    project = session.project
-    if project is None or project.playhead.since is not None or session.active_tool is not None:
-        return False
-    if session.export is not None or session.toasts or session.dialog is not None:
-        return False
-    shows = [puppet.shown for puppet in project.layer_runtimes.values()]
-    awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
-    return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)

@@ -196,7 +196,7 @@ def test_window_is_an_error_in_words_when_its_display_is_missing(tmp_path):
         check=False,
     )
     assert done.returncode == 2
-    assert "lissom: error: the window cannot be opened" in done.stderr
+    assert "lissom: error: The window cannot be opened" in done.stderr
     assert "Traceback" not in done.stderr
 
 

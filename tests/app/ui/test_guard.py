@@ -82,7 +82,7 @@ def parts(window, capfd):
 
 
 @pytest.fixture
-def told(monkeypatch):
+def reported(monkeypatch):
     """The texts that the window writes, of all frames since it was cleared."""
     texts = []
     write = imgui.text_unformatted
@@ -97,12 +97,12 @@ def told(monkeypatch):
 
 @pytest.mark.usefixtures("bar")
 @pytest.mark.parametrize("name", ["The panel Timeline", "The panel Viewport", "The panel Layers"])
-def test_failing_panel_shows_a_notice_and_is_asked_once(window, parts, told, name):
+def test_failing_panel_shows_a_notice_and_is_asked_once(window, parts, reported, name):
     window.show_tab(name.removeprefix("The panel "))
     parts[name].draw = broken = Broken()
     window.frames(FRAMES)
     assert broken.asked == 1
-    assert format_failure(name) in told
+    assert format_failure(name) in reported
     assert "a bug" in parts[name].failure.trace
     (toast,) = window.session.toasts
     assert toast.text == format_failure(name)
@@ -237,7 +237,7 @@ def test_failing_keys_take_nothing_along(window, parts, monkeypatch):
 
 
 @pytest.mark.usefixtures("bar")
-def test_failing_upkeep_rests_until_something_changes(window, monkeypatch):
+def test_failing_step_rests_until_something_changes(window, monkeypatch):
     broken = Broken()
     monkeypatch.setattr(window.program.shell, "_update_steps", [FrameStep(broken, lambda _: None)])
     window.frames(FRAMES)

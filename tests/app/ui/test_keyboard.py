@@ -10,6 +10,7 @@ from app.editor.actions import viewing
 from app.editor.actions.viewing import show_dialog
 from app.storage.assets import sample_images
 from app.ui.panel import is_in_front
+from app.ui.shortcuts import keys as shortcut_keys
 from app.ui.shortcuts.keys import format_chord, format_modified, parse_chords
 from app.ui.shortcuts.table import BINDINGS, MENUS
 
@@ -137,6 +138,13 @@ def test_keys_are_written_as_the_system_writes_them():
     assert format_modified(ALT, "drag", is_mac=True) == "⌥ drag"
 
 
+def test_keys_have_names_of_the_persons_language(monkeypatch):
+    monkeypatch.setattr(shortcut_keys, "_", {"Ctrl": "Strg"}.get)
+    assert format_chord.__wrapped__(CTRL | int(imgui.Key.s), is_mac=False) == "Strg+S"
+    assert format_modified.__wrapped__(CTRL, "drag", is_mac=False) == "Strg+drag"
+    assert parse_chords.__wrapped__("Ctrl+S") == (CTRL | int(imgui.Key.s),)
+
+
 def test_chords_are_read_as_the_table_has_them():
     key = imgui.Key
     undone_again = (CTRL | SHIFT | int(key.z), CTRL | int(key.y))
@@ -182,18 +190,18 @@ def test_menus_are_made_from_the_table(window):
 
 def test_greyed_entries_tell_what_is_on_without_a_project(window):
     window.act(viewing.toggle_overlay, "wireframe")
-    told = {}
+    checked = {}
 
     def look(robot):
         robot.set_ref("##MainMenuBar")
         robot.menu_click("View")
         for label in ("Wireframe", "Handles", "Outline"):
-            told[label] = robot.item_is_checked(f"//$FOCUSED/{label}")
+            checked[label] = robot.item_is_checked(f"//$FOCUSED/{label}")
             assert robot.item_info(f"//$FOCUSED/{label}").item_flags & imgui.ItemFlags_.disabled
         robot.popup_close_all()
 
     window.run(look)
-    assert told == {"Wireframe": True, "Handles": True, "Outline": False}
+    assert checked == {"Wireframe": True, "Handles": True, "Outline": False}
     assert not BINDINGS["loop"].is_active(window.session)
 
 
@@ -301,7 +309,7 @@ def test_the_mirror_axis_has_another_key_on_macos():
     assert [format_chord(chord, is_mac=False) for chord in axis.chords(is_mac=False)] == ["Ctrl+M"]
 
 
-def test_a_tab_that_is_out_of_sight_is_found_by_its_name(window):
+def test_a_tab_that_is_out_of_view_is_found_by_its_name(window):
     window.again(Harness.open, sample_images() / "ring.png")
     window.resize((1280, 800), 2.0)
 

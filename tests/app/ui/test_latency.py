@@ -20,18 +20,18 @@ from app.motion.inbetweens.segment_keys import segment_key
 
 def pull(window, bar, by):
     """Pull a handle, and let the solver be as quick as can be."""
-    wish = Target(position=bar.document.layers[0].handle(1).position + by)
+    target = Target(position=bar.document.layers[0].handle(1).position + by)
     assert window.session.jobs.wait_until_idle()
-    window.act(drag_handles, {1: wish})
+    window.act(drag_handles, {1: target})
     assert window.session.jobs.wait_until_idle()
     window.frames()
-    return wish
+    return target
 
 
 def test_the_picture_follows_a_pull_in_the_next_frame(window, bar):
     for step in range(1, 6):
-        wish = pull(window, bar, 40j * step)
-        assert bar.layer_runtime.shown.pose.targets[1] == wish
+        target = pull(window, bar, 40j * step)
+        assert bar.layer_runtime.shown.pose.targets[1] == target
 
 
 def test_a_slow_solver_shows_every_step(window, bar):
@@ -80,7 +80,7 @@ def test_nothing_moves_once_the_pose_rests(window, bar):
 @pytest.mark.usefixtures("everything")
 def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window, bent, check):
     window.session.clock = count().__next__
-    wish = pull(window, bent, 80j)
+    target = pull(window, bent, 80j)
     window.act(playback.scrub, 12)
     exact = []
     while bent.pulls:
@@ -101,11 +101,11 @@ def test_in_betweens_are_exact_while_the_pose_that_was_left_comes_to_rest(window
     assert all(exact[exact.index(True) :])
     assert len(exact) > 4
     pose = bent.layer.key(24).pose
-    assert pose.targets[1] == wish
+    assert pose.targets[1] == target
     place = bent.layer.map_of(pose)(np.array([bent.layer.handle(1).position]))[0]
-    assert abs(place - wish.position) < 2
+    assert abs(place - target.position) < 2
     window.act(editing.undo)
-    assert bent.layer.key(24).pose.targets[1] != wish
+    assert bent.layer.key(24).pose.targets[1] != target
 
 
 @pytest.fixture

@@ -206,7 +206,7 @@ def test_colours_are_worked_out_anew_only_where_something_is_stiff_otherwise(win
         calls.append(arguments)
         return measure_vertex_stiffness(*arguments)
 
-    monkeypatch.setattr("app.ui.viewport.gpu_resources.measure_vertex_stiffness", counted)
+    monkeypatch.setattr("app.ui.viewport.picture.gpu_resources.measure_vertex_stiffness", counted)
     stiffness_editing.add_bone(window.session, ENDS)
     window.settle()
     assert len(calls) == 1

@@ -11,6 +11,7 @@ from app.document.commands import handle_commands
 from app.document.commands.command import Command
 from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
+from app.ui import panel
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.widgets import draw_tooltip
 from app.ui.viewport.viewport import CANVAS
@@ -159,7 +160,7 @@ def test_a_tab_that_is_an_icon_has_its_name_in_a_tooltip(window):
 
 def test_a_long_tooltip_wraps(window):
     window.open(sample_images() / "bar.png")
-    boxes = []
+    places = []
     width = 30 * window.text_height()
 
     def draw():
@@ -174,9 +175,15 @@ def test_a_long_tooltip_wraps(window):
     calls.show_gui = hello_imgui.sequence_functions(usual, draw)
     try:
         window.frames(3)
-        boxes.append(tooltip_at(window, ImVec2(200, 200)))
+        places.append(tooltip_at(window, ImVec2(200, 200)))
     finally:
         calls.show_gui = usual
-    (box,) = boxes
+    (box,) = places
     assert box is not None
     assert box.get_width() < width
+
+
+def test_a_tab_shows_its_title_translated_and_keeps_its_id(monkeypatch):
+    monkeypatch.setattr(panel, "_", str.upper)
+    mesh = panel.Panel("Mesh", "i", lambda *_: [])
+    assert mesh.labels == ("i  MESH###Mesh", "MESH###Mesh", "i###Mesh")

@@ -14,6 +14,7 @@ from app.editor.actions.posing.motion_presets import apply_motion, joint_placeme
 from app.editor.actions.posing.pose_drag import set_targets
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
+from app.ui.shortcuts.table import BINDINGS
 
 
 def draft_child(window):
@@ -80,7 +81,8 @@ def test_a_dropped_picture_walks_after_few_clicks_and_drags(window, tmp_path):
     before = project.document
     # Whatever tab was in front, the motion's own comes there.
     window.show_tab("Handle")
-    window.run(lambda robot: robot.menu_click("//##MainMenuBar/Motion/###Apply motion preset…"))
+    entry = f"//##MainMenuBar/Motion/{BINDINGS['give motion'].label}"
+    window.run(lambda robot: robot.menu_click(entry))
     window.frames(4)
     assert is_in_front("Motion")
     assert (project.motion_setup.kind, project.motion_setup.motion) == ("biped-side", "walk")
@@ -138,7 +140,7 @@ def test_one_side_is_mirrored_onto_the_other(window, child):
     assert right.imag == pytest.approx(left.imag, abs=1)
 
 
-def test_missing_joints_of_a_motion_are_reported(window, child):
+def test_missing_needs_of_a_motion_are_named(window, child):
     joint_placement.exclude_joint(window.session, "foot.R")
     window.frames()
     assert "needs foot.R" in preset_setup.apply_motion_disabled_reason(child)

@@ -28,14 +28,14 @@ def press(window, *keys):
 
 def drag(window, start, way, *, keys=0):
     """Drag from a place of the drawing's plane; return what the status bar said before."""
-    told = []
+    hints = []
 
     def play(robot):
         robot.mouse_move_to_pos(window.point(start))
         if keys:
             robot.key_down(keys)
         robot.yield_(3)
-        told.append(window.session.hint)
+        hints.append(window.session.hint)
         robot.mouse_down(0)
         robot.mouse_move_to_pos(window.point(start + way / 2))
         robot.mouse_move_to_pos(window.point(start + way))
@@ -45,7 +45,7 @@ def drag(window, start, way, *, keys=0):
 
     window.run(play)
     window.settle()
-    return told[0]
+    return hints[0]
 
 
 def test_v_and_a_drag_and_escape(window, loose):

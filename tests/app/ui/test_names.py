@@ -154,7 +154,7 @@ DROP = """
 import ctypes, os, sys
 import imgui_bundle
 import glfw
-from app.ui.window.drag_and_drop import accept_files
+from app.ui.window.events.drag_and_drop import accept_files
 
 glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
 assert glfw.init()

@@ -17,11 +17,11 @@ TRACK = Track(handles=(1,), keys=tuple(TrackKey(frame=f, place=0j + f) for f in 
 
 def prepared(project):
     """Return which of all that can be prepared of a project is there."""
-    puppet, clip = project.layer_runtime, project.clip
-    vertices = puppet.store.vertices(clip, HALFWAY)
+    runtime, clip = project.layer_runtime, project.clip
+    vertices = runtime.store.vertices(clip, HALFWAY)
     return {
-        "in-betweens": puppet.store.has(clip),
-        "corrections": puppet.corrected.is_whole,
+        "in-betweens": runtime.store.has(clip),
+        "corrections": runtime.corrected.is_whole,
         "smooth playback": isinstance(vertices, StreamedVertices),
         "distortion": project.curves.follows(clip),
         "extent": project.extent.follows(extent_key(project.document)),

@@ -48,12 +48,12 @@ def answer(window, text):
     window.run(lambda robot: robot.item_click(f"//###dialog/{text}"))
 
 
-def wish_of(document):
+def target_of(document):
     return document.layers[0].key(0).pose.targets[1].position
 
 
 def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
-    place = wish_of(bar.document)
+    place = target_of(bar.document)
     set_targets(window.session, {1: Target(position=place + 5j)})
     assert bar.history.is_saved  # nothing of it has come yet
     saving.request_quit(window.session)
@@ -62,7 +62,7 @@ def test_a_pose_that_the_solver_still_looks_for_is_not_lost(window, bar, saved):
     answer(window, "Save")
     window.settle()
     assert window.session.is_quitting
-    assert wish_of(load_project(saved)) == place + 5j
+    assert target_of(load_project(saved)) == place + 5j
 
 
 def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, bar, saved, gate):
@@ -77,9 +77,7 @@ def test_two_saves_at_a_time_are_one_after_the_other_and_nobody_elses(window, ba
     assert len(load_project(saved).layers[0].handles) == len(bar.layer.handles)
 
 
-def test_quitting_waits_for_a_save_that_is_under_way_unless_the_person_insists(
-    window, bar, saved, gate
-):
+def test_quitting_waits_for_a_running_save_unless_asked_twice(window, bar, saved, gate):
     add_handle(window.session, complex(50, 50))
     window.act(saving.save)
     for title in (None, saving.UNSAVED):
@@ -133,5 +131,5 @@ def test_a_drag_that_goes_on_while_the_window_is_to_close_is_kept(window, bar, s
     window.settle()
     assert window.session.is_quitting
     kept = load_project(saved)
-    assert abs(wish_of(kept) - start) > 10
-    assert wish_of(kept) == wish_of(bar.document)
+    assert abs(target_of(kept) - start) > 10
+    assert target_of(kept) == target_of(bar.document)

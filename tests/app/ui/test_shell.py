@@ -10,7 +10,7 @@ from app.editor.work.jobs import Job, JobKind
 from app.storage.assets import sample_images
 from app.ui.style.theme import PALETTES
 from app.ui.style.widgets import shorten_text
-from app.ui.window import window as window_module
+from app.ui.window import desktop
 from app.ui.window.title import window_title
 
 
@@ -277,11 +277,11 @@ def test_the_title_names_the_file_and_marks_changes(window, tmp_path):
 
 @pytest.mark.parametrize("platform", ["PLATFORM_X11", "PLATFORM_WIN32", "PLATFORM_WAYLAND"])
 def test_the_window_has_an_icon_where_windows_bring_one(monkeypatch, platform):
-    glfw, shown = window_module.glfw, []
+    glfw, shown = desktop.glfw, []
     monkeypatch.setattr(glfw, "get_platform", lambda: getattr(glfw, platform))
     monkeypatch.setattr(glfw, "set_window_icon", lambda *icon: shown.append(icon))
-    monkeypatch.setattr(window_module.glfw_utils, "glfw_window_hello_imgui", lambda: "the window")
-    window_module._show_icon()
+    monkeypatch.setattr(desktop.glfw_utils, "glfw_window_hello_imgui", lambda: "the window")
+    desktop.show_icon()
     if platform == "PLATFORM_WAYLAND":
         assert shown == []
         return

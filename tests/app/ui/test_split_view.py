@@ -20,10 +20,10 @@ def between(window):
 def stop_half_way(window):
     bent = window.again(bend_bar, LAST, "loose")
     width, _ = bent.document.canvas
-    wishes = dict(bent.layer_runtime.shown.pose.targets)
-    last = max(wishes)
-    wishes[last] = Target(position=complex(0.35 * width, 0.6 * width))
-    set_targets(window.session, wishes)
+    targets = dict(bent.layer_runtime.shown.pose.targets)
+    last = max(targets)
+    targets[last] = Target(position=complex(0.35 * width, 0.6 * width))
+    set_targets(window.session, targets)
     window.settle()
     playback.seek(window.session, HALF)
     window.settle()
@@ -54,8 +54,8 @@ def test_the_shortcut_splits_the_view_and_puts_it_together_again(window, between
     press_u(window)
     assert session.compare_view is not None
     assert session.compare_view.method is Variant.LINEAR
-    twin = between.layer_runtime.comparison
-    own, other = between.layer_runtime.shown.positions, twin.shown.positions
+    comparison = between.layer_runtime.comparison
+    own, other = between.layer_runtime.shown.positions, comparison.shown.positions
     # Halfway round, straight ways are shorter than arcs.
     assert np.abs(own - other).max() > 0.01 * np.ptp(own.real)
     assert (np.abs(np.asarray(window.picture()).astype(int) - np.asarray(alone)) > 24).any()
@@ -93,18 +93,18 @@ def test_methods_for_comparison_play_beside_the_drawing_and_are_measured(window,
     document = between.document
     viewing.compare_with_method(session, baseline)
     window.settle()
-    twin = between.layer_runtime.comparison
-    assert twin.shown.is_current
-    assert twin.shown.clip.baseline is baseline
+    comparison = between.layer_runtime.comparison
+    assert comparison.shown.is_current
+    assert comparison.shown.clip.baseline is baseline
     own = between.layer_runtime.shown.positions
-    distance = np.abs(own - twin.shown.positions).max() / np.ptp(own.real)
+    distance = np.abs(own - comparison.shown.positions).max() / np.ptp(own.real)
     assert 1e-5 < distance < 0.5
     curves = between.comparison_curves.value
     assert curves.clip.baseline is baseline
     assert np.isfinite(curves.k).all()
     assert between.document is document
     # All frames are there before anybody looks.
-    (inbetweens,) = between.layer_runtime.store.prepared(twin.clip(document))
+    (inbetweens,) = between.layer_runtime.store.prepared(comparison.clip(document))
     assert len(inbetweens._frames) >= LAST - 1
 
 

@@ -65,7 +65,7 @@ def show_disc(window):
 
 
 class Hand:
-    """The robot's pointer, told by frames."""
+    """The robot's pointer, whose places are frames."""
 
     def __init__(self, robot, keys):
         self.robot = robot
@@ -302,7 +302,7 @@ def test_how_keys_are_passed_is_chosen_in_their_menu_and_by_a_key(window, projec
 
     def choose(hand):
         hand.click("key 12", 1)
-        hand.robot.item_click("//$FOCUSED/Passing")
+        hand.robot.item_click("//$FOCUSED/Tangent")
         hand.robot.item_click("//**/###stop")
 
     passings = [key.shown_tangent_mode for key in play(choose).layers[0].keys]
@@ -342,7 +342,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
 
 
 @pytest.mark.usefixtures("everything")
-def test_keys_that_the_limits_slow_down_are_told_with_a_remedy(window, project):
+def test_keys_that_the_limits_slow_down_come_with_a_remedy(window, project):
     assert describe_motion_limit(window.session) == ""
     tight = Bounds(k=0.01, sigma_a=1.001, sigma_b=0.999)
     command = shape_commands.set_limits(0, tight)
@@ -547,11 +547,11 @@ def test_one_click_on_a_number_takes_what_is_typed(window, project, field):
     window.settle()
     assert project.camera is camera
     assert project.document.preview == before.preview
-    told = {
+    values = {
         "frame": playback.current_frame(window.session, project),
         "fps": project.document.fps,
     }
-    assert told[field] == 12
+    assert values[field] == 12
 
 
 def marks_of(project):
@@ -724,15 +724,15 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
 
 def labels(window, monkeypatch):
     """What the bars between keys say."""
-    told = []
+    names = []
 
     def label(_, name, *__):
-        told.append(name)
+        names.append(name)
 
     with monkeypatch.context() as patched:
         patched.setattr(segments, "_label", label)
         window.frames(1)
-    return told
+    return names
 
 
 @pytest.mark.usefixtures("project")

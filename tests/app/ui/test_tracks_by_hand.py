@@ -143,17 +143,17 @@ def test_a_planted_track_has_places_of_the_picture(window, keyed):
     assert_allclose(track.keys[0].place, start + 15 + 10j, atol=PIXEL)
 
 
-def test_what_is_out_of_reach_is_wished_all_the_same(window, keyed):
+def test_targets_out_of_reach_stay_the_targets(window, keyed):
     start = place_of(keyed)
     goal = start + 1.5 * keyed.document.canvas[0]
     drag(window, start, goal)
     shown = keyed.layer_runtime.shown
-    wishes = shown.correction.targets
-    assert_allclose(wishes[END], goal, atol=PIXEL)
+    targets = shown.correction.targets
+    assert_allclose(targets[END], goal, atol=PIXEL)
     assert abs(place_of(keyed) - goal) > 20
     assert shown.correction.is_limited
     assert describe_pose_limit(window.session).startswith("Stretch limit reached – handle 2 is ")
-    assert find_off_target(keyed, shown)[END] == wishes[END], "a dashed line leads there"
+    assert find_off_target(keyed, shown)[END] == targets[END], "a dashed line leads there"
 
 
 def turn_by(window, project, angle, *, then=lambda robot: robot.mouse_up(0)):
@@ -325,8 +325,8 @@ def test_a_drag_is_recorded_while_it_plays_and_fitted_by_few_keys(window, bent):
     # The motion is near what the hand did.
     for sample in take.samples:
         if sample.time == int(sample.time):
-            wished = track_target(bent, track, int(sample.time))
-            assert abs(wished - sample.place) < 4
+            target = track_target(bent, track, int(sample.time))
+            assert abs(target - sample.place) < 4
     few = len(frames)
     smooth_recording(window.session, 0.0)
     many = len(bent.layer.tracks[0].keys)

@@ -76,20 +76,20 @@ def ways(window, name, frame):
     return [targets[each.id].position - each.position for each in one.handles]
 
 
-def told(window):
+def notices(window):
     return [toast.text for toast in window.session.toasts]
 
 
 def test_the_opposite_step_is_two_keys_away(window, project):
     before = project.document
     press(window, COPY_ALL)
-    assert told(window)[-1] == "Poses of 3 layers at frame 0 copied."
+    assert notices(window)[-1] == "Poses of 3 layers at frame 0 copied."
     go(window, 12)
     press(window, SWAP)
     near, far = ways(window, "near leg", 0), ways(window, "far leg", 0)
     np.testing.assert_allclose(ways(window, "far leg", 12), near, rtol=0, atol=1e-6)
     np.testing.assert_allclose(ways(window, "near leg", 12), far, rtol=0, atol=1e-6)
-    assert told(window)[-1] == "Pasted onto 3 layers."
+    assert notices(window)[-1] == "Pasted onto 3 layers."
     assert project.history.undo_label == "Paste swapped"
     editing.undo(window.session)
     assert project.document is before
@@ -129,7 +129,7 @@ def test_what_cannot_be_pasted_says_why_in_its_menu_and_at_its_keys(window, proj
     reason = "“body” has no handle called hip, knee or foot."
     window.session.toasts = []
     press(window, PASTE)
-    assert told(window) == [reason]
+    assert notices(window) == [reason]
     entry, tips = [], []
 
     def look(robot):
@@ -184,7 +184,7 @@ def test_pairs_are_edited_where_poses_are_flipped(window, project):
 
     window.run(lambda robot: enter(robot, "L/R, one"))
     window.settle()
-    assert any(re.search(says(NO_PAIR), text) for text in told(window))
+    assert any(re.search(says(NO_PAIR), text) for text in notices(window))
     window.run(lambda robot: enter(robot, "L/R, one/two"))
     window.settle()
     assert project.document.pairs == (("L", "R"), ("one", "two"))

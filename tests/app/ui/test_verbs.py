@@ -57,15 +57,15 @@ def test_verbs_work_on_random_documents_or_say_why_not(window, seed):
             drawn = set(rng.choice(list(VERBS), DRAWN))
             for name in VERBS:
                 put(window, project, rng)
-                told = seed, number, name
+                walk = seed, number, name
                 try:
                     apply(session, name)
                     if name in drawn:
                         window.frames()
                 except Exception as error:
-                    raise AssertionError(told) from error
+                    raise AssertionError(walk) from error
                 surprises = [toast.details for toast in session.toasts if toast.details]
-                assert not surprises, (told, surprises[0])
+                assert not surprises, (walk, surprises[0])
                 if name not in CLOSES:
                     check_invariants(session)
             session.is_quitting = False

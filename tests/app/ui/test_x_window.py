@@ -320,7 +320,7 @@ WATCH = """
 import time
 from imgui_bundle import glfw_utils
 import glfw
-from app.ui.window import modifiers
+from app.ui.window.events import modifiers
 
 def tell(*words):
     print(*words, flush=True)

@@ -1,4 +1,4 @@
-"""The rows of the timeline: groups, switches and layers, their names and their visibility.
+"""The rows of the timeline: groups, switches, layers, cycles, and the empty area around keys.
 
 In: the bands of the timeline.
 Out: actions.

@@ -7,6 +7,7 @@ from app.editor import Action, KeysByRow, TurnDrag, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import select_layers, set_active_layer, toggle_tree_row
+from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -39,7 +40,7 @@ def draw_group_names(bands: TimelineLayout, frame: int) -> list[Action]:
         if is_hovered_or_held():
             draw_list.add_rect_filled(low, high, colour_u32(palette.hovered), 0.2 * em)
         if begin_tooltip():
-            imgui.text_unformatted("Click to choose all layers in it")
+            imgui.text_unformatted(_("Click to select all of its layers"))
             imgui.end_tooltip()
         if bands.button("fold", ImVec2(left, lane.top), ImVec2(left + FOLD * em, lane.bottom)):
             actions.append(do(toggle_tree_row, row.toggle))
@@ -97,8 +98,12 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
             actions += [do(editing.select_keys_in_rows, keys), do(playback.scrub, frame)]
         is_chosen = all(frame in chosen_of.get(row, ()) for row in keys)
         if begin_tooltip():
-            count = f"{len(keys)} keys" if len(keys) > 1 else "A key"
-            imgui.text_unformatted(f"{count} at frame {frame}: click to choose all of them")
+            text = ngettext(
+                "A key at frame {frame}: click to select it",
+                "{count} keys at frame {frame}: click to select them",
+                len(keys),
+            )
+            imgui.text_unformatted(text.format(count=len(keys), frame=frame))
             imgui.end_tooltip()
         palette = bands.look.palette
         colour = (
@@ -108,25 +113,25 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
     return actions
 
 
-def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup) -> list[Action]:
+def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup) -> list[Action]:
     """Draw the ranges in which each layer of a switch is visible."""
     actions: list[Action] = []
     document, em = bands.project.document, bands.look.em
     palette, draw_list = bands.look.palette, imgui.get_window_draw_list()
-    own, choice = choice, with_repeats(document, choice)
-    starts = _starts(bands, choice)
+    own, switch = switch, with_repeats(document, switch)
+    starts = _starts(bands, switch)
     for start, end in zip(starts, [*starts[1:], document.frames.last], strict=True):
         left, right = max(bands.x(start), bands.left), min(bands.x(max(end, start)), bands.right)
         if right <= left:
             continue
         low, high = ImVec2(left + 1, lane.top + 1), ImVec2(right, lane.bottom - 1)
-        seen = choice.layer_at(start)
+        seen = switch.layer_at(start)
         bands.button(f"turn {start}", low, high, right=True)
         if imgui.is_item_clicked(imgui.MouseButton_.right):
             imgui.open_popup(f"menu of turn {start}")
         elif imgui.is_item_clicked():
             actions.append(do(set_active_layer, seen))
-        number = choice.count_keys_until(start)
+        number = switch.count_keys_until(start)
         strength = 0.34 if is_hovered_or_held() else 0.24 - 0.08 * (number % 2)
         draw_list.add_rect_filled(low, high, colour_u32(palette.accent, strength), 0.2 * em)
         with push_text_size(SMALL):
@@ -134,57 +139,63 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup
             text = shorten_text(document.layer(seen).name, right - left - 0.9 * em)
             draw_list.add_text(ImVec2(left + 0.45 * em, top), colour_u32(palette.text), text)
         if begin_tooltip():
-            imgui.text_unformatted(f"{document.layer(seen).name} from frame {start} on")
-            imgui.text_disabled("Right click for another one, drag where it begins to move that")
+            imgui.text_unformatted(
+                _("{layer} from frame {frame} on").format(
+                    layer=document.layer(seen).name, frame=start
+                )
+            )
+            imgui.text_disabled(
+                _("Right click to show another layer, drag the beginning to move it")
+            )
             imgui.end_tooltip()
-        actions += _menu(bands, choice, start)
+        actions += _menu(bands, switch, start)
     for start in starts[1:]:
         # Repeated switch keys move with their cycle.
         if own.count_keys_until(start) > own.count_keys_until(start - 1):
-            actions += _edge(bands, lane, choice, start)
+            actions += _edge(bands, lane, switch, start)
     return actions
 
 
-def _starts(bands: TimelineLayout, choice: SwitchGroup) -> list[int]:
+def _starts(bands: TimelineLayout, switch: SwitchGroup) -> list[int]:
     """Return the frames of switch keys in view, and of the last key before the view."""
     first = bands.project.document.frames.first
-    seen = list(bands.in_view(choice.keys))
-    before = seen[0] if seen else choice.count_keys_until(bands.frame(bands.left))
-    reaching = choice.keys[before - 1].frame if before else first
-    return sorted({max(reaching, first), *(max(choice.keys[i].frame, first) for i in seen)})
+    seen = list(bands.in_view(switch.keys))
+    before = seen[0] if seen else switch.count_keys_until(bands.frame(bands.left))
+    reaching = switch.keys[before - 1].frame if before else first
+    return sorted({max(reaching, first), *(max(switch.keys[i].frame, first) for i in seen)})
 
 
-def _menu(bands: TimelineLayout, choice: SwitchGroup, start: int) -> list[Action]:
+def _menu(bands: TimelineLayout, switch: SwitchGroup, start: int) -> list[Action]:
     """Draw the menu of a switch key: its layer, and whether the key can be deleted."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of turn {start}"):
         return actions
-    for identity in choice.layers:
+    for identity in switch.layers:
         name = bands.project.document.layer(identity).name
-        is_seen = choice.layer_at(start) == identity
+        is_seen = switch.layer_at(start) == identity
         if imgui.menu_item(f"{name}###show {identity}", "", is_seen)[0] and not is_seen:
             actions.append(
                 do(editing.edit_document, switch_group_commands.choose_at(identity, start))
             )
     imgui.separator()
     keyed = turn_frame(
-        bands.project.document, bands.project.document.switch_group(choice.name), start
+        bands.project.document, bands.project.document.switch_group(switch.name), start
     )
-    is_change = any(turn.frame == keyed for turn in choice.keys[1:])
-    if imgui.menu_item_simple("Delete", enabled=is_change):
+    is_change = any(turn.frame == keyed for turn in switch.keys[1:])
+    if imgui.menu_item_simple(_("Delete"), enabled=is_change):
         actions.append(
-            do(editing.edit_document, switch_group_commands.unchoose_at(choice.name, keyed))
+            do(editing.edit_document, switch_group_commands.unchoose_at(switch.name, keyed))
         )
     imgui.end_popup()
     return actions
 
 
-def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int) -> list[Action]:
+def _edge(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup, start: int) -> list[Action]:
     em, x = bands.look.em, bands.x(start)
     if not bands.shows(x - EDGE * em, x + EDGE * em):
         return []
     drag = bands.project.timeline.gesture
-    if not isinstance(drag, TurnDrag) or (drag.choice, drag.at) != (choice.name, start):
+    if not isinstance(drag, TurnDrag) or (drag.choice, drag.at) != (switch.name, start):
         drag = None
     origin = start if drag is None else drag.turn
     box = ImVec2(x - EDGE * em, lane.top), ImVec2(x + EDGE * em, lane.bottom)
@@ -201,7 +212,7 @@ def _edge(bands: TimelineLayout, lane: GroupRow, choice: SwitchGroup, start: int
         return []
     document = bands.project.document
     begun = TurnDrag(
-        choice=choice.name,
+        choice=switch.name,
         turn=start,
         at=start,
         start=bands.pointed,

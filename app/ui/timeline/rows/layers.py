@@ -16,6 +16,7 @@ from app.document import (
 from app.editor import Action, SwitchDrag, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
+from app.texts import _
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
@@ -89,15 +90,15 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
                 colour_u32(palette.accent, CHOSEN) if row.is_active else colour_u32(palette.hovered)
             )
             draw_list.add_rect_filled(*box, colour, 0.2 * em)
-        hung, carrier = parent_label(document, row.layer, frame)
+        depth, parent = parent_label(document, row.layer, frame)
         if begin_tooltip():
             imgui.text_unformatted(row.layer.name)
-            if carrier:
-                imgui.text_disabled(f"Hangs {carrier}")
+            if parent:
+                imgui.text_disabled(parent)
             imgui.end_tooltip()
         icon = icons.ICON_FA_IMAGE if row.layer.still else icons.ICON_FA_PERSON
         colour = colour_u32(palette.text if is_visible(document, row.layer, frame) else palette.dim)
-        indent = low.x + INDENT * min(row.depth + hung, DEEPEST_INDENT) * em
+        indent = low.x + INDENT * min(row.depth + depth, DEEPEST_INDENT) * em
         with push_text_size(SMALL):
             left = indent + (1.8 + EXPANDER_WIDTH * bool(row.layer.tracks)) * em
             room = box[1].x - left - 0.8 * em
@@ -106,9 +107,9 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
             draw_list.add_text(ImVec2(left - 1.4 * em, top), colour, icon)
             draw_list.add_text(ImVec2(left, top), colour, text)
             taken = imgui.calc_text_size(text).x + 0.5 * em
-            if carrier and room - taken > LEAST_PARENT_ROOM * em:
-                told = shorten_text(carrier, room - taken)
-                draw_list.add_text(ImVec2(left + taken, top), colour_u32(palette.dim), told)
+            if parent and room - taken > LEAST_PARENT_ROOM * em:
+                label = shorten_text(parent, room - taken)
+                draw_list.add_text(ImVec2(left + taken, top), colour_u32(palette.dim), label)
         actions += draw_expander(bands, row, indent)
     actions += draw_group_names(bands, frame)
     actions += draw_track_names(bands)
@@ -184,14 +185,14 @@ def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
     layer, em, palette = row.layer, bands.look.em, bands.look.palette
     changes: dict[int, list[str]] = {}
     rows: dict[str, Sequence[HasFrame]] = {
-        "Moved": layer.transform_keys,
-        "Opacity": layer.opacity_keys,
-        "Order": layer.draw_order_keys,
+        _("Transform"): layer.transform_keys,
+        _("Opacity"): layer.opacity_keys,
+        _("Draw order"): layer.draw_order_keys,
     }
     for what, row_of_keys in rows.items():
         for index in bands.in_view(row_of_keys):
             changes.setdefault(row_of_keys[index].frame, []).append(what)
-    for frame, told in changes.items():
+    for frame, channels in changes.items():
         x, y, half = bands.x(frame), row.bottom - 1.2 * CHANGE * em, CHANGE * em
         box = ImVec2(x - half, y - half), ImVec2(x + half, y + half)
         if bands.button(f"change {frame}", *box):
@@ -203,8 +204,12 @@ def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
             4,
         )
         if begin_tooltip():
-            imgui.text_unformatted(f"{' and '.join(told).capitalize()} at frame {frame}")
-            imgui.text_disabled("Click to go there; it is changed in the Layers tab")
+            imgui.text_unformatted(
+                _("Keys at frame {frame}: {channels}").format(
+                    frame=frame, channels=", ".join(channels)
+                )
+            )
+            imgui.text_disabled(_("Click to go there. Change it in the Layers tab."))
             imgui.end_tooltip()
     return actions
 
@@ -269,8 +274,13 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
         )
         return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
     if bands.project.timeline.gesture is None and begin_tooltip():
-        imgui.text_unformatted(f"{'Shown' if switch.visible else 'Hidden'} from frame {frame} on")
-        imgui.text_disabled("Click to go there, drag to move it, right click to take it away")
+        text = (
+            _("Shown from frame {frame} on")
+            if switch.visible
+            else _("Hidden from frame {frame} on")
+        )
+        imgui.text_unformatted(text.format(frame=frame))
+        imgui.text_disabled(_("Click to go there, drag to move it, right click to delete it"))
         imgui.end_tooltip()
     return []
 
@@ -278,7 +288,7 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
 def _menu(row: LayerRow, frame: int) -> list[Action]:
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of switch {frame}"):
-        if imgui.menu_item_simple("Delete"):
+        if imgui.menu_item_simple(_("Delete")):
             command = layer_commands.key_visibility(row.layer.id, frame, visible=None)
             actions.append(do(editing.edit_document, command))
         imgui.end_popup()

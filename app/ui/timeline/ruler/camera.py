@@ -9,6 +9,7 @@ from app.editor import Action, CameraDrag, do
 from app.editor.actions import playback
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_channels import change_camera_key, delete_camera_key
+from app.texts import _
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.sliders import number_field
 from app.ui.style.theme import Look, colour_u32
@@ -31,7 +32,7 @@ def draw_camera_row(bands: TimelineLayout) -> list[Action]:
     middle = (top + bottom) / 2
     if bands.has_names:
         place = ImVec2(bands.corner.x + 0.6 * em, middle - imgui.get_text_line_height() / 2)
-        draw_list.add_text(place, colour_u32(palette.dim), f"{icons.ICON_FA_VIDEO}  Camera")
+        draw_list.add_text(place, colour_u32(palette.dim), f"{icons.ICON_FA_VIDEO}  {_('Camera')}")
     draw_list.push_clip_rect(
         ImVec2(bands.left, top), ImVec2(bands.right, bottom), intersect_with_current_clip_rect=True
     )
@@ -73,10 +74,10 @@ def _point(bands: TimelineLayout, key: CameraKey) -> list[Action]:
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"{MENU} {key.frame}")
     if bands.project.timeline.gesture is None and begin_tooltip():
-        imgui.text_unformatted(f"Camera, {key.zoom:.3g} times as large")
+        imgui.text_unformatted(_("Camera, {zoom:.3g} times as large").format(zoom=key.zoom))
         imgui.same_line()
         imgui.text_disabled(f"{key.frame}, {format_seconds(key.frame, document.fps)}")
-        imgui.text_disabled("Click to go there, drag to move it")
+        imgui.text_disabled(_("Click to go there, drag to move it"))
         imgui.end_tooltip()
     return []
 
@@ -93,18 +94,18 @@ def _field(look: Look, name: str, value: float, text: str) -> float | None:
 def _menu(bands: TimelineLayout, key: CameraKey) -> list[Action]:
     actions: list[Action] = []
     if imgui.begin_popup(f"{MENU} {key.frame}"):
-        if imgui.menu_item_simple("Go there", "Click"):
+        if imgui.menu_item_simple(_("Go there"), _("Click")):
             actions.append(do(playback.scrub, key.frame))
-        if imgui.menu_item_simple("Delete"):
+        if imgui.menu_item_simple(_("Delete")):
             actions.append(do(delete_camera_key, key.frame))
         imgui.separator()
-        zoom = _field(bands.look, "Zoom", key.zoom, "%.3g")
+        zoom = _field(bands.look, _("Zoom"), key.zoom, "%.3g")
         if zoom is not None:
             actions.append(do(change_camera_key, key.frame, zoom=zoom))
-        turn = _field(bands.look, "Turn", degrees(key.turn), "%.4g°")
+        turn = _field(bands.look, _("Turn"), degrees(key.turn), "%.4g°")
         if turn is not None:
             actions.append(do(change_camera_key, key.frame, turn=radians(turn)))
-        draw_tooltip("By how much things are seen turned, counter-clockwise")
+        draw_tooltip(_("Rotation of the picture, counter-clockwise"))
         imgui.separator()
         for name in ("key camera", "look through"):
             actions += draw_action_item(bands.session, name)

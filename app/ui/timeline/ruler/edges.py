@@ -4,12 +4,15 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, Edge, EdgeDrag, do
 from app.editor.actions.timing import keys, timeline_drag
+from app.texts import _
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.timeline.layout import PREVIEW, TimelineLayout, draw_time_tag
 
 GRIP = 0.55  # em: half the hit width of an end
+BEGINS_HERE = _("Playback begins here: drag, or double-click to play all frames")
+ENDS_HERE = _("Playback ends here: drag, or double-click to play all frames")
 
 
 def draw_range_edges(bands: TimelineLayout) -> list[Action]:
@@ -35,9 +38,9 @@ def _preview_range(bands: TimelineLayout) -> list[Action]:
         ImVec2(left, low), ImVec2(right, high), colour_u32(colour, alpha), 0.2 * em
     )
     grip = GRIP * em
-    ends: tuple[tuple[Edge, float, int], ...]
-    ends = ("preview start", left, 1), ("preview end", right, -1)
-    for edge, x, side in ends:
+    ends: tuple[tuple[Edge, float, int, str], ...]
+    ends = ("preview start", left, 1, BEGINS_HERE), ("preview end", right, -1, ENDS_HERE)
+    for edge, x, side, hint in ends:
         actions += _edge(bands, edge, x - grip, x + grip, resizes=True)
         inner, outer = sorted((x, x + side * 0.32 * em))
         tone = colour_u32(
@@ -45,8 +48,7 @@ def _preview_range(bands: TimelineLayout) -> list[Action]:
             1.0 if is_part or is_hovered_or_held() else 0.7,
         )
         draw_list.add_rect_filled(ImVec2(inner, low), ImVec2(outer, high), tone, 0.1 * em)
-        where = "begins" if side > 0 else "ends"
-        draw_tooltip(f"Playback {where} here: drag, or double-click to play all frames")
+        draw_tooltip(hint)
     draw_list.pop_clip_rect()
     return actions + (_clear(bands, left, right) if is_part else [])
 
@@ -64,7 +66,7 @@ def _clear(bands: TimelineLayout, left: float, right: float) -> list[Action]:
     for side in (-1, 1):
         start, end = ImVec2(x - half, y - side * half), ImVec2(x + half, y + side * half)
         draw_list.add_line(start, end, colour, 0.12 * em)
-    draw_tooltip("Clear the preview range: play all frames", BINDINGS["preview none"].shown_keys)
+    draw_tooltip(_("Clear the preview range: play all frames"), BINDINGS["preview none"].shown_keys)
     return [do(keys.clear_preview_range)] if clicked else []
 
 
@@ -102,7 +104,11 @@ def _animation_end(bands: TimelineLayout) -> list[Action]:
     hot = is_hovered_or_held()
     if hot:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    draw_tooltip(f"The animation ends at frame {last}: drag to make it longer or shorter")
+    draw_tooltip(
+        _("The animation ends at frame {frame}: drag to make it longer or shorter").format(
+            frame=last
+        )
+    )
     actions = [begin_edge_drag(bands, "animation end")] if is_pressed() else []
     gesture = bands.project.timeline.gesture
     if isinstance(gesture, EdgeDrag) and gesture.edge == "animation end":

@@ -8,6 +8,7 @@ from app.document import Marker
 from app.editor import Action, MarkerDrag, TimeGesture, do
 from app.editor.actions import playback
 from app.editor.actions.timing import keys, timeline_drag
+from app.texts import _
 from app.ui.shortcuts.widgets import draw_action_item
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
@@ -113,7 +114,7 @@ def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
         imgui.text_unformatted(marker.name)
         imgui.same_line()
         imgui.text_disabled(f"{marker.frame}, {format_seconds(marker.frame, document.fps)}")
-        imgui.text_disabled("Click to go there, drag to move it, double-click to name it")
+        imgui.text_disabled(_("Click to go there, drag to move it, double-click to name it"))
         imgui.end_tooltip()
     return []
 
@@ -122,10 +123,10 @@ def _menu(bands: TimelineLayout, marker: Marker) -> list[Action]:
     asks = False
     actions: list[Action] = []
     if imgui.begin_popup(f"menu of marker {marker.frame}"):
-        if imgui.menu_item_simple("Go there", "Click"):
+        if imgui.menu_item_simple(_("Go there"), _("Click")):
             actions.append(do(playback.scrub, marker.frame))
-        asks = imgui.menu_item_simple("Rename…", "Double-click")
-        if imgui.menu_item_simple("Delete"):
+        asks = imgui.menu_item_simple(_("Rename…"), _("Double-click"))
+        if imgui.menu_item_simple(_("Delete")):
             actions.append(do(keys.delete_marker, marker.frame))
         imgui.separator()
         for name in ("previous marker", "next marker"):

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import RotationOverlay, Session
 from app.editor.poses import flipping
+from app.texts import _
 from app.ui.style.drawing import draw_centred_text, draw_knob, draw_tag, outline_strokes, tag_size
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
@@ -97,7 +98,7 @@ def add_mirror_axis_gizmo(session: Session, look: Look, screen: ScreenMapping) -
     imgui.invisible_button("mirror axis", ImVec2(2 * radius, 2 * radius))
     if is_hovered_or_held():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    draw_tooltip("Poses are flipped here: drag it where the drawing has its middle")
+    draw_tooltip(_("Poses are flipped at this axis: drag it to the middle of the drawing"))
     return MirrorAxisGizmo(x, is_hovered_or_held(), is_pressed())
 
 

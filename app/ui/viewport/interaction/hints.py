@@ -8,6 +8,7 @@ from app.editor import Action, Hint, Project, Session
 from app.editor.actions import tutorials
 from app.editor.tools.table import tools_of
 from app.editor.tools.tool import PointerHit
+from app.texts import _
 from app.ui.shortcuts.action_spec import ActionSpec
 from app.ui.shortcuts.keys import ALT, CTRL, SHIFT, format_modified
 from app.ui.shortcuts.table import BINDINGS
@@ -17,9 +18,9 @@ from app.ui.viewport.marks import find_auto_pinned
 from app.ui.viewport.screen import ScreenMapping
 
 HINTS = (
-    "Click on the drawing to add a handle.",
-    "Drag a handle to pose; a second one holds another part in place.",
-    "Move the playhead, then drag again: that makes the second key.",
+    _("Click on the drawing to add a handle."),
+    _("Drag a handle to pose. A second handle holds another part in place."),
+    _("Move the playhead, then drag again to set the second key."),
 )
 KEYS = {"ctrl": (CTRL,), "shift": (SHIFT,), "alt": (ALT,), "ctrl+shift": (SHIFT, CTRL)}
 
@@ -29,33 +30,35 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     project = screen.project
     if session.active_tool is not None:
         return _sentence(
-            [*map(_format_hint, session.active_tool.active_hints), "Esc takes it back"]
+            [*map(_format_hint, session.active_tool.active_hints), _("Esc takes it back")]
         )
     if session.cutting is None and project.playhead.since is not None:
-        return "Space stops"
+        return _("Space stops")
     if session.is_posing and not session.overlays.handles:
-        return "The handles are hidden: H shows them"
-    told = [
+        return _("The handles are hidden: {key} shows them").format(
+            key=BINDINGS["handles"].shown_keys
+        )
+    hints = [
         _format_hint(hint)
         for tool in tools_of(session)
         for hint in tool.hints(session, project, spot)
     ]
     if not session.is_posing:
-        return _sentence([*told, "Esc goes back"])
+        return _sentence([*hints, _("Esc goes back")])
     if spot.handle is not None:
         if spot.handle in find_auto_pinned(screen.shown):
-            told.append("the line below it tells that it stays until the next key")
-        return f"{screen.shown.clip.layer.handle(spot.handle).name}: {', '.join(told)}"
+            hints.append(_("auto-pinned: it stays until the next key"))
+        return f"{screen.shown.clip.layer.handle(spot.handle).name}: {', '.join(hints)}"
     if not (spot.on_shape or spot.on_ring):
-        told += ["wheel to zoom", "middle drag to move the view"]
-    return _sentence(told)
+        hints += [_("wheel to zoom"), _("middle drag to move the view")]
+    return _sentence(hints)
 
 
 MODES = {
-    "stiff": "Making parts stiff",
-    "soft": "Making parts soft",
-    "normal": "Making parts as usual again",
-    "bone": "Bones from handle to handle",
+    "stiff": _("Making parts stiff"),
+    "soft": _("Making parts soft"),
+    "normal": _("Making parts normal again"),
+    "bone": _("Drawing bones from handle to handle"),
 }
 
 
@@ -65,8 +68,8 @@ def _sentence(parts: list[str]) -> str:
 
 
 def _format_hint(hint: Hint) -> str:
-    how = reduce(lambda told, key: format_modified(key, told), KEYS.get(hint.key, ()), hint.how)
-    return f"{how} {hint.what}"
+    gesture = reduce(lambda text, key: format_modified(key, text), KEYS.get(hint.key, ()), hint.how)
+    return _("{gesture} {effect}").format(gesture=gesture, effect=hint.what)
 
 
 def draw_badges(
@@ -75,13 +78,15 @@ def draw_badges(
     """Draw special states: a pose without a key, the active tool, or the next step."""
     top = corner + ImVec2(room.x / 2, look.em)
     if project.unkeyed_pose is not None:
-        return _draw_pill(look, "Unkeyed pose", top, BINDINGS["insert key"])
+        return _draw_pill(look, _("Unkeyed pose"), top, BINDINGS["insert key"])
     mode = _mode(session, project)
     if mode:
         return draw_mode_badge(look, mode, corner, room)
     if project.motion_job is not None:
-        stop = BINDINGS["no motion"].shown_keys
-        return _draw_pill(look, f"{project.motion_job.step_label}: {stop} gives the motion up", top)
+        text = _("{step}: {keys} cancels the motion preset").format(
+            step=project.motion_job.step_label, keys=BINDINGS["no motion"].shown_keys
+        )
+        return _draw_pill(look, text, top)
     step = find_first_step(project)
     if step is None or tutorials.is_tutorial_shown(session):
         return []
@@ -91,19 +96,20 @@ def draw_badges(
 def _mode(session: Session, project: Project) -> str:
     """Return a text about the active tool; empty if drags pose the layer."""
     if session.moves:
-        return "Moving the whole layer"
+        return _("Moving the whole layer")
     if session.material is not None:
         return MODES[session.material]
     if project.motion_setup is not None:
-        return "Putting joints where they belong"
-    return "Recording the next drag of a handle" if session.records else ""
+        return _("Setting joints")
+    return _("Recording the next drag of a handle") if session.records else ""
 
 
-def draw_mode_badge(look: Look, what: str, corner: ImVec2, room: ImVec2) -> list[Action]:
+def draw_mode_badge(look: Look, mode: str, corner: ImVec2, room: ImVec2) -> list[Action]:
     """Draw the badge of the active tool, with the button that ends it."""
     keys = BINDINGS["pose"].shown_keys
     place = corner + ImVec2(room.x / 2, look.em)
-    return _draw_pill(look, f"{what}: {keys} goes back to posing", place)
+    text = _("{mode}: {keys} goes back to posing").format(mode=mode, keys=keys)
+    return _draw_pill(look, text, place)
 
 
 def find_first_step(project: Project) -> int | None:

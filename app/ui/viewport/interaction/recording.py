@@ -8,6 +8,7 @@ from app.editor.actions.tracking.recording import (
     retry_recording,
     smooth_recording,
 )
+from app.texts import _, ngettext
 from app.ui.style.theme import Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, is_hovered_or_held, is_pressed
 from app.ui.viewport.paths import find_path_keys
@@ -53,7 +54,8 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
     name = project.layer.handle(take.handle).name
     track = project.layer.track_of(take.handle)
     count = 0 if track is None or take.after is None else len(track.keys)
-    text = f"{name}: {count} {'key' if count == 1 else 'keys'}" if count else f"{name}…"
+    text = ngettext("{handle}: {count} key", "{handle}: {count} keys", count)
+    text = text.format(handle=name, count=count) if count else f"{name}…"
     imgui.set_cursor_screen_pos(corner + ImVec2(1.5 * em, 1.5 * em))
     draw_list.channels_split(2)
     draw_list.channels_set_current(1)
@@ -63,19 +65,21 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
         imgui.same_line()
         imgui.set_next_item_width(SLIDER * em)
         changed, percent = imgui.slider_int(
-            "##smoothing", round(100 * take.smoothing), 0, 100, "Smoothing %d%%"
+            "##smoothing", round(100 * take.smoothing), 0, 100, _("Smoothing") + " %d%%"
         )
-        draw_tooltip("How far the motion may be beside what was recorded: the more, the fewer keys")
+        draw_tooltip(
+            _("Distance of the motion from the recorded drag: more smoothing makes fewer keys")
+        )
         if changed:
             actions.append(do(smooth_recording, min(max(percent, 0), 100) / 100))
         imgui.same_line()
-        if imgui.button("Keep"):
+        if imgui.button(_("Keep")):
             actions.append(do(accept_recording))
-        draw_tooltip("Keep these keys, which can be changed like all others")
+        draw_tooltip(_("Keep these keys. They can be changed like all other keys."))
         imgui.same_line()
-        if imgui.button("Again"):
+        if imgui.button(_("Again")):
             actions.append(do(retry_recording))
-        draw_tooltip("Take this back, and record the next drag")
+        draw_tooltip(_("Discard this recording, and record the next drag"))
     padding = ImVec2(PADDING * em, PADDING * em)
     low, high = imgui.get_item_rect_min() - padding, imgui.get_item_rect_max() + padding
     draw_list.channels_set_current(0)

@@ -5,6 +5,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, TutorialStage, TutorialState, do
 from app.editor.actions import exporting, tutorials
+from app.texts import _, ngettext
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import SMALL, Look, colour_u32
 from app.ui.style.widgets import draw_tooltip, main_button, push_text_size
@@ -15,14 +16,14 @@ from engine.arrays import Complexes
 
 WIDTH, GAP, MARGIN = 19.0, 1.6, 0.8  # em: of the card: width, distance from its target, margin
 SPARSE = 16  # one vertex of this many stands for the drawing
-NAME = "Guide"
+NAME = _("Guide")
 TITLES: dict[TutorialStage, str] = {
-    "handle": "Add a handle",
-    "time": "Go to another frame",
-    "pose": "Pose again",
-    "play": "Play",
-    "export": "Export a GIF",
-    "done": "Your first animation",
+    "handle": _("Add a handle"),
+    "time": _("Go to another frame"),
+    "pose": _("Pose again"),
+    "play": _("Play"),
+    "export": _("Export a GIF"),
+    "done": _("Your first animation"),
 }
 FLAGS = (
     imgui.WindowFlags_.no_decoration
@@ -122,7 +123,9 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
     with push_text_size(1.0, look.bold):
         imgui.text(TITLES[guide.stage])
     count = (
-        f"{len(steps)} steps done" if is_done else f"{steps.index(guide.stage) + 1} of {len(steps)}"
+        ngettext("{count} step done", "{count} steps done", len(steps)).format(count=len(steps))
+        if is_done
+        else _("{step} of {count}").format(step=steps.index(guide.stage) + 1, count=len(steps))
     )
     width = WIDTH * look.em
     with push_text_size(SMALL):
@@ -133,18 +136,18 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
     imgui.pop_text_wrap_pos()
     exported = session.exported
     if is_done and exported is not None:
-        if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  Open folder"):
+        if main_button(look, f"{icons.ICON_FA_FOLDER_OPEN}  {_('Open folder')}"):
             actions.append(do(exporting.open_folder, exported.out.parent))
         imgui.same_line()
     elif not is_done:
         _dots(look, steps.index(guide.stage), len(steps))
-    words = "Close" if is_done else "Leave"
+    words = _("Close") if is_done else _("Leave")
     style = imgui.get_style()
     button = imgui.calc_text_size(words).x + 2 * style.frame_padding.x
     imgui.same_line(imgui.get_cursor_start_pos().x + width - button)
     if imgui.button(f"{words}###leave"):
         actions.append(do(tutorials.end_tutorial))
-    draw_tooltip("End the guide; what you made stays", BINDINGS["leave guide"].shown_keys)
+    draw_tooltip(_("End the guide; what you made stays"), BINDINGS["leave guide"].shown_keys)
     return actions
 
 

@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session, TutorialState
 from app.editor.actions import exporting, tutorials
+from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import Look
@@ -59,44 +60,54 @@ def _to_step(
         case "time":
             ruler = _box(places, "ruler")
             to = None if ruler is None else Rect(ruler.middle, ruler.middle)
-            text = "Drag the playhead along the ruler, to about the middle."
+            text = _("Drag the playhead along the ruler, to about the middle.")
             return TutorialStep(text, _box(places, "playhead") or ruler, to)
         case "pose":
             return _to_pose(look, guide, screen, places)
         case "play":
             keys = BINDINGS["play"].shown_keys
             return TutorialStep(
-                f"Click here, or press {keys}: what lies between the poses fills itself in.",
+                _(
+                    "Click here, or press {keys}: Lissom fills in the motion between the poses."
+                ).format(keys=keys),
                 _box(places, "play"),
             )
         case "export":
             return _to_export(session, screen.project, places)
         case "done":
             exported = session.exported
-            name = "The GIF" if exported is None else exported.out.name
+            name = "GIF" if exported is None else exported.out.name
             return TutorialStep(
-                f"{name} is there. The project is yours to go on with: add keys, drag them in "
-                "time, save it."
+                _(
+                    "{file} is saved. Go on with your project: add keys, drag them in time, save "
+                    "the project."
+                ).format(file=name)
             )
 
 
 def _hindrance(session: Session) -> str:
     """Return the step that must come before handles can be added and dragged; else ""."""
     if not session.is_posing:
-        return f"Something else than posing is in hand: {BINDINGS['pose'].shown_keys} goes back."
+        return _("Another tool is active: {keys} goes back to posing.").format(
+            keys=BINDINGS["pose"].shown_keys
+        )
     if not session.overlays.handles:
-        return f"The handles are hidden: {BINDINGS['handles'].shown_keys} shows them."
+        return _("The handles are hidden: {key} shows them.").format(
+            key=BINDINGS["handles"].shown_keys
+        )
     return ""
 
 
 def _to_handle(look: Look, guide: TutorialState, screen: ScreenMapping) -> TutorialStep:
     if guide.handle_place is None:
         return TutorialStep(
-            "Click on a part that is to stay where it is, then on one that is to move. Each click "
-            "adds a handle."
+            _(
+                "Click on a part that should stay in place, then on a part that should move. Each "
+                "click adds a handle."
+            )
         )
     return TutorialStep(
-        "Click on the nose. The handles that are there already hold legs and body in place.",
+        _("Click on the nose. The other handles hold legs and body in place."),
         _ring(look, screen, guide.handle_place),
         is_round=True,
     )
@@ -108,14 +119,15 @@ def _to_pose(
     if screen.project.unkeyed_pose is not None:
         insert = BINDINGS["insert key"]
         return TutorialStep(
-            f"Auto-key is off, so that no key has this pose: {insert.label} "
-            f"({insert.shown_keys}) makes one.",
+            _("Auto-key is off, so no key has this pose: {action} ({keys}) makes a key.").format(
+                action=insert.label, keys=insert.shown_keys
+            ),
             _box(places, "insert key"),
         )
     layer, handles = screen.shown.clip.layer, screen.shown.handle_positions
     if guide.handle_place is None or guide.target_place is None:
         newest = _ring(look, screen, complex(handles[-1])) if len(handles) else None
-        text = "Drag one of the handles. A key with the new pose makes itself."
+        text = _("Drag one of the handles. Lissom sets a key with the new pose.")
         return TutorialStep(text, newest, is_round=True)
     near = {
         abs(handle.position - guide.handle_place): complex(place)
@@ -124,7 +136,7 @@ def _to_pose(
     reach = REACH * look.em / screen.scale
     held = near[min(near)] if near and min(near) < reach else guide.handle_place
     return TutorialStep(
-        "Drag the nose down to the ground. A key with the new pose makes itself.",
+        _("Drag the nose down to the ground. Lissom sets a key with the new pose."),
         _ring(look, screen, held),
         _ring(look, screen, guide.target_place),
         is_round=True,
@@ -133,16 +145,16 @@ def _to_pose(
 
 def _to_export(session: Session, project: Project, places: Places) -> TutorialStep:
     if exporting.is_export_under_way(session):
-        return TutorialStep("The GIF is being made.")
+        return TutorialStep(_("The GIF is being exported."))
     if not is_in_front("Export"):
         window = imgui.internal.find_window_by_name("###Export")
         tab = None if window is None else window.dc.dock_tab_item_rect
         at = None if tab is None else Rect(tab.min, tab.max)
-        return TutorialStep("Open the tab Export.", at, anywhere=True)
+        return TutorialStep(_("Open the tab Export."), at, anywhere=True)
     if project.document.export.format != tutorials.FORMAT:
-        return TutorialStep("Choose GIF as the format.", _box(places, "format"))
+        return TutorialStep(_("Choose GIF as the format."), _box(places, "format"))
     return TutorialStep(
-        "Click Export, and choose where the GIF goes.", _box(places, "start export")
+        _("Click Export, and choose where the GIF goes."), _box(places, "start export")
     )
 
 

@@ -174,6 +174,6 @@ class GpuResources:
         return self._pictures[key]
 
     def _key(self, layer: int) -> tuple[int | None, Picture]:
-        puppet = self.project.layer_runtimes[layer]
-        is_whole = puppet.cut.value.texture is puppet.picture.rgba
-        return None if is_whole else layer, puppet.picture
+        runtime = self.project.layer_runtimes[layer]
+        is_whole = runtime.cut.value.texture is runtime.picture.rgba
+        return None if is_whole else layer, runtime.picture

@@ -1,0 +1,56 @@
+"""The pace of the window's frames: full while anything changes, slow at rest."""
+
+from imgui_bundle import hello_imgui
+
+from app.editor import FileDialog, Session
+from app.editor.actions import upkeep
+
+# Input and running jobs wake the window at once.
+IDLE_FPS = 0.2
+AWAKE = 0.5  # seconds of full frame rate after that, for its consequences
+REPEATS = 2  # frames after which further frames would show nothing new
+
+
+class FramePace:
+    """Keeps the window awake while anything changes. Finds frames that can wait."""
+
+    def __init__(self) -> None:
+        self._awake_until = 0.0
+        self._idle_frames = 0
+
+    @property
+    def awaits_worker(self) -> bool:
+        """Whether further frames would repeat the shown one and slow down the worker."""
+        return self._idle_frames >= REPEATS
+
+    def begin_frame(self, session: Session) -> None:
+        if _is_busy(session):
+            self._awake_until = session.clock() + AWAKE
+        if session.clock() < self._awake_until:
+            hello_imgui.request_refresh()
+
+    def end_frame(self, session: Session) -> None:
+        self._idle_frames = self._idle_frames + 1 if _awaits_in_between(session) else 0
+
+
+def _is_busy(session: Session) -> bool:
+    """Return whether something changes without input."""
+    project = session.project
+    is_moving = project is not None and project.playhead.since is not None
+    # The system's dialog has its own input. Its answer is polled.
+    asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
+    is_working = bool(session.jobs.kinds) or session.export is not None
+    is_working |= project is not None and bool(project.stale or project.afterwards)
+    return is_moving or is_working or asks_system or bool(session.toasts)
+
+
+def _awaits_in_between(session: Session) -> bool:
+    """Return whether a placeholder stands for an in-between, and nothing else is active."""
+    project = session.project
+    if project is None or project.playhead.since is not None or session.active_tool is not None:
+        return False
+    if session.export is not None or session.toasts or session.dialog is not None:
+        return False
+    shows = [runtime.shown for runtime in project.layer_runtimes.values()]
+    awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
+    return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)
