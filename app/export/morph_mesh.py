@@ -23,6 +23,7 @@ from app.export.frame_vertices import FrameVertices
 from app.export.plan import ExportPlan
 from app.export_formats import EXPORT_FORMATS
 from app.motion import TriangleOrder, bounding_box
+from app.texts import _
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
 from engine.domain.meshing.draw_order import copy_draw_order
@@ -124,7 +125,7 @@ def build_morph_scene(
         and any(is_visible(document, layer, frame) for frame in numbers)
     ]
     if not clips:
-        raise LissomError("no layer is seen in these frames; there is nothing to export")
+        raise LissomError(_("no layer is seen in these frames; there is nothing to export"))
     found = []
     for index, clip in enumerate(clips):
         layer, mesh = clip.layer, clip.layer.domain.mesh

@@ -23,12 +23,17 @@ from app.errors import LissomError, join_names
 from app.motion import ParentTransforms, anchor_or_default, reparent_in_place
 from app.solving.script.layers import ScriptAttachment
 from app.solving.script.pose_script import LayerScript, PoseScript
+from app.texts import _
 
 
 def find_layer(document: Document, name: str) -> Layer:
     names = {layer.name: layer for layer in document.layers}
     if name not in names:
-        raise LissomError(f"there is no layer {name!r}; the layers are {join_names([*names])}")
+        raise LissomError(
+            _("there is no layer {name!r}; the layers are {names}").format(
+                name=name, names=join_names([*names])
+            )
+        )
     return names[name]
 
 
@@ -45,9 +50,10 @@ def with_attachments(document: Document, identity: int, part: LayerScript) -> Do
     joints = tuple(_attachment(document, joint, anchor) for joint in part.attach)
     if part.anchor is None and not layer.covers(np.array([anchor])).all():
         raise LissomError(
-            f"it is attached at ({anchor.real:g}, {anchor.imag:g}), which is on "
-            f"{part.attach[0].to!r} but not on itself; give it an anchor by which it hangs there, "
-            "or choose a point that is on both"
+            _(
+                "it is attached at ({real:g}, {imag:g}), which is on {to!r} but not on itself; "
+                "give it an anchor by which it hangs there, or choose a point that is on both"
+            ).format(real=anchor.real, imag=anchor.imag, to=part.attach[0].to)
         )
     return document.with_layer(replace(layer, anchor=anchor, attachments=joints))
 
@@ -58,7 +64,9 @@ def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) ->
         at = complex(parent.domain.nearest(np.array([anchor]))[0])
     elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
         raise LissomError(
-            f"it is attached at ({at.real:g}, {at.imag:g}), which is not on {parent.name!r}"
+            _("it is attached at ({real:g}, {imag:g}), which is not on {parent!r}").format(
+                real=at.real, imag=at.imag, parent=parent.name
+            )
         )
     return Attachment(
         parent=None if parent is None else parent.id,
@@ -104,7 +112,9 @@ def with_draw_order(document: Document, script: PoseScript) -> Document:
             )
             document = document.with_layer(replace(layer, draw_order_keys=placings))
         except LissomError as error:
-            raise LissomError(f"layer {part.layer!r}: order: {error}") from error
+            raise LissomError(
+                _("layer {layer!r}: order: {error}").format(layer=part.layer, error=error)
+            ) from error
     return document
 
 
@@ -114,7 +124,9 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
         try:
             identities = {name: find_layer(document, name).id for name in given.layers}
         except LissomError as error:
-            raise LissomError(f"choice {given.name!r}: {error}") from error
+            raise LissomError(
+                _("choice {given!r}: {error}").format(given=given.name, error=error)
+            ) from error
         form = switch_group_commands.create_switch_group(given.name, tuple(identities.values()))
         document = form(document)
         turns = tuple(SwitchKey(frame, identities[layer]) for frame, layer in given.turns)

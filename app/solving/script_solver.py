@@ -37,6 +37,7 @@ from app.solving.script_scene import (
     with_world_transforms,
 )
 from app.storage import make_still_layer
+from app.texts import _
 from engine.deform import BoundedPull
 from engine.errors import EngineError
 
@@ -101,7 +102,9 @@ def _whose(part: LayerScript) -> Iterator[None]:
     except (LissomError, EngineError) as error:
         if part.layer is None:
             raise
-        raise LissomError(f"layer {part.layer!r}: {error}") from error
+        raise LissomError(
+            _("layer {layer!r}: {error}").format(layer=part.layer, error=error)
+        ) from error
 
 
 @contextmanager
@@ -119,9 +122,16 @@ def _among(document: Document, identity: int, part: LayerScript) -> Iterator[Non
             raise
         own = layer.name
         raise LissomError(
-            f"{error} The script names no layer, so that its handles are on {own!r}, the one in "
-            f"front. The drawing has also {', '.join(names)}: say which layer is meant in "
-            f'"layers": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
+            _(
+                "{error} The script names no layer, so that its handles are on {own!r}, the "
+                "one in front. The drawing has also {names}: say which layer is meant in "
+                '"layers": [{{"layer": {dumps}, ...}}].'
+            ).format(
+                error=error,
+                own=own,
+                names=", ".join(names),
+                dumps=json.dumps(own, ensure_ascii=False),
+            )
         ) from error
 
 
@@ -137,8 +147,10 @@ def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
         is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
         if layer is None or (layer.still and is_posed):
             raise LissomError(
-                f"the layer {part.layer!r} stands still: there is no shape on it to be posed; it "
-                "may be moved as a whole, without handles and with one key"
+                _(
+                    "the layer {layer!r} stands still: there is no shape on it to be posed; it "
+                    "may be moved as a whole, without handles and with one key"
+                ).format(layer=part.layer)
             )
         named[layer.id] = part
     return named
@@ -209,7 +221,11 @@ def _with_material(
         try:
             document = stiffness_commands.add_bone(identity, ends, bone.stiffness)(document)
         except EngineError as error:
-            raise LissomError(f"stiff from {first!r} to {second!r}: {error}") from error
+            raise LissomError(
+                _("stiff from {first!r} to {second!r}: {error}").format(
+                    first=first, second=second, error=error
+                )
+            ) from error
     return document, notices
 
 
@@ -234,10 +250,13 @@ def _posed(
         if again is not None and cycle is not None and cycle.until != cycle.last:
             if not is_alike or key.fronts:
                 raise LissomError(
-                    f"the key at frame {key.frame} is where {cycle.description} begin again, "
-                    "but it is "
-                    f"not like the key at frame {again.frame}; leave it out, or let them end "
-                    "elsewhere"
+                    _(
+                        "the key at frame {frame} is where {description} begin again, but it "
+                        "is not like the key at frame {again_frame}; leave it out, or let them "
+                        "end elsewhere"
+                    ).format(
+                        frame=key.frame, description=cycle.description, again_frame=again.frame
+                    )
                 )
             continue
         notices += [f"{whose}{notice}" for notice in told]

@@ -27,6 +27,7 @@ from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
+from app.texts import _
 from engine.arrays import Bytes, readonly
 from engine.domain import CutOut, build_domain, rectangle_domain
 from engine.errors import EngineError
@@ -48,7 +49,9 @@ def read_layered(path: Path) -> LayeredPicture:
     try:
         return READERS[path.suffix.lower()](data)
     except LissomError as error:
-        raise LissomError(f"cannot open {path}: {error}") from error
+        raise LissomError(
+            _("cannot open {path}: {error}").format(path=path, error=error)
+        ) from error
 
 
 def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
@@ -88,7 +91,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         max(picture.size[0] for picture in pictures),
         max(picture.size[1] for picture in pictures),
     )
-    for path, (data, _), picture in zip(paths, files, pictures, strict=True):
+    for path, (data, _name), picture in zip(paths, files, pictures, strict=True):
         name = names.claim(display_name(path.stem))
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         all_imported.append(ImportedLayer(name=name, data=data, picture=picture, corner=corner))
@@ -266,7 +269,7 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         for imported, (layer, _) in zip(drawing.layers, made, strict=True)
     )
     if all(layer.still for layer in layers):
-        raise LissomError("none of its layers can be posed: there is no shape on any of them")
+        raise LissomError(_("none of its layers can be posed: there is no shape on any of them"))
     pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
     told = NoticeCollector()
     for layer, notices in made:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from app.errors import LissomError
 from app.storage import as_object, as_point, as_text, load_json, repr_for_error
+from app.texts import _
 from engine.geometry.motions.kinds import find_kind
 
 SCHEMA = 1
@@ -29,11 +30,17 @@ def _parsed(content: object) -> JointsFile:
     for name in told:
         if name not in FIELDS:
             raise LissomError(
-                f"the file of joints has an unknown field {name!r}; it may have {', '.join(FIELDS)}"
+                _("the file of joints has an unknown field {name!r}; it may have {fields}").format(
+                    name=name, fields=", ".join(FIELDS)
+                )
             )
     schema = told["schema"]
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(f"schema must be {SCHEMA}, not {repr_for_error(schema)}")
+        raise LissomError(
+            _("schema must be {schema}, not {schema_2}").format(
+                schema=SCHEMA, schema_2=repr_for_error(schema)
+            )
+        )
     kind = None if told.get("kind") is None else as_text(told["kind"], "kind")
     if kind is not None:
         find_kind(kind)
@@ -44,6 +51,6 @@ def _parsed(content: object) -> JointsFile:
     feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
     if feet and "head" in joints and min(feet) > joints["head"].imag:
         raise LissomError(
-            "the feet are above the head; places are pixels from the lower left corner, y up"
+            _("the feet are above the head; places are pixels from the lower left corner, y up")
         )
     return JointsFile(kind=kind, joints=joints)

@@ -26,6 +26,7 @@ from app.solving.motion_preset.motion_request import (
     with_limits,
 )
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
+from app.texts import _
 from engine.geometry.motions.body import Body
 
 # Largest number of steps; a pose that needs more moves slowly along a limit.
@@ -135,7 +136,11 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
     """
     before = document.layer(identity)
     if before.still:
-        raise LissomError(f"{before.name!r} stands still: there is no shape on it to be moved.")
+        raise LissomError(
+            _("{before!r} stands still: there is no shape on it to be moved.").format(
+                before=before.name
+            )
+        )
     body = find_rest_body(before, order)
     document, joints = with_handles_at_joints(document, identity, body, order)
     document = with_limits(document, identity, order.limits)

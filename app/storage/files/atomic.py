@@ -22,6 +22,7 @@ from app.errors import LissomError
 from app.storage.files.cancellation import Cancellation
 from app.storage.files.locks import lock, open_to_lock
 from app.storage.files.outputs import check_writable
+from app.texts import _
 
 T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
@@ -255,4 +256,4 @@ def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
         return DiskFullError(path, error, written)
     if error.errno in NOT_ALLOWED:
         reason += f": its folder {path.parent} may not be written to; choose another one"
-    return LissomError(f"cannot write {path}: {reason}")
+    return LissomError(_("cannot write {path}: {reason}").format(path=path, reason=reason))

@@ -21,16 +21,17 @@ from app.errors import (
 )
 from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.picture import Picture
+from app.texts import N_, _
 from engine.arrays import readonly
 
 MOST_LAYERS = 200
 MOST_GROUPS = 10_000
 LONGEST_NAME = 1_000  # characters of a layer's or group's name
-EMPTY = "left out, since it is empty"
+EMPTY = N_("left out, since it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
 # pixel takes memory, also on the graphics card.
 CUT_OFF = 0.8
-GROUPS_DEEP = "its groups lie more than {most} deep in each other"
+GROUPS_DEEP = N_("its groups lie more than {most} deep in each other")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -120,10 +121,13 @@ class GroupPaths:
         too long.
         """
         if around.count("/") + bool(around) >= MAX_GROUP_DEPTH:
-            raise LissomError(GROUPS_DEEP.format(most=MAX_GROUP_DEPTH))
+            raise LissomError(_(GROUPS_DEEP).format(most=MAX_GROUP_DEPTH))
         if len(self._found) == MOST_GROUPS:
             raise LissomError(
-                f"it has more than {MOST_GROUPS:,} groups, which Lissom does not take: merge some"
+                _(
+                    "it has more than {most_groups:,} groups, which Lissom does not take: "
+                    "merge some"
+                ).format(most_groups=MOST_GROUPS)
             )
         # A slash separates groups.
         name = display_name(group.name).replace("/", "-").strip() or "group"
@@ -158,7 +162,7 @@ def build_layered_picture(
     """
     kept = _drawn_layers(found, groups, told)
     if not kept:
-        raise LissomError("it has no layer on which anything is drawn")
+        raise LissomError(_("it has no layer on which anything is drawn"))
     # Layers may share a picture.
     distinct = list({id(layer.picture): layer for layer in kept}.values())
     made = run_parallel(_trimmed, distinct, (layer.picture.size for layer in distinct))
@@ -198,7 +202,10 @@ def _drawn_layers(
         is_clipped = groups.is_clipped(path) if path else run[0].clipped
         if is_clipped and empty:
             for layer in run:
-                told.add_note(layer.name, f"left out, since it is clipped by the empty {empty}")
+                told.add_note(
+                    layer.name,
+                    _("left out, since it is clipped by the empty {empty}").format(empty=empty),
+                )
             continue
         drawn = (
             _drawn_layers(run, groups, told, depth + 1)
@@ -216,7 +223,7 @@ def _layer_unless_blank(layer: ImportedLayer, told: NoticeCollector) -> list[Imp
     """Return a layer, or nothing and a notice if it is empty."""
     is_empty = is_blank(layer.picture)
     if is_empty:
-        told.add_note(layer.name, EMPTY)
+        told.add_note(layer.name, _(EMPTY))
     return [] if is_empty else [layer]
 
 
@@ -267,7 +274,9 @@ def check_layer_count(count: int) -> None:
     """Refuse too many layers before any of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
-            f"it has {count:,} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
+            _(
+                "it has {count:,} layers; Lissom takes up to {most_layers}: merge some of them"
+            ).format(count=count, most_layers=MOST_LAYERS)
         )
 
 
@@ -275,8 +284,10 @@ def check_name_length(name: str) -> None:
     """Refuse a name that is too long for lists and messages; group paths repeat it."""
     if len(name) > LONGEST_NAME:
         raise LissomError(
-            f"the name {shortened(name)!r} has {len(name):,} characters; Lissom takes up to "
-            f"{LONGEST_NAME:,}: shorten it"
+            _(
+                "the name {name!r} has {count:,} characters; Lissom takes up to "
+                "{longest_name:,}: shorten it"
+            ).format(name=shortened(name), count=len(name), longest_name=LONGEST_NAME)
         )
 
 

@@ -25,13 +25,14 @@ from app.storage.pictures.layered import (
     is_blank,
 )
 from app.storage.pictures.picture import decode_pictures, stored_size
+from app.texts import N_, _
 
 MIMETYPE = b"image/openraster"
 LARGEST_XML = 4 * 1024 * 1024
 # Limit of the pictures' total size beyond twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
-DAMAGED_STACK = "its stack.xml is damaged, or in a rare encoding; UTF-8 is usual"
+DAMAGED_STACK = N_("its stack.xml is damaged, or in a rare encoding; UTF-8 is usual")
 MODES: dict[str, BlendMode] = {
     "": "normal",
     "svg:src-over": "normal",
@@ -57,31 +58,33 @@ def read_openraster(data: bytes) -> LayeredPicture:
         with open_zip(io.BytesIO(data)) as archive:
             return _read(archive)
     except DAMAGE as error:
-        raise LissomError("it is not an OpenRaster file, or it is damaged") from error
+        raise LissomError(_("it is not an OpenRaster file, or it is damaged")) from error
 
 
 def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     if _member(archive, "mimetype", 1024).strip() != MIMETYPE:
-        raise LissomError("it is not an OpenRaster file")
+        raise LissomError(_("it is not an OpenRaster file"))
     image = _parse(_member(archive, "stack.xml", LARGEST_XML))
     size = (_whole(image, "w"), _whole(image, "h"))
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
-        raise LissomError("its stack.xml holds no stack of layers")
+        raise LissomError(_("its stack.xml holds no stack of layers"))
     told, groups = NoticeCollector(), GroupPaths()
     # The file lists the stack from the front.
     elements = list(_layers(stack, _Place(), groups, told))[::-1]
     check_layer_count(len(elements))
     sources = []
-    for element, _ in elements:
+    for element, _place in elements:
         source = element.get("src", "")
         if source not in archive.NameToInfo:
-            raise LissomError(f"it lacks {shortened(source) or 'the picture of a layer'}")
+            raise LissomError(
+                _("it lacks {source}").format(source=shortened(source) or "the picture of a layer")
+            )
         sources.append(source)
     distinct = list(dict.fromkeys(sources))
     packed = sum(member.compress_size for member in archive.infolist())
     if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
-        raise LissomError("its pictures would unpack to more than any drawing")
+        raise LissomError(_("its pictures would unpack to more than any drawing"))
     members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
     check_memory([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
@@ -92,7 +95,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         name = element.get("name", "").strip() or "layer"
         if is_blank(picture):
             # An empty layer is no clipping base: the rest below is.
-            told.add_note(name, EMPTY)
+            told.add_note(name, _(EMPTY))
             continue
         layer = ImportedLayer(
             name=name,
@@ -158,7 +161,9 @@ def _layers(
             inner = replace(place, group=groups.add(around.group, group))
             yield from _layers(element, inner, groups, told)
         else:
-            told.add_warning(name or element.tag, "left out, since Lissom takes drawn layers only")
+            told.add_warning(
+                name or element.tag, _("left out, since Lissom takes drawn layers only")
+            )
 
 
 def _is_visible(element: ET.Element) -> bool:
@@ -188,7 +193,10 @@ def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
     if mode not in MODES:
         name = element.get("name", "").strip() or element.tag
         told.add_warning(
-            name, f"drawn normally, not in the mode {shortened(mode.removeprefix('svg:'))!r}"
+            name,
+            _("drawn normally, not in the mode {mode!r}").format(
+                mode=shortened(mode.removeprefix("svg:"))
+            ),
         )
     return MODES.get(mode, "normal")
 
@@ -198,7 +206,7 @@ class _Builder(ET.TreeBuilder):
 
     def doctype(self, *_: str | None) -> None:
         """Refuse a document type: its entities could grow without limit."""
-        raise LissomError("its stack.xml has a document type, which no layer stack has")
+        raise LissomError(_("its stack.xml has a document type, which no layer stack has"))
 
 
 def _parse(content: bytes) -> ET.Element:
@@ -206,13 +214,17 @@ def _parse(content: bytes) -> ET.Element:
         # The builder has refused all entities.
         return ET.fromstring(content, ET.XMLParser(target=_Builder()))  # noqa: S314
     except (ET.ParseError, LookupError, TypeError, ValueError, RecursionError) as error:
-        raise LissomError(DAMAGED_STACK) from error
+        raise LissomError(_(DAMAGED_STACK)) from error
 
 
 def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
     member = archive.getinfo(name)
     if member.file_size > largest:
-        raise LissomError(f"its {name} is too large: {member.file_size:,} bytes")
+        raise LissomError(
+            _("its {name} is too large: {file_size:,} bytes").format(
+                name=name, file_size=member.file_size
+            )
+        )
     # Reading with the given size never unpacks more.
     with archive.open(member) as packed:
         return packed.read(member.file_size)
@@ -222,7 +234,9 @@ def _whole(element: ET.Element, name: str) -> int:
     number = _number(element, name, 0.0)
     if not (number == int(number) and 1 <= number <= LARGEST_SIDE):
         raise LissomError(
-            f"its stack.xml gives the canvas a size of {shortened(element.get(name))!r} pixels"
+            _("its stack.xml gives the canvas a size of {get!r} pixels").format(
+                get=shortened(element.get(name))
+            )
         )
     return int(number)
 
@@ -235,6 +249,8 @@ def _number(element: ET.Element, name: str, default: float) -> float:
         number = float("nan")
     if not (isfinite(number) and abs(number) <= 1e7):
         raise LissomError(
-            f"its stack.xml says {name}={shortened(text)!r}, which is not a number of use"
+            _("its stack.xml says {name}={text!r}, which is not a number of use").format(
+                name=name, text=shortened(text)
+            )
         )
     return number

@@ -26,6 +26,7 @@ from app.storage.pictures.layered import (
 )
 from app.storage.pictures.photoshop_masks import MaskedGroup, is_masked, masked_pixels
 from app.storage.pictures.picture import Picture, decode_picture
+from app.texts import N_, _
 from engine.arrays import freeze
 
 MEBIBYTE = 1024 * 1024
@@ -48,7 +49,7 @@ MODES: Final[dict[str, BlendMode]] = {
     "MULTIPLY": "multiply",
     "SCREEN": "screen",
 }
-DAMAGED: Final = "it is not a Photoshop file, or it is damaged"
+DAMAGED: Final = N_("it is not a Photoshop file, or it is damaged")
 DAMAGE = (
     OSError,
     ValueError,
@@ -82,14 +83,15 @@ def read_photoshop(data: bytes) -> LayeredPicture:
     damaged, too large or empty.
     """
     if not data.startswith(SIGNATURE):
-        raise LissomError("it is not a Photoshop file")
+        raise LissomError(_("it is not a Photoshop file"))
     try:
         import psd_tools  # noqa: PLC0415 - it is an extra
     except ImportError as error:
         raise LissomError(
-            f"Photoshop files need psd-tools: {install_hint('psd')}; or save the drawing as "
-            "OpenRaster "
-            "(.ora)"
+            _(
+                "Photoshop files need psd-tools: {install_hint}; or save the drawing as "
+                "OpenRaster (.ora)"
+            ).format(install_hint=install_hint("psd"))
         ) from error
     # Its own messages about skipped content go to standard error, which nobody reads.
     logging.getLogger(psd_tools.__name__).setLevel(logging.CRITICAL)
@@ -100,14 +102,14 @@ def read_photoshop(data: bytes) -> LayeredPicture:
             _require_few_records(data)
             return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
     except DAMAGE as error:
-        raise LissomError(DAMAGED) from error
+        raise LissomError(_(DAMAGED)) from error
 
 
 def _require_few_records(data: bytes) -> None:
     """Refuse a file with too many layer records, before it is read."""
     (version,) = struct.unpack_from(">H", data, len(SIGNATURE))
     at = HEADER
-    for _ in ("the palette", "the resources"):
+    for _section in ("palette", "resources"):
         at += 4 + struct.unpack_from(">I", data, at)[0]
     # Skip the lengths of the layer section and of the layer list.
     at += 2 * 4 * version
@@ -116,8 +118,10 @@ def _require_few_records(data: bytes) -> None:
     count = sum(abs(struct.unpack_from(">h", data, start)[0]) for start in starts)
     if count > MOST_RECORDS:
         raise LissomError(
-            f"it has {count:,} layers and ends of groups; Lissom takes up to "
-            f"{MOST_RECORDS:,}: merge some of them"
+            _(
+                "it has {count:,} layers and ends of groups; Lissom takes up to "
+                "{most_records:,}: merge some of them"
+            ).format(count=count, most_records=MOST_RECORDS)
         )
 
 
@@ -184,7 +188,7 @@ def _drawn_layers(
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
                 masks = (*masks, MaskedGroup(layer, canvas))
                 told.add_note(
-                    name, "its mask is cut into the layers of the group, as they are drawn"
+                    name, _("its mask is cut into the layers of the group, as they are drawn")
                 )
             inner = _Place(group=groups.add(place.group, group), masks=masks)
             drawn = list(_drawn_layers(layer, inner, groups, told))
@@ -192,11 +196,11 @@ def _drawn_layers(
         elif layer.kind in DRAWN:
             _warn_left_out(layer, name, told)
             if layer.kind == "type":
-                told.add_note(name, "text, drawn as a picture")
+                told.add_note(name, _("text, drawn as a picture"))
             yield replace(place, masks=masks), layer, is_clipped
         else:
             kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
-            told.add_warning(name, f"left out, since it is {kind} layer")
+            told.add_warning(name, _("left out, since it is {kind} layer").format(kind=kind))
             clips = clips and _is_clipping(layer)
             continue
         has_base = has_base or not is_clipped
@@ -209,17 +213,19 @@ def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
         effects = dict.fromkeys(
             _split_camel_case(type(effect).__name__) for effect in layer.effects if effect.enabled
         )
-        told.add_warning(name, f"drawn without effects ({', '.join(effects)})")
+        told.add_warning(
+            name, _("drawn without effects ({effects})").format(effects=", ".join(effects))
+        )
     if layer.kind == "artboard":
         told.add_warning(
-            name, "an artboard, of which neither the background nor the edges are drawn"
+            name, _("an artboard, of which neither the background nor the edges are drawn")
         )
     ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
     pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
     if any(each not in ALL_LEVELS for pair in pairs for each in pair):
-        told.add_warning(name, "drawn at all brightnesses, whatever its “Blend If” says")
+        told.add_warning(name, _("drawn at all brightnesses, whatever its “Blend If” says"))
     if layer.tagged_blocks.get_data(KNOCKOUT):
-        told.add_warning(name, "drawn over what is behind, which it knocks out in the file")
+        told.add_warning(name, _("drawn over what is behind, which it knocks out in the file"))
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -251,7 +257,11 @@ def _require_channels(layer: Any, drawing: Any) -> None:
         found[int(told.id)] = channel
     colours = COLOURS.get(drawing.color_mode.name, 0)
     if layer.width and layer.height and not set(range(colours)) <= set(found):
-        raise LissomError(f"the layer {shortened(layer.name)!r} lacks a channel of its colours")
+        raise LissomError(
+            _("the layer {layer!r} lacks a channel of its colours").format(
+                layer=shortened(layer.name)
+            )
+        )
     for number, channel in found.items():
         if number >= TRANSPARENCY:
             _require_all_rows(channel, layer.height, drawing.version)
@@ -264,4 +274,4 @@ def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0
         lengths = np.frombuffer(channel.data[: size * rows], f">u{size}")
         left = len(channel.data) - size * rows - int(lengths.sum())
         if len(lengths) < rows or not 0 <= left <= padding:
-            raise LissomError("the rows of one of its channels are not as long as it says")
+            raise LissomError(_("the rows of one of its channels are not as long as it says"))

@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageChops, ImageFilter
 
 from app.errors import NoticeCollector
+from app.texts import _
 from engine.arrays import Booleans
 
 # Mask levels that leave a layer half transparent.
@@ -58,7 +59,7 @@ def is_masked(layer: Any, told: NoticeCollector) -> bool:
     # Programs store the result of a vector mask as a pixel mask, too.
     is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
     if is_by_paths and not layer.vector_mask.disabled:
-        told.add_warning(layer.name.strip() or "layer", "drawn without its vector mask")
+        told.add_warning(layer.name.strip() or "layer", _("drawn without its vector mask"))
     return is_masked
 
 

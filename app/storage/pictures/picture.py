@@ -16,6 +16,7 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
 from app.storage.pictures.parallel import require_memory, run_parallel
+from app.texts import N_, _
 from engine.arrays import Booleans, Bytes, Floats, freeze
 from engine.domain import Mask
 
@@ -52,8 +53,8 @@ EXIF_ORIENTATION = 0x0112
 BAND = 64  # rows of pixels copied at once
 OPAQUE = 255
 HALF = 128  # levels: lighter mask pixels are kept
-NO_PICTURE = "{name} is not a picture that Lissom reads ({formats})"
-DAMAGED_PICTURE = "{name} is damaged or cut short"
+NO_PICTURE = N_("{name} is not a picture that Lissom reads ({formats})")
+DAMAGED_PICTURE = N_("{name} is damaged or cut short")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -101,7 +102,9 @@ def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
     try:
         require_memory(sizes)
     except LissomError as error:
-        raise LissomError(f"{files[0][1]} is too large: {error}") from error
+        raise LissomError(
+            _("{files} is too large: {error}").format(files=files[0][1], error=error)
+        ) from error
     with _only_size_warnings():
         return run_parallel(lambda file: _decode(*file), files, sizes)
 
@@ -123,7 +126,7 @@ def encode_mask(mask: Mask) -> bytes:
 def stored_size(data: bytes, name: str) -> tuple[int, int]:
     """Return the width and height in pixels from a picture file's header, without decoding it."""
     if not data:
-        raise LissomError(f"{name} is empty")
+        raise LissomError(_("{name} is empty").format(name=name))
     with (
         _only_size_warnings(),
         _naming_errors(name),
@@ -153,12 +156,14 @@ def _naming_errors(name: str) -> Iterator[None]:
         yield
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
         raise LissomError(
-            f"{name} has more than {Image.MAX_IMAGE_PIXELS or 0:,} pixels; scale it down first"
+            _("{name} has more than {max_image_pixels:,} pixels; scale it down first").format(
+                name=name, max_image_pixels=Image.MAX_IMAGE_PIXELS or 0
+            )
         ) from error
     except UnidentifiedImageError as error:
-        raise LissomError(NO_PICTURE.format(name=name, formats=FORMATS_IN_WORDS)) from error
+        raise LissomError(_(NO_PICTURE).format(name=name, formats=FORMATS_IN_WORDS)) from error
     except DECODER_ERRORS as error:
-        raise LissomError(DAMAGED_PICTURE.format(name=name)) from error
+        raise LissomError(_(DAMAGED_PICTURE).format(name=name)) from error
 
 
 def _decode(data: bytes, name: str) -> Picture:

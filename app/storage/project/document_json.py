@@ -69,6 +69,7 @@ from app.storage.json_values import (
 from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
+from app.texts import _
 from engine.domain import CutLine, CutOut, Domain, Stroke
 from engine.geometry.motions.motion import Parameters
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
@@ -458,7 +459,7 @@ def read_document(
     layers = fields.pop("layers")
     if len({layer["id"] for layer in layers}) < len(layers):
         # Refused here: later each layer's members would be read twice.
-        raise LissomError("two of its layers have the same id")
+        raise LissomError(_("two of its layers have the same id"))
     shared: dict[str, PictureFile] = {}
     read = tuple(_read_layer(layer, archive, shared) for layer in layers)
     if not archive.is_written:
@@ -498,7 +499,9 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
     def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
         targets, f = dict(given), members.map(domain, kind, index)
         if len(targets) < len(given):
-            raise LissomError(f"one of its {kind} has two targets for one handle")
+            raise LissomError(
+                _("one of its {kind} has two targets for one handle").format(kind=kind)
+            )
         return Pose.of(f, targets, proven(f))
 
     motions = _read_motions(fields.pop("motions"), {handle.id for handle in fields["handles"]})

@@ -7,6 +7,7 @@ from app.document.layer import Layer
 from app.document.layers.groups import Group, ancestor_paths
 from app.document.layers.visibility import SwitchGroup
 from app.document.model import Document
+from app.texts import _
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,12 +66,13 @@ def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, s
     other frames.
     """
     parents = {joint.parent for joint in layer.attachments if joint.parent is not None}
-    _, *carriers = document.parent_chain(layer.id, frame)
+    ancestors = document.parent_chain(layer.id, frame)[1:]
     if not parents:
         return 0, ""
-    now = carriers[0].name if carriers else "nothing"
-    others = parents - {each.id for each in carriers[:1]}
-    return len(carriers), f"on {now}…" if others else f"on {now}"
+    now = ancestors[0].name if ancestors else _("nothing")
+    others = parents - {each.id for each in ancestors[:1]}
+    label = _("on {parent}…") if others else _("on {parent}")
+    return len(ancestors), label.format(parent=now)
 
 
 def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
@@ -95,7 +97,7 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
             yield TreeRow(
                 key=f"choice {choice.name}",
                 depth=len(around),
-                layers=tuple(each.id for each, other, _ in order if other is choice),
+                layers=tuple(each.id for each, other, _group in order if other is choice),
                 is_open=f"choice {choice.name}" in toggled,
                 switch_group=choice,
             )
@@ -128,7 +130,7 @@ def _in_order(document: Document) -> list[_Listed]:
 def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
     """Return the ids of the run of consecutive layers of a group that begins at an index."""
     run = []
-    for layer, _, where in order[first:]:
+    for layer, _switch, where in order[first:]:
         if path not in ancestor_paths(where):
             break
         run.append(layer.id)
