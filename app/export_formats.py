@@ -177,8 +177,10 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             use=_("For compositing and editing: exact, each frame a file of its own."),
             about=_(
                 "frame_0000.png, ... in the folder --out, which is made if it is missing. Frame "
-                "0 of the timeline is frame_0000.png; numbers go on one by one from that of the first "
-                "frame, with --fps too, and have more digits if one needs them. Frames of before with "
+                "0 of the timeline is frame_0000.png; numbers go on one by one from that "
+                "of the first "
+                "frame, with --fps too, and have more digits if one needs them. Frames "
+                "of before with "
                 "the same names are replaced, other files stay."
             ),
         ),
@@ -255,7 +257,8 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             use=_("For 2D engines: all frames in one PNG, with data; a fixed rate and size."),
             about=_(
                 "all frames in one PNG, row by row, and beside it a JSON that tells where each "
-                "is, as TexturePacker writes it, with durations and tags as in Aseprite; tags are made "
+                "is, as TexturePacker writes it, with durations and tags as in Aseprite; "
+                "tags are made "
                 "of the timeline's markers. Frames are trimmed and 2 pixels apart by default"
             ),
             suffixes=(".png",),
@@ -271,7 +274,8 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             ),
             about=_(
                 "a textured mesh with morph targets and their weights in time, for engines, "
-                "Blender and browsers: base shape and targets come within --tolerance of the motion. "
+                "Blender and browsers: base shape and targets come within --tolerance of "
+                "the motion. "
                 "100 pixels are a metre, the middle of the canvas' lower edge is the origin"
             ),
             suffixes=(".glb",),

@@ -299,7 +299,8 @@ def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
         return ()
     return (
         _(
-            "{format} needs even sides: the frames are extended by background to {width} × {height} "
+            "{format} needs even sides: the frames are extended by background to {width} "
+            "× {height} "
             "pixels"
         ).format(format=plan.format, width=width, height=height),
     )

@@ -17,6 +17,7 @@ from app.document import (
     transfer_painted_stiffness,
 )
 from app.solving.drag_solver import Rig, fit_map, pins_of
+from app.texts import _
 from engine.arrays import Bytes
 from engine.domain import build_domain
 from engine.geometry import contains
@@ -57,8 +58,10 @@ class KeyResolver:
     def status_text(self) -> str:
         """Description of the next step."""
         if self.meshing is not None and self.new_layer is None:
-            return "Building the domain"
-        return f"Solving pose {len(self.poses) + 1} of {len(self.before.poses)}"
+            return _("Building the domain")
+        return _("Solving pose {number} of {count}").format(
+            number=len(self.poses) + 1, count=len(self.before.poses)
+        )
 
     @property
     def command(self) -> Command:
@@ -68,7 +71,9 @@ class KeyResolver:
             return shape_commands.set_limits(identity, self.bounds, self.poses)
         if self.replaces_picture:
             posed = shape_commands.set_limits(identity, self.bounds, self.poses)
-            return _joined("Replace picture", layer_commands.replace_layer(identity, into), posed)
+            return _joined(
+                _("Replace picture"), layer_commands.replace_layer(identity, into), posed
+            )
         domain = shape_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
         return _joined(domain.label, domain, layer_commands.keep_attachments(identity))
 
@@ -99,8 +104,8 @@ def _in_words(layer: Layer, index: int) -> str:
     """Return the place of a pose: the frame of its key, or its name in the library."""
     count = len(layer.keys)
     if index < count:
-        return f"at frame {layer.keys[index].frame}"
-    return f"“{layer.library[index - count].name}”"
+        return _("at frame {frame}").format(frame=layer.keys[index].frame)
+    return _("“{name}”").format(name=layer.library[index - count].name)
 
 
 def _with_domain(renewal: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyResolver:

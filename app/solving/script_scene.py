@@ -51,9 +51,9 @@ def with_attachments(document: Document, identity: int, part: LayerScript) -> Do
     if part.anchor is None and not layer.covers(np.array([anchor])).all():
         raise LissomError(
             _(
-                "it is attached at ({real:g}, {imag:g}), which is on {to!r} but not on itself; "
-                "give it an anchor by which it hangs there, or choose a point that is on both"
-            ).format(real=anchor.real, imag=anchor.imag, to=part.attach[0].to)
+                "it is attached at ({x:g}, {y:g}), which is on {parent!r} but not on itself; give "
+                "it an anchor, or choose a point that is on both"
+            ).format(x=anchor.real, y=anchor.imag, parent=part.attach[0].to)
         )
     return document.with_layer(replace(layer, anchor=anchor, attachments=joints))
 
@@ -64,8 +64,8 @@ def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) ->
         at = complex(parent.domain.nearest(np.array([anchor]))[0])
     elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
         raise LissomError(
-            _("it is attached at ({real:g}, {imag:g}), which is not on {parent!r}").format(
-                real=at.real, imag=at.imag, parent=parent.name
+            _("it is attached at ({x:g}, {y:g}), which is not on {parent!r}").format(
+                x=at.real, y=at.imag, parent=parent.name
             )
         )
     return Attachment(
@@ -125,7 +125,7 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
             identities = {name: find_layer(document, name).id for name in given.layers}
         except LissomError as error:
             raise LissomError(
-                _("choice {given!r}: {error}").format(given=given.name, error=error)
+                _("switch {name!r}: {error}").format(name=given.name, error=error)
             ) from error
         form = switch_group_commands.create_switch_group(given.name, tuple(identities.values()))
         document = form(document)
@@ -143,11 +143,13 @@ def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
         if part.layer is None or not part.movement:
             continue
         layer = find_layer(document, part.layer)
-        carriers = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
-        if all(carriers):
+        ancestors = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
+        if all(ancestors):
             notices.append(
-                f"{part.layer} hangs on {carriers[0][0].name} and goes with it: its own movement "
-                "is not seen"
+                _(
+                    "{layer} is attached to {parent} and moves with it: its own movement has no "
+                    "effect"
+                ).format(layer=part.layer, parent=ancestors[0][0].name)
             )
     return notices
 
@@ -159,7 +161,7 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
     keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
     keyed += [placing.frame for placing in part.order]
     notices = [
-        f"nothing is keyed in {cycle.description}: there is nothing to repeat"
+        _("no key is in {cycle}: there is nothing to repeat").format(cycle=cycle.description)
         for cycle in part.cycles
         if not (
             any(map(cycle.contains, keyed))
@@ -167,24 +169,26 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
             or attachments_repeat(layer.attachments, cycle)
         )
     ]
-    rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]]
-    rows = {"movement": part.movement, "opacity": opacity}
-    for name, row in rows.items():
+    rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]] = {
+        _("its movement ends otherwise than it begins in {cycle}, and does not repeat"): (
+            part.movement
+        ),
+        _("its opacity ends otherwise than it begins in {cycle}, and does not repeat"): opacity,
+    }
+    for notice, row in rows.items():
         cycle = next(
             (each for each in part.cycles if len(row) > 1 and each.repeats_keys(row)), None
         )
         if cycle is not None and repeating_cycle(layer, row) is None:
-            notices.append(
-                f"its {name} ends otherwise than it begins in {cycle.description}, and does not "
-                "repeat"
-            )
+            notices.append(notice.format(cycle=cycle.description))
     for cycle in part.cycles:
         changes = any(cycle.first < joint.frame < cycle.last for joint in layer.attachments)
         if changes and not attachments_repeat(layer.attachments, cycle):
             notices.append(
-                f"what it hangs on changes in the repeats of {cycle.description}, too, or is "
-                "another one "
-                "at their end than at their beginning, and does not repeat"
+                _(
+                    "its attachments do not repeat with {cycle}: the parent changes in the repeats "
+                    "too, or differs at their start and end"
+                ).format(cycle=cycle.description)
             )
     return notices
 
@@ -199,8 +203,10 @@ def warn_unused_switches(document: Document) -> list[str]:
         others = [each.name for each in layers if cycle not in each.cycles]
         if cycle is not None and others:
             notices.append(
-                f"choice {choice.name!r}: its keys do not repeat, as {cycle.description} do not of "
-                f"{', '.join(others)}; give all its layers that cycle, or leave it out"
+                _(
+                    "switch {name!r}: its keys do not repeat, since {cycle} do not repeat in "
+                    "{layers}; give all its layers that cycle, or leave it out"
+                ).format(name=choice.name, cycle=cycle.description, layers=", ".join(others))
             )
     return notices
 
@@ -218,29 +224,45 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
         if any(is_visible(document, layer, frame) for frame in range(first, last + 1)):
             continue
         if choice is not None:
-            notices.append(f"{part.layer} is never seen: the choice {choice.name!r} never shows it")
+            notices.append(
+                _("{layer} is never seen: the switch {name!r} never shows it").format(
+                    layer=part.layer, name=choice.name
+                )
+            )
         elif part.visible is None:
             notices.append(
-                f"{part.layer} is hidden in the drawing, and so never seen; with "
-                '"visible": [[0, true]] it is'
+                _(
+                    "{layer} is hidden in the drawing, so that it is never seen; show it with "
+                    '"visible": [[0, true]]'
+                ).format(layer=part.layer)
             )
         elif late:
             notices.append(
-                f"{part.layer} is never seen: it is shown from frame {late[0]} on, and the "
-                f"animation ends at frame {last}"
+                _(
+                    "{layer} is never seen: it is shown from frame {frame} on, and the animation "
+                    "ends at frame {last}"
+                ).format(layer=part.layer, frame=late[0], last=last)
             )
         else:
-            notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
+            notices.append(
+                _("{layer} is never seen: its visible shows it at no frame").format(
+                    layer=part.layer
+                )
+            )
     late_changes = [
-        (f"choice {given.name!r}: {layer}", frame)
+        (_("switch {name!r}: {layer}").format(name=given.name, layer=layer), frame)
         for given in script.choices
         for frame, layer in given.turns
     ]
     for part in script.layers:
-        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
-        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+        parent = _("the parent of {layer}").format(layer=part.layer)
+        order = _("the order of {layer}").format(layer=part.layer)
+        late_changes += [(parent, joint.frame) for joint in part.attach]
+        late_changes += [(order, each.frame) for each in part.order]
     return notices + [
-        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        _("{what} from frame {frame} on is never seen: the animation ends at frame {last}").format(
+            what=what, frame=frame, last=last
+        )
         for what, frame in late_changes
         if frame > last
     ]

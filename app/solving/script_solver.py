@@ -37,7 +37,7 @@ from app.solving.script_scene import (
     with_world_transforms,
 )
 from app.storage import make_still_layer
-from app.texts import _
+from app.texts import _, message_of
 from engine.deform import BoundedPull
 from engine.errors import EngineError
 
@@ -103,7 +103,7 @@ def _whose(part: LayerScript) -> Iterator[None]:
         if part.layer is None:
             raise
         raise LissomError(
-            _("layer {layer!r}: {error}").format(layer=part.layer, error=error)
+            _("layer {layer!r}: {error}").format(layer=part.layer, error=message_of(error))
         ) from error
 
 
@@ -125,12 +125,12 @@ def _among(document: Document, identity: int, part: LayerScript) -> Iterator[Non
             _(
                 "{error} The script names no layer, so that its handles are on {own!r}, the "
                 "one in front. The drawing has also {names}: say which layer is meant in "
-                '"layers": [{{"layer": {dumps}, ...}}].'
+                '"layers": [{{"layer": {name}, ...}}].'
             ).format(
-                error=error,
+                error=message_of(error),
                 own=own,
                 names=", ".join(names),
-                dumps=json.dumps(own, ensure_ascii=False),
+                name=json.dumps(own, ensure_ascii=False),
             )
         ) from error
 
@@ -206,12 +206,15 @@ def _with_material(
     notices = []
     for each in part.parts:
         at, options = each.around, {"radius": each.radius, "amount": each.amount}
-        _, reached = brushed_stiffness(document.layer(identity), [at], **options)
+        *_stiffness, reached = brushed_stiffness(document.layer(identity), [at], **options)
         if not reached:
             whose = "" if part.layer is None else f"{part.layer}, "
             notices.append(
-                f"{whose}no outline is seen within {each.radius:g} px of ({at.real:g}, "
-                f"{at.imag:g}): nothing is stiff or soft there"
+                whose
+                + _(
+                    "no outline is within {radius:g} px of ({x:g}, {y:g}): nothing is stiff or "
+                    "soft there"
+                ).format(radius=each.radius, x=at.real, y=at.imag)
             )
         document = stiffness_commands.paint_stiffness(identity, [at], **options)(document)
     ids = [handle.id for handle in document.layer(identity).handles]
@@ -223,7 +226,7 @@ def _with_material(
         except EngineError as error:
             raise LissomError(
                 _("stiff from {first!r} to {second!r}: {error}").format(
-                    first=first, second=second, error=error
+                    first=first, second=second, error=message_of(error)
                 )
             ) from error
     return document, notices
@@ -239,7 +242,7 @@ def _posed(
     keys: list[Keyframe] = []
     notices: list[str] = []
     for key in part.keys:
-        progress(f"solving {whose}the key at frame {key.frame}")
+        progress(whose + _("solving the key at frame {frame}").format(frame=key.frame))
         pose, told = _solve(rig, pose, key)
         again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
         is_alike = again is not None and _has_same_targets(rig, pose, again.pose)
@@ -251,12 +254,9 @@ def _posed(
             if not is_alike or key.fronts:
                 raise LissomError(
                     _(
-                        "the key at frame {frame} is where {description} begin again, but it "
-                        "is not like the key at frame {again_frame}; leave it out, or let them "
-                        "end elsewhere"
-                    ).format(
-                        frame=key.frame, description=cycle.description, again_frame=again.frame
-                    )
+                        "the key at frame {frame} is where {cycle} begin again, but it differs "
+                        "from the key at frame {first}; leave it out, or end the cycle elsewhere"
+                    ).format(frame=key.frame, cycle=cycle.description, first=again.frame)
                 )
             continue
         notices += [f"{whose}{notice}" for notice in told]
@@ -296,8 +296,9 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     turned = {identities[name]: turn for name, turn in key.turns.items()}
     carried = layer.sprung_handles & named.keys()
     notices = [
-        f"frame {key.frame}: {layer.handle(identity).name!r} follows by its spring, and goes "
-        "where the body carries it, whatever its target"
+        _(
+            "frame {frame}: {handle!r} has a spring and follows the body; its target has no effect"
+        ).format(frame=key.frame, handle=layer.handle(identity).name)
         for identity in sorted(carried)
     ]
     for identity in carried:
@@ -308,22 +309,26 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         place = named.get(identity, before.position)
         targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
     if all(
-        (start.targets[i].position, start.targets[i].rotation) == (wished.position, wished.rotation)
-        for i, wished in targets.items()
+        (start.targets[i].position, start.targets[i].rotation) == (target.position, target.rotation)
+        for i, target in targets.items()
     ):
         return start, notices
     hands = tuple(BoundedPull((identity,), key.pull) for identity in named)
     drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
-    shortfall = measure_target_errors(layer, drag.make_pose(targets))
+    target_errors = measure_target_errors(layer, drag.make_pose(targets))
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
     pose = drag.step_towards(left, MOST_STEPS).make_pose(left)
     # Joints of bones may yield, since the script does not hold them.
     joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
     notices += [
-        f"frame {key.frame}: {layer.handle(identity).name!r} is {lag:.1f} px short of "
-        f"its target, {shortfall.reason}"
-        for identity, lag in shortfall.errors.items()
+        _("frame {frame}: {handle!r} is {error:.1f} px short of its target, {reason}").format(
+            frame=key.frame,
+            handle=layer.handle(identity).name,
+            error=error,
+            reason=target_errors.reason,
+        )
+        for identity, error in target_errors.errors.items()
         if identity not in joints
     ]
     return pose, notices

@@ -28,7 +28,7 @@ def manual_page(name: str = "index") -> Path:
     if not page.is_file():
         raise LissomError(
             _("the page {page} of the manual is missing; {reinstall}").format(
-                page=page, reinstall=REINSTALL
+                page=page, reinstall=_(REINSTALL)
             )
         )
     return page
@@ -39,7 +39,7 @@ def _read(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise LissomError(
-            _("cannot read {path}; {reinstall}").format(path=path, reinstall=REINSTALL)
+            _("cannot read {path}; {reinstall}").format(path=path, reinstall=_(REINSTALL))
         ) from error
 
 
@@ -50,6 +50,6 @@ def _folder(name: str) -> Path:
             return path
     raise LissomError(
         _("the folder {name!r} of Lissom is missing; {reinstall}").format(
-            name=name, reinstall=REINSTALL
+            name=name, reinstall=_(REINSTALL)
         )
     )

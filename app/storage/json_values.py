@@ -123,9 +123,9 @@ def check_repeated_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Refuse repeated fields; the `object_pairs_hook` of `json.loads`."""
     content = dict(pairs)
     if len(content) < len(pairs):
-        (repeated, _), *_ = Counter(name for name, _ in pairs).most_common(1)
+        ((repeated, _count),) = Counter(name for name, _value in pairs).most_common(1)
         raise LissomError(
-            _("the field {repeated!r} is given twice in one object").format(repeated=repeated)
+            _("the field {name!r} is given twice in one object").format(name=repeated)
         )
     return content
 
@@ -148,7 +148,7 @@ class Codec:
     known_fields: Mapping[str, Any] = field(default_factory=dict)
 
 
-def verbatim(value: Any, _: str = "") -> Any:
+def verbatim(value: Any, _where: str = "") -> Any:
     """Return a value unchanged: it is its own JSON."""
     return value
 
@@ -188,7 +188,7 @@ def pair(
     make: Callable[[Any, Any], Any] = lambda one, other: (one, other),
     of: Callable[[Any], tuple[Any, Any]] = verbatim,
 ) -> Codec:
-    """Return a codec of a value made of two parts; errors describe the pair by `what`."""
+    """Return a codec of a value made of two parts; `what`, a marked text, stands in errors."""
 
     def write(value: Any) -> list[Any]:
         one, other = of(value)
@@ -198,8 +198,8 @@ def pair(
         values = as_list(content, where)
         if len(values) != 2:
             raise LissomError(
-                _("{where} must be {what}, not {values}").format(
-                    where=where, what=what, values=repr_for_error(values)
+                _("{where} must be {what}, not {content}").format(
+                    where=where, what=_(what), content=repr_for_error(values)
                 )
             )
         return make(first.read(values[0], where), second.read(values[1], where))
@@ -259,8 +259,8 @@ def record(
     known |= {field.legacy_name: field.codec.known_fields for field in fields if field.legacy_name}
 
     def write(value: Any) -> dict[str, Any]:
-        told = ((field, field.value_of(value)) for field in fields)
-        written = {field.name: field.codec.write(of) for field, of in told if of != field.default}
+        values = ((field, field.value_of(value)) for field in fields)
+        written = {field.name: field.codec.write(of) for field, of in values if of != field.default}
         return with_unknown_fields(written, unknown(value) if unknown else {}, known)
 
     def read(content: object, where: str) -> Any:

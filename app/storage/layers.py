@@ -27,7 +27,7 @@ from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
-from app.texts import _
+from app.texts import _, message_of
 from engine.arrays import Bytes, readonly
 from engine.domain import CutOut, build_domain, rectangle_domain
 from engine.errors import EngineError
@@ -73,9 +73,12 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
     merged = encode_png(Image.fromarray(flatten_layers(scene.document, textures)))
     opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
     count = len(scene.document.layers)
-    told = (f"the {count} layers of {path.name} are merged into one drawing",) if count > 1 else ()
+    merged_layers = _("the {count} layers of {name} are merged into one drawing").format(
+        count=count, name=path.name
+    )
+    notices = (merged_layers,) if count > 1 else ()
     document = replace(opened.document, import_log=scene.document.import_log)
-    return opened._replace(document=document, notices=told + opened.notices)
+    return opened._replace(document=document, notices=notices + opened.notices)
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
@@ -181,7 +184,7 @@ def make_posable_layer(
     file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
-    notices: tuple[str, ...] = ("opaque all over, so that it stands still",)
+    notices: tuple[str, ...] = (_("opaque all over, so that it stands still"),)
     if not (is_cut_out and picture.is_opaque):
         try:
             domain, notices = build_domain(
@@ -192,7 +195,7 @@ def make_posable_layer(
             )
             still = False
         except EngineError as error:
-            notices = (f"stands still: {error}",)
+            notices = (_("stands still: {reason}").format(reason=message_of(error)),)
     layer = replace(
         new_layer(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
         id=identity,

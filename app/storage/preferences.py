@@ -115,8 +115,8 @@ def make_settings_folder(folder: Path) -> None:
             folder.chmod(0o700)
     except OSError as error:
         raise LissomError(
-            _("the folder {folder} cannot be made: {strerror}").format(
-                folder=folder, strerror=error.strerror or error
+            _("the folder {folder} cannot be made: {reason}").format(
+                folder=folder, reason=error.strerror or error
             )
         ) from error
     if not os.access(folder, os.W_OK | os.X_OK):

@@ -25,7 +25,7 @@ from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files.atomic import sync_folder, write_atomically
 from app.storage.files.reading import DAMAGED_ZIP, open_file, open_zip, tail_digest
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, check_repeated_fields
-from app.storage.project.archive import MEBIBYTE, NO_PROJECT, Archive, write_archive
+from app.storage.project.archive import MEBIBYTE, Archive, write_archive
 from app.storage.project.document_json import SCHEMA, read_document, write_document
 from app.storage.project.members import layer_members
 from app.texts import N_, _
@@ -93,7 +93,7 @@ def project_digest(path: Path) -> str | None:
         return None
     except OSError as error:
         raise LissomError(
-            _("cannot read {path}: {strerror}").format(path=path, strerror=error.strerror or error)
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
         ) from error
 
 
@@ -108,7 +108,7 @@ def load_project(path: Path) -> Document:
             document = _read(Archive(members, size))
     except OSError as error:
         raise LissomError(
-            _("cannot read {path}: {strerror}").format(path=path, strerror=error.strerror or error)
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
         ) from error
     except EXPECTED_ERRORS as error:
         raise LissomError(
@@ -116,7 +116,7 @@ def load_project(path: Path) -> Document:
         ) from error
     except DAMAGED_ZIP as error:
         raise LissomError(
-            _("{path} {no_project}, or it is damaged").format(path=path, no_project=NO_PROJECT)
+            _("cannot open {path}: it is not a Lissom project, or it is damaged").format(path=path)
         ) from error
     _readable.update(document.layers)
     return document
@@ -181,9 +181,9 @@ def _read_json(archive: Archive) -> JsonObject:
     # Each value but the first follows one of these marks. A decoded value takes some hundred bytes.
     if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
         raise LissomError(
-            _(
-                "its project.json holds more values than any project, which has {most_values:,}"
-            ).format(most_values=MOST_VALUES)
+            _("its project.json holds more values than any project, which has {most:,}").format(
+                most=MOST_VALUES
+            )
         )
     try:
         content = json.loads(
@@ -198,7 +198,7 @@ def _read_json(archive: Archive) -> JsonObject:
         raise LissomError(_("its project.json is not JSON: {error}").format(error=error)) from error
     if content is None or _is_deeper(content):
         raise LissomError(
-            _("its project.json is nested deeper than {deepest} levels").format(deepest=DEEPEST)
+            _("its project.json is nested deeper than {most} levels").format(most=DEEPEST)
         )
     return as_object(content, "project.json")
 

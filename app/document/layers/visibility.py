@@ -67,14 +67,14 @@ class SwitchGroup:
             if turn.layer not in known:
                 raise LissomError(
                     _(
-                        "The switch {name!r} shows a layer at frame {frame} that it does not have."
+                        "At frame {frame} the switch {name!r} shows a layer that is not in it."
                     ).format(name=self.name, frame=turn.frame)
                 )
         for before, after in pairwise(self.keys):
             if before.frame >= after.frame:
                 raise LissomError(
                     _(
-                        "The keys of the switch {name!r} at frames {before} and {after} are mixed up."
+                        "The switch keys of {name!r} at frames {before} and {after} are mixed up."
                     ).format(name=self.name, before=before.frame, after=after.frame)
                 )
 

@@ -11,7 +11,7 @@ from app.texts import N_, _
 
 Made = TypeVar("Made")
 NOT_A_FRAME = N_("{where}.{name} must be a whole number from 0 to {last}, not {content}")
-OUT_OF_ORDER = N_("{what} out of order: frame {after} after {before}")
+OUT_OF_ORDER = N_("{where} is out of order: frame {after} after {before}")
 
 
 def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
@@ -48,8 +48,8 @@ def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, Tangen
     word = key.get("passing", default)
     if word not in list(TangentMode):
         raise LissomError(
-            _("{where}.passing must be one of {tangentmode}, not {word}").format(
-                where=where, tangentmode=", ".join(TangentMode), word=repr_for_error(word)
+            _("{where}.passing must be one of {modes}, not {content}").format(
+                where=where, modes=", ".join(TangentMode), content=repr_for_error(word)
             )
         )
     if word != TangentMode.HOLD:
@@ -63,20 +63,20 @@ def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, Tangen
     return HOLD, default
 
 
-def check_frame_order(frames: Sequence[int], what: str) -> None:
+def check_frame_order(frames: Sequence[int], where: str) -> None:
     """Refuse frames that are not in ascending order."""
     for before, after in pairwise(frames):
         if after <= before:
-            raise LissomError(_(OUT_OF_ORDER).format(what=what, after=after, before=before))
+            raise LissomError(_(OUT_OF_ORDER).format(where=where, after=after, before=before))
 
 
 def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
     """Refuse a handle name that is not in the script."""
     if name not in handles:
         raise LissomError(
-            _("{where} names the handle {name!r}, but the handles are {handles}").format(
-                where=where, name=name, handles=join_names([*handles]) or "none"
-            )
+            _(
+                "{where} names the handle {name!r}, which is not among the handles: {handles}"
+            ).format(where=where, name=name, handles=join_names([*handles]))
         )
 
 

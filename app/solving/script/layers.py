@@ -69,7 +69,7 @@ def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ..
     if not isinstance(content, list):
         return (_joint(content, where),)
     joints = tuple(_joint(each, f"{where}[{index}]") for index, each in enumerate(content))
-    check_frame_order([joint.frame for joint in joints], f"{where} is")
+    check_frame_order([joint.frame for joint in joints], where)
     return joints
 
 
@@ -80,9 +80,9 @@ def _joint(content: object, where: str) -> ScriptAttachment:
         for name in ("at", "turn"):
             if name in joint:
                 raise LissomError(
-                    _("{where} lets go, so that it has no {name}; leave that out").format(
-                        where=where, name=name
-                    )
+                    _(
+                        "{where} detaches the layer, so that it has no {name}; leave that out"
+                    ).format(where=where, name=name)
                 )
     to = None if joint["to"] is None else as_text(joint["to"], f"{where}.to")
     at = None if to is None or (keeps and "at" not in joint) else joint["at"]
@@ -98,9 +98,9 @@ def _joint(content: object, where: str) -> ScriptAttachment:
 def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...]:
     switches = [
         (frame, as_flag(visible, at))
-        for at, frame, visible in _from_frames(content, where, "true or false")
+        for at, frame, visible in _from_frames(content, where, _("true or false"))
     ]
-    check_frame_order([frame for frame, _ in switches], f"{where} is")
+    check_frame_order([frame for frame, _visible in switches], where)
     return tuple(switches)
 
 
@@ -112,18 +112,18 @@ def parse_switch_groups(
     choices = [_choice(entry, f"choices[{index}]") for index, entry in enumerate(entries)]
     for name, count in Counter(choice.name for choice in choices).items():
         if count > 1:
-            raise LissomError(_("two choices are called {name!r}").format(name=name))
+            raise LissomError(_("two switches are called {name!r}").format(name=name))
     layers = Counter(layer for choice in choices for layer in choice.layers)
     for layer, count in layers.items():
         if count > 1:
             raise LissomError(
-                _("the layer {layer!r} is in two choices; leave it out of one").format(layer=layer)
+                _("the layer {layer!r} is in two switches; leave it out of one").format(layer=layer)
             )
         if layer in switched:
             raise LissomError(
                 _(
-                    "the layer {layer!r} is in a choice, which alone decides when it is seen; "
-                    "leave out its visible"
+                    "the layer {layer!r} is in a switch, which alone decides its visibility; leave "
+                    "out its visible"
                 ).format(layer=layer)
             )
     return tuple(choices)
@@ -142,17 +142,19 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
                 _("{where}.layers has {layer!r} twice").format(where=where, layer=layer)
             )
     turns = []
-    for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", "a layer"):
+    for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", _("a layer")):
         turn = frame, as_text(layer, at)
         if turn[1] not in layers:
             raise LissomError(
-                _("{at} shows {turn!r}, which is not among its layers").format(at=at, turn=turn[1])
+                _("{where} shows {layer!r}, which is not among its layers").format(
+                    where=at, layer=turn[1]
+                )
             )
         turns.append(turn)
-    check_frame_order([frame for frame, _ in turns], f"{where}.keys are")
+    check_frame_order([frame for frame, _layer in turns], f"{where}.keys")
     name = as_text(fields["name"], f"{where}.name").strip()
     if not name:
-        raise LissomError(_("{where}.name is empty, and a choice needs a name").format(where=where))
+        raise LissomError(_("{where}.name is empty, and a switch needs a name").format(where=where))
     return ScriptSwitchGroup(name=name, layers=layers, turns=tuple(turns))
 
 
@@ -208,7 +210,7 @@ def _parse_keys(
         read = read_fields(entry, at, fields)
         easing, passing = read_easing_and_tangent(read, at)
         keys.append(make(read, at, frame=read_frame(read, at), easing=easing, tangent_mode=passing))
-    check_frame_order([key.frame for key in keys], f"{where}.keys are")
+    check_frame_order([key.frame for key in keys], f"{where}.keys")
     return tuple(keys)
 
 
@@ -222,15 +224,15 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
         )
     keys = tuple(
         build_value(OpacityKey, at, frame=frame, opacity=as_number(opacity, at))
-        for at, frame, opacity in _from_frames(content, where, "a number")
+        for at, frame, opacity in _from_frames(content, where, _("a number"))
     )
-    check_frame_order([key.frame for key in keys], f"{where} is")
+    check_frame_order([key.frame for key in keys], where)
     return keys
 
 
 def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
     placings = []
-    for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
+    for at, frame, place in _from_frames(content, where, _("where the layer lies, or null")):
         if place is None:
             placings.append(ScriptDrawOrder(frame=frame, beside=None))
             continue
@@ -238,13 +240,13 @@ def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]
         (side, *others) = read or {"": ""}
         if others or side not in SIDES:
             raise LissomError(
-                _("{at} must have in_front_of or behind, with a layer, not {place}").format(
-                    at=at, place=repr_for_error(place)
+                _("{where} must have in_front_of or behind, with a layer, not {content}").format(
+                    where=at, content=repr_for_error(place)
                 )
             )
         beside = as_text(read[side], f"{at}.{side}")
         placings.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
-    check_frame_order([placing.frame for placing in placings], f"{where} is")
+    check_frame_order([placing.frame for placing in placings], where)
     return tuple(placings)
 
 
@@ -268,8 +270,8 @@ def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int,
         pair = as_list(entry, at)
         if len(pair) != 2:
             raise LissomError(
-                _("{at} must be a frame and {what}, not {pair}").format(
-                    at=at, what=what, pair=repr_for_error(pair)
+                _("{where} must be a frame and {what}, not {content}").format(
+                    where=at, what=what, content=repr_for_error(pair)
                 )
             )
         found.append((at, read_frame({"frame": pair[0]}, at), pair[1]))

@@ -56,7 +56,7 @@ def _bone(content: object, where: str, handles: Sequence[str]) -> Bone:
         check_handle_name(name, handles, where)
     if names[0] == names[1]:
         raise LissomError(
-            _("{where} leads from {first!r} to itself").format(where=where, first=names[0])
+            _("{where} leads from {name!r} to itself").format(where=where, name=names[0])
         )
     first, second = map(list(handles).index, names)
     return Bone(ends=(first, second), stiffness=_amount(bone["amount"], where))
@@ -66,8 +66,8 @@ def _amount(content: object, where: str) -> float:
     amount = as_number(content, f"{where}.amount")
     if not SOFTEST * (1 - ROUNDED) <= amount <= STIFFEST:
         raise LissomError(
-            _("{where}.amount must be from 1/30 to {stiffest:g}, not {amount:g}").format(
-                where=where, stiffest=STIFFEST, amount=amount
+            _("{where}.amount must be from 1/30 to {largest:g}, not {amount:g}").format(
+                where=where, largest=STIFFEST, amount=amount
             )
         )
     return max(amount, SOFTEST)

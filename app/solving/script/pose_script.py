@@ -163,18 +163,18 @@ def parse_pose_script(content: object) -> PoseScript:
     Raises a `LissomError` for unknown, missing or wrong fields, unknown handles, and frames out of
     order.
     """
-    read = as_object(content, "the script")
+    read = as_object(content, _("the script"))
     if "figures" in read and "layers" not in read:
         # The name of the field in earlier scripts.
         content = {("layers" if name == "figures" else name): read[name] for name in read}
-        read = as_object(content, "the script")
+        read = as_object(content, _("the script"))
     own = STAGE_FIELDS if "layers" in read else OWN_FIELDS
     lacking = [name for name in ("choices", "attach", "visible", "order") if name in read]
     if lacking and "layers" not in read:
         raise LissomError(
-            _('{lacking} needs "layers", which say what each layer does').format(lacking=lacking[0])
+            _('{field} needs "layers", which say what each layer does').format(field=lacking[0])
         )
-    script = read_fields(content, "the script", (*SCENE_FIELDS, *own))
+    script = read_fields(content, _("the script"), (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(_(WRONG_SCHEMA).format(own=SCHEMA, content=repr_for_error(schema)))
@@ -217,7 +217,7 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScr
     if not isinstance(keys, list) or not keys:
         raise LissomError(_("{where}keys must be a list of at least one key").format(where=where))
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
-    check_frame_order([key.frame for key in parsed], f"{where}keys are")
+    check_frame_order([key.frame for key in parsed], f"{where}keys")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:

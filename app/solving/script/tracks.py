@@ -115,7 +115,7 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         _track_key(key, f"{where}.keys[{index}]", PLACES[goes_with])
         for index, key in enumerate(keys)
     )
-    check_frame_order([key.frame for key in parsed], f"{where}.keys are")
+    check_frame_order([key.frame for key in parsed], f"{where}.keys")
     return build_value(
         Track,
         where,
@@ -141,12 +141,11 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
     if other in key:
         raise LissomError(
             _(
-                "{where} has {other!r}, but its track is with the {value}, whose keys have "
-                "{place!r}"
+                "{where} has {other!r}, but the keys of a track with {basis!r} have {place!r}"
             ).format(
                 where=where,
                 other=other,
-                value="pose" if place == "offset" else "picture",
+                basis="pose" if place == "offset" else "picture",
                 place=place,
             )
         )
@@ -177,8 +176,8 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         preset = as_text(spring["preset"], f"{where}.preset")
         if preset not in SPRING_PRESETS:
             raise LissomError(
-                _("{where}.preset must be one of {spring_presets}, not {preset!r}").format(
-                    where=where, spring_presets=", ".join(SPRING_PRESETS), preset=preset
+                _("{where}.preset must be one of {presets}, not {preset!r}").format(
+                    where=where, presets=", ".join(SPRING_PRESETS), preset=preset
                 )
             )
         given = dict(zip(("frequency", "damping"), SPRING_PRESETS[preset], strict=True)) | given
@@ -219,7 +218,7 @@ def _require_one_each(
             if number in seen:
                 raise LissomError(
                     _(
-                        "{where}[{seen}] and {where}[{index}] are both of the handle {handles!r}"
-                    ).format(where=where, seen=seen[number], index=index, handles=handles[number])
+                        "{where}[{other}] and {where}[{index}] are both of the handle {handle!r}"
+                    ).format(where=where, other=seen[number], index=index, handle=handles[number])
                 )
             seen[number] = index

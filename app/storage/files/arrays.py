@@ -18,7 +18,7 @@ from app.texts import N_, _
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 TEXT = "US"  # NumPy's letters for kinds of arrays
 NUMERIC = "biufc"
-NO_ARRAYS = N_("is not an NPZ file of numeric arrays, or is damaged")
+NO_ARRAYS = N_("{path} is not an NPZ file of numeric arrays, or is damaged")
 # Further exceptions that NumPy raises on damaged files.
 DAMAGE = (*DAMAGED_ZIP, SyntaxError, TypeError, tokenize.TokenError)
 
@@ -43,10 +43,10 @@ def read_arrays(
             return {name: _read_array(archive, member) for name, member in members.items()}
     except OSError as error:
         raise LissomError(
-            _("cannot read {path}: {strerror}").format(path=path, strerror=error.strerror or error)
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
         ) from error
     except DAMAGE as error:
-        raise LissomError(f"{path} {NO_ARRAYS}") from error
+        raise LissomError(_(NO_ARRAYS).format(path=path)) from error
 
 
 def _members(
@@ -61,8 +61,8 @@ def _members(
     missing = [name for name in required if name not in members]
     if missing:
         raise LissomError(
-            _("{path} lacks the array {missing!r}; it holds {members}").format(
-                path=path, missing=missing[0], members=sorted(members)[:50]
+            _("{path} lacks the array {name!r}; it holds {names}").format(
+                path=path, name=missing[0], names=", ".join(sorted(members)[:50])
             )
         )
     wanted = {name: members[name] for name in (*required, *optional) if name in members}

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from app.errors import LissomError
 from app.storage.files.locks import lock, open_to_lock
+from app.texts import _
 
 TRIES = 100
 LARGEST_LOCK_TEXT = 1000  # bytes in the lock file
@@ -59,7 +60,7 @@ class FileLock:
             os.close(self._descriptor)
 
     def _acquire(self) -> int:
-        for _ in range(TRIES):
+        for _try in range(TRIES):
             descriptor = open_to_lock(self._lock_path, os.O_CREAT)
             try:
                 is_ours = lock(descriptor)
@@ -92,7 +93,7 @@ def _parse_holder(told: bytes) -> str:
         match json.loads(told):
             case {"who": str(who), "since": float(since)} if who.isprintable():
                 at = time.strftime("%Y-%m-%d %H:%M", time.localtime(since))
-                return f"by {who[:100]}, since {at}"
+                return _("by {name}, since {time}").format(name=who[:100], time=at)
     except (ValueError, RecursionError, OverflowError, OSError):
         pass
-    return "in another window"
+    return _("in another window")

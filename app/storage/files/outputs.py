@@ -14,7 +14,7 @@ from app.texts import N_, _
 Identity = tuple[int, int, str]
 STREAMS = (0, 1, 2)  # descriptors
 NO_FOLDER = N_("the folder {folder} does not exist")
-SAME_FILE = N_("it is the same file as")
+SAME_FILE = N_("cannot write {path}: it is the same file as {other}; name another one")
 NO_PLACE = N_("cannot make the folder {folder}: {reason}")
 IS_FILE = N_("{file} is there and is no folder; choose another name")
 IS_FOLDER = N_("it is a folder; name a file")
@@ -39,7 +39,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
     taken: dict[Identity, str] = {}
     for source in sources:
         with suppress(OSError, ValueError):
-            taken[_identity(source)] = f"{source}, from which it is made"
+            taken[_identity(source)] = _("{path}, from which it is made").format(path=source)
     for out in outs:
         try:
             _check_place(out)
@@ -47,15 +47,11 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
         except (OSError, ValueError) as error:  # ValueError: no file can have this name
             reason = getattr(error, "strerror", None) or error
             raise LissomError(
-                _("cannot write {out}: {reason}").format(out=out, reason=reason)
+                _("cannot write {path}: {reason}").format(path=out, reason=reason)
             ) from error
         if own in taken:
-            raise LissomError(
-                _("cannot write {out}: {same_file} {taken}; name another one").format(
-                    out=out, same_file=SAME_FILE, taken=taken[own]
-                )
-            )
-        taken[own] = f"{out}, which is written as well"
+            raise LissomError(_(SAME_FILE).format(path=out, other=taken[own]))
+        taken[own] = _("{path}, which is written as well").format(path=out)
 
 
 def make_folder(folder: Path) -> None:
@@ -65,7 +61,7 @@ def make_folder(folder: Path) -> None:
     except (FileExistsError, NotADirectoryError) as error:
         around = (folder, *folder.parents)
         file = next(each for each in around if os.path.lexists(each))
-        reason = IS_FILE.format(file=file)
+        reason = _(IS_FILE).format(file=file)
         raise LissomError(_(NO_PLACE).format(folder=folder, reason=reason)) from error
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
@@ -84,15 +80,13 @@ def _check_place(path: Path) -> None:
         if not target.parent.is_dir():
             folder = target.parent if path.is_symlink() else path.parent
             raise LissomError(
-                _("cannot write {path}: {no_folder}").format(
-                    path=path, no_folder=NO_FOLDER.format(folder=folder)
+                _("cannot write {path}: {reason}").format(
+                    path=path, reason=_(NO_FOLDER).format(folder=folder)
                 )
             ) from None
         return
     if stat.S_ISDIR(status.st_mode):
-        raise LissomError(
-            _("cannot write {path}: {is_folder}").format(path=path, is_folder=IS_FOLDER)
-        )
+        raise LissomError(_("cannot write {path}: {reason}").format(path=path, reason=_(IS_FOLDER)))
     if not stat.S_ISREG(status.st_mode) or _is_stream(status):
         raise LissomError(
             _(

@@ -105,11 +105,11 @@ def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
                 return file.read(size)
     except OSError as error:
         raise LissomError(
-            _("cannot read {path}: {strerror}").format(path=path, strerror=error.strerror or error)
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
         ) from error
     except ValueError as error:  # no file can have this name
         raise LissomError(
-            _("cannot read {path}: {error}").format(path=path, error=error)
+            _("cannot read {path}: {reason}").format(path=path, reason=error)
         ) from error
     raise LissomError(
         _(

@@ -125,9 +125,8 @@ class GroupPaths:
         if len(self._found) == MOST_GROUPS:
             raise LissomError(
                 _(
-                    "it has more than {most_groups:,} groups, which Lissom does not take: "
-                    "merge some"
-                ).format(most_groups=MOST_GROUPS)
+                    "it has more than {most:,} groups, which Lissom does not take: merge some"
+                ).format(most=MOST_GROUPS)
             )
         # A slash separates groups.
         name = display_name(group.name).replace("/", "-").strip() or "group"
@@ -173,8 +172,8 @@ def build_layered_picture(
     layers = []
     for layer in kept:
         check_name_length(layer.name)
-        has_twin = layer.group and own[layer.name] > 1
-        name = f"{layer.group}/{layer.name}" if has_twin else layer.name
+        is_repeated = layer.group and own[layer.name] > 1
+        name = f"{layer.group}/{layer.name}" if is_repeated else layer.name
         layers.append(replace(layer, name=names.claim(name)))
     return LayeredPicture(
         size=size, layers=tuple(layers), summary=told.import_log, groups=groups.groups_of(layers)
@@ -195,7 +194,7 @@ def _drawn_layers(
         return (*ancestor_paths(layer.group)[depth : depth + 1], layer)[0]
 
     seen: list[ImportedLayer] = []
-    empty = ""  # the last clipping base, if nothing is drawn on it
+    empty = ""  # a notice about the last clipping base, if nothing is drawn on it
     for found, each in groupby(layers, unit):
         run = list(each)
         path = found if isinstance(found, str) else ""
@@ -204,7 +203,7 @@ def _drawn_layers(
             for layer in run:
                 told.add_note(
                     layer.name,
-                    _("left out, since it is clipped by the empty {empty}").format(empty=empty),
+                    empty,
                 )
             continue
         drawn = (
@@ -213,8 +212,13 @@ def _drawn_layers(
             else _layer_unless_blank(run[0], told)
         )
         if not is_clipped:
-            name = f"group {path.rpartition('/')[2]}" if path else f"layer {run[0].name}"
-            empty = "" if drawn else name
+            clipped_by = (
+                _("left out, since it is clipped by the empty group {name}")
+                if path
+                else _("left out, since it is clipped by the empty layer {name}")
+            )
+            name = path.rpartition("/")[2] if path else run[0].name
+            empty = "" if drawn else clipped_by.format(name=name)
         seen += drawn
     return seen
 
@@ -274,9 +278,9 @@ def check_layer_count(count: int) -> None:
     """Refuse too many layers before any of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
-            _(
-                "it has {count:,} layers; Lissom takes up to {most_layers}: merge some of them"
-            ).format(count=count, most_layers=MOST_LAYERS)
+            _("it has {count:,} layers; Lissom takes up to {most}: merge some of them").format(
+                count=count, most=MOST_LAYERS
+            )
         )
 
 
@@ -286,8 +290,8 @@ def check_name_length(name: str) -> None:
         raise LissomError(
             _(
                 "the name {name!r} has {count:,} characters; Lissom takes up to "
-                "{longest_name:,}: shorten it"
-            ).format(name=shortened(name), count=len(name), longest_name=LONGEST_NAME)
+                "{longest:,}: shorten it"
+            ).format(name=shortened(name), count=len(name), longest=LONGEST_NAME)
         )
 
 

@@ -78,7 +78,9 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         source = element.get("src", "")
         if source not in archive.NameToInfo:
             raise LissomError(
-                _("it lacks {source}").format(source=shortened(source) or "the picture of a layer")
+                _("it lacks {source}").format(
+                    source=shortened(source) or _("the picture of a layer")
+                )
             )
         sources.append(source)
     distinct = list(dict.fromkeys(sources))
@@ -131,7 +133,9 @@ def _clips(
             # All layers of a nested group count as one.
             below.add((*ancestor_paths(each.group)[depth : depth + 1], each)[0])
     if len(below) > 1:
-        what = "clipped by what lies right below it, not by all that does in its group"
+        what = _(
+            "clipped only by the layer or group directly below it, not by all below in its group"
+        )
         told.add_warning(layer.name, what)
     return bool(below)
 
@@ -204,7 +208,7 @@ def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
 class _Builder(ET.TreeBuilder):
     """Builds the elements of a layer stack, in any encoding."""
 
-    def doctype(self, *_: str | None) -> None:
+    def doctype(self, *_names: str | None) -> None:
         """Refuse a document type: its entities could grow without limit."""
         raise LissomError(_("its stack.xml has a document type, which no layer stack has"))
 
@@ -221,9 +225,7 @@ def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
     member = archive.getinfo(name)
     if member.file_size > largest:
         raise LissomError(
-            _("its {name} is too large: {file_size:,} bytes").format(
-                name=name, file_size=member.file_size
-            )
+            _("its {name} is too large: {size:,} bytes").format(name=name, size=member.file_size)
         )
     # Reading with the given size never unpacks more.
     with archive.open(member) as packed:
@@ -234,8 +236,8 @@ def _whole(element: ET.Element, name: str) -> int:
     number = _number(element, name, 0.0)
     if not (number == int(number) and 1 <= number <= LARGEST_SIDE):
         raise LissomError(
-            _("its stack.xml gives the canvas a size of {get!r} pixels").format(
-                get=shortened(element.get(name))
+            _("its stack.xml gives the canvas a size of {size!r} pixels").format(
+                size=shortened(element.get(name))
             )
         )
     return int(number)
@@ -249,7 +251,7 @@ def _number(element: ET.Element, name: str, default: float) -> float:
         number = float("nan")
     if not (isfinite(number) and abs(number) <= 1e7):
         raise LissomError(
-            _("its stack.xml says {name}={text!r}, which is not a number of use").format(
+            _("its stack.xml says {name}={text!r}, which is not a usable number").format(
                 name=name, text=shortened(text)
             )
         )

@@ -89,9 +89,8 @@ def read_photoshop(data: bytes) -> LayeredPicture:
     except ImportError as error:
         raise LissomError(
             _(
-                "Photoshop files need psd-tools: {install_hint}; or save the drawing as "
-                "OpenRaster (.ora)"
-            ).format(install_hint=install_hint("psd"))
+                "Photoshop files need psd-tools: {remedy}; or save the drawing as OpenRaster (.ora)"
+            ).format(remedy=install_hint("psd"))
         ) from error
     # Its own messages about skipped content go to standard error, which nobody reads.
     logging.getLogger(psd_tools.__name__).setLevel(logging.CRITICAL)
@@ -120,15 +119,15 @@ def _require_few_records(data: bytes) -> None:
         raise LissomError(
             _(
                 "it has {count:,} layers and ends of groups; Lissom takes up to "
-                "{most_records:,}: merge some of them"
-            ).format(count=count, most_records=MOST_RECORDS)
+                "{most:,}: merge some of them"
+            ).format(count=count, most=MOST_RECORDS)
         )
 
 
 def _read(drawing: Any) -> LayeredPicture:
     told, groups = NoticeCollector(), GroupPaths()
     found = list(_drawn_layers(drawing, _Place(), groups, told))
-    check_memory([(layer.width, layer.height) for _, layer, _ in found])
+    check_memory([(layer.width, layer.height) for _place, layer, _clipped in found])
     layers = []
     for place, layer, is_clipped in found:
         name = layer.name.strip() or "layer"
@@ -155,7 +154,7 @@ def _read(drawing: Any) -> LayeredPicture:
         rows = drawing.height * drawing.channels
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
         file = encode_png(drawing.topil().convert("RGBA"))
-        flat = decode_picture(file, "the picture")
+        flat = decode_picture(file, _("the picture"))
         layers = [ImportedLayer(name="picture", data=file, picture=flat)]
     return build_layered_picture((drawing.width, drawing.height), layers, groups, told)
 
@@ -199,8 +198,12 @@ def _drawn_layers(
                 told.add_note(name, _("text, drawn as a picture"))
             yield replace(place, masks=masks), layer, is_clipped
         else:
-            kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
-            told.add_warning(name, _("left out, since it is {kind} layer").format(kind=kind))
+            left_out = (
+                _("left out, since it is a fill layer")
+                if layer.kind.endswith("fill")
+                else _("left out, since it is an adjustment layer")
+            )
+            told.add_warning(name, left_out)
             clips = clips and _is_clipping(layer)
             continue
         has_base = has_base or not is_clipped
@@ -225,7 +228,7 @@ def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
     if any(each not in ALL_LEVELS for pair in pairs for each in pair):
         told.add_warning(name, _("drawn at all brightnesses, whatever its “Blend If” says"))
     if layer.tagged_blocks.get_data(KNOCKOUT):
-        told.add_warning(name, _("drawn over what is behind, which it knocks out in the file"))
+        told.add_warning(name, _("drawn over the layers behind, which it knocks out in the file"))
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -242,7 +245,9 @@ def _blend(layer: Any, told: NoticeCollector) -> BlendMode:
     """Return the blend mode of a layer. An unsupported mode gives a notice."""
     mode = layer.blend_mode.name
     if mode not in MODES:
-        what = f"drawn normally, not in the mode {mode.lower().replace('_', ' ')!r}"
+        what = _("drawn normally, not in the mode {mode!r}").format(
+            mode=mode.lower().replace("_", " ")
+        )
         told.add_warning(layer.name.strip() or "layer", what)
     return MODES.get(mode, "normal")
 

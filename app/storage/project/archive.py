@@ -16,7 +16,7 @@ from app.texts import N_, _
 from engine.arrays import Bytes, Complexes, Floats, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"
-NO_PROJECT = N_("is not a Lissom project")
+NO_PROJECT = N_("it is not a Lissom project")
 MOST_MEMBERS = 65_535
 MEBIBYTE = 1024 * 1024
 # Members to deflate. Pictures are packed already, and the mimetype stays legible.
@@ -81,12 +81,12 @@ class Archive:
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
             raise LissomError(
-                _("it has {count:,} members, more than the {most_members:,} of any project").format(
-                    count=len(members), most_members=MOST_MEMBERS
+                _("it has {count:,} members, more than the {most:,} of any project").format(
+                    count=len(members), most=MOST_MEMBERS
                 )
             )
         if not members or members[0].filename != "mimetype":
-            raise LissomError(_("it {no_project}").format(no_project=NO_PROJECT))
+            raise LissomError(_(NO_PROJECT))
         # Layers were figures in schemas 1 and 2.
         self._members = {
             re.sub("^figures/", "layers/", member.filename): member for member in members
@@ -103,7 +103,7 @@ class Archive:
                 )
             )
         if self.read("mimetype", largest=len(MIMETYPE)) != MIMETYPE:
-            raise LissomError(_("it {no_project}").format(no_project=NO_PROJECT))
+            raise LissomError(_(NO_PROJECT))
 
     @property
     def is_written(self) -> bool:

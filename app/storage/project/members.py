@@ -92,9 +92,10 @@ class LayerMembers:
         if size not in {(width, height), (height, width)}:
             raise LissomError(
                 _(
-                    "its picture has {width} × {height} pixels, not {width_2} × {height_2} as "
+                    "its picture has {width} × {height} pixels, not {saved_width} × "
+                    "{saved_height} as "
                     "it says"
-                ).format(width=width, height=height, width_2=size[0], height_2=size[1])
+                ).format(width=width, height=height, saved_width=size[0], saved_height=size[1])
             )
         return picture
 
