@@ -84,7 +84,7 @@ def check_destination(
         ending = out.suffix.lower()
         if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
-                _("{out} is not named like {name}; let the name end in one of {suffixes}").format(
+                _("{out} is not named like {name}; let the name end in {suffixes}").format(
                     out=out, name=name, suffixes=", ".join(suffixes)
                 )
             )

@@ -133,9 +133,7 @@ def _clips(
             # All layers of a nested group count as one.
             below.add((*ancestor_paths(each.group)[depth : depth + 1], each)[0])
     if len(below) > 1:
-        what = _(
-            "clipped only by the layer or group directly below it, not by all below in its group"
-        )
+        what = _("clipped by the layer directly below, not by all layers below in its group")
         told.add_warning(layer.name, what)
     return bool(below)
 

@@ -330,7 +330,7 @@ def test_springs_are_set_and_removed():
     assert tracks.put_spring(0, stiff)(document).layers[0].springs == (stiff,)
     assert tracks.remove_springs(0, {2})(document).layers[0].springs == ()
     assert tracks.remove_springs(0, {0})(document) is document
-    with pytest.raises(LissomError, match="spring is of the handle 9, which is not there"):
+    with pytest.raises(LissomError, match=says(NO_HANDLE, identity=9)):
         tracks.put_spring(0, replace(SPRING, handle=9))(document)
 
 

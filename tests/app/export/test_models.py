@@ -334,10 +334,11 @@ def test_what_a_model_does_not_composite_is_told(tmp_path):
     assert maker.meshes[0].opacity == 0.25
     told = [notice for notice in maker.notices if "glTF" in notice]
     assert told == [
-        f"{second.name}: not multiplied in a glTF model, but painted over the rest",
-        "limbs: not screened in a glTF model, but painted over the rest",
-        f"{second.name}: not clipped in a glTF model, but painted over the rest",
-        "limbs: faded layer by layer in a glTF model, so that they shine through each other",
+        f"{second.name}: not multiplied in the glTF model, but painted over the rest",
+        "limbs: not screened in the glTF model, but painted over the rest",
+        f"{second.name}: not clipped in the glTF model, but painted over the rest",
+        "limbs: faded layer by layer in the glTF model, so that the layers shine through "
+        "each other",
     ]
     _, maker = exported(two_layers(), tmp_path / "plain.glb")
     assert not any("painted over" in notice for notice in maker.notices)

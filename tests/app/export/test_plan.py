@@ -157,7 +157,7 @@ def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(documen
         ("folder", {"format": "gif"}, "is a folder; name a file"),
         ("missing/a.gif", {"format": "gif"}, NO_FOLDER.format(folder=".*missing")),
         ("a.png", {"format": "gif"}, "end in .gif"),
-        ("a.gif", {"format": "apng"}, "end in .apng or .png"),
+        ("a.gif", {"format": "apng"}, "end in .apng, .png"),
         ("a.mp4", {"format": "mp4"}, "background colour"),
         ("frames", {"frames": FrameRange(0, 11)}, "0 to 10"),
         ("frames", {"frames": FrameRange(12, 13)}, "0 to 10"),

@@ -150,9 +150,7 @@ def test_script_stiffens_what_it_says():
     assert bent_in(layer, stiff, 110, 160) < 0.5 * bent_in(layer, soft, 110, 160)
     nowhere = {**SCRIPT, "stiff": [{"around": [240, 400], "radius": 6, "amount": 10}]}
     _, notices = pose_document(drawn(), parse_pose_script(nowhere), lambda _: None)
-    assert notices == (
-        "no outline is seen within 6 px of (240, 400): nothing is stiff or soft there",
-    )
+    assert notices == ("no outline is within 6 px of (240, 400): nothing is stiff or soft there",)
 
 
 @pytest.mark.parametrize(

@@ -96,7 +96,7 @@ def test_layers_that_inherit_alpha_are_clipped():
     assert clipped(kept + atop + base) == (["head", "kept"], ())
     assert clipped(atop) == ([], ())
     # All that lies below in the group clips it there.
-    told = ("head: clipped by what lies right below it, not by all that does in its group",)
+    told = ("head: clipped by the layer directly below, not by all layers below in its group",)
     assert clipped(atop + base + other) == (["head"], told)
     assert clipped(f"<stack>{atop}{base}</stack>{other}") == (["head"], ())
     assert clipped(f"{atop}<stack>{base}{other}</stack>") == (["head"], ())

@@ -214,7 +214,7 @@ def test_what_is_not_taken_over_is_told_once_with_all_names():
     assert found.summary.warnings == (
         "limbs, a, b: drawn normally, not in the mode 'overlay'",
         "paint: left out, since it is a fill layer",
-        "hole: drawn over what is behind, which it knocks out in the file",
+        "hole: drawn over the layers behind, which it knocks out in the file",
         "bright: drawn at all brightnesses, whatever its “Blend If” says",
     )
 
