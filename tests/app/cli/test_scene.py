@@ -228,8 +228,10 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ({"visible": True}, r"layers\[0\]\.visible"),
         (
             {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
-            r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which is not "
-            r"among the handles: hand",
+            (
+                r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which is not "
+                r"among the handles: hand"
+            ),
         ),
         (
             {"springs": [{"handle": "thumb", "preset": "ear"}]},
@@ -499,8 +501,10 @@ def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
     [
         (
             {},
-            "oh is hidden in the drawing, so that it is never seen; show it with "
-            '"visible": [[0, true]]',
+            (
+                "oh is hidden in the drawing, so that it is never seen; show it with "
+                '"visible": [[0, true]]'
+            ),
         ),
         ({"visible": [[0, False]]}, "oh is never seen: its visible shows it at no frame"),
         (

@@ -337,8 +337,10 @@ def test_what_a_model_does_not_composite_is_told(tmp_path):
         f"{second.name}: not multiplied in the glTF model, but painted over the rest",
         "limbs: not screened in the glTF model, but painted over the rest",
         f"{second.name}: not clipped in the glTF model, but painted over the rest",
-        "limbs: faded layer by layer in the glTF model, so that the layers shine through "
-        "each other",
+        (
+            "limbs: faded layer by layer in the glTF model, so that the layers shine through "
+            "each other"
+        ),
     ]
     _, maker = exported(two_layers(), tmp_path / "plain.glb")
     assert not any("painted over" in notice for notice in maker.notices)
