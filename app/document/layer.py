@@ -161,7 +161,7 @@ class Layer:
         require_ascending_keys(self.opacity_keys, N_("The opacity of {layer!r}"), self.name)
         require_ascending_keys(self.draw_order_keys, N_("The order of {layer!r}"), self.name)
         require(
-            all(placing.beside != self.id for placing in self.draw_order_keys),
+            all(key.beside != self.id for key in self.draw_order_keys),
             N_("{name!r} cannot be in front of itself, nor behind."),
             name=self.name,
         )

@@ -229,9 +229,9 @@ class Document:
         for layer in self.layers:
             for frame in layer.keyed_range:
                 self._require_inside(frame)
-            for placing in layer.draw_order_keys:
-                if placing.beside is not None:
-                    self.layer(placing.beside)
+            for key in layer.draw_order_keys:
+                if key.beside is not None:
+                    self.layer(key.beside)
         self._check_switch_groups()
         self._check_repeats()
         self._check_attachments()
@@ -259,21 +259,21 @@ class Document:
 
     def _check_attachments(self) -> None:
         """Refuse layers that are attached to each other in a circle at any frame."""
-        hung = [each for each in self.layers if each.attachments]
+        children = [each for each in self.layers if each.attachments]
         links = {
             each.id: {
                 self.layer(joint.parent).id
                 for joint in each.attachments
                 if joint.parent is not None
             }
-            for each in hung
+            for each in children
         }
         try:
             TopologicalSorter(links).prepare()
         except CycleError:
-            self._check_circles(hung)
+            self._check_circles(children)
 
-    def _check_circles(self, hung: Sequence[Layer]) -> None:
+    def _check_circles(self, children: Sequence[Layer]) -> None:
         """Refuse a circle of layers whose attachments begin at different frames.
 
         A circle begins at a frame where one of its layers is attached, so only these frames are
@@ -288,16 +288,16 @@ class Document:
                 place,
                 joint.parent,
             )
-            for place, each in enumerate(hung)
+            for place, each in enumerate(children)
             for joint in self.attachments_of(each)
             if not (self.loop and joint.frame > last)
         )
         parents: dict[int, int | None] = {}
         for frame, at_once in groupby(changes, key=itemgetter(0)):
-            attached = {hung[place].id: parent for _, _, place, parent in at_once}
+            attached = {children[place].id: parent for _, _, place, parent in at_once}
             parents |= attached
             if any(_leads_back(parents, identity) for identity in attached):
-                for layer in hung:
+                for layer in children:
                     self.parent_chain(layer.id, frame)  # raises the error about the circle
 
     def _require_inside(self, frame: int) -> None:

@@ -142,7 +142,7 @@ def build_morph_scene(
         texture, uv = _cut_out(pictures[layer.id], places - layer.corner)
         order = TriangleOrder(mesh)
         orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
-        sights = [(frame, is_visible(document, layer, frame)) for frame in numbers]
+        visibility = [(frame, is_visible(document, layer, frame)) for frame in numbers]
         shape = MorphMesh(
             name=plan.out.stem if len(document.layers) == 1 else layer.name,
             texture=bleed_edges(texture),
@@ -153,7 +153,7 @@ def build_morph_scene(
                 ((n - first) / document.fps, order) for n, order in _changes(orders)
             ),
             visibility_changes=tuple(
-                ((n - first) / document.fps, seen) for n, seen in _changes(sights)
+                ((n - first) / document.fps, seen) for n, seen in _changes(visibility)
             ),
             motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
         )

@@ -102,7 +102,7 @@ def with_draw_order(document: Document, script: PoseScript) -> Document:
             continue
         try:
             layer = find_layer(document, part.layer)
-            placings = tuple(
+            order_keys = tuple(
                 DrawOrderKey(
                     each.frame,
                     None if each.beside is None else find_layer(document, each.beside).id,
@@ -110,7 +110,7 @@ def with_draw_order(document: Document, script: PoseScript) -> Document:
                 )
                 for each in part.order
             )
-            document = document.with_layer(replace(layer, draw_order_keys=placings))
+            document = document.with_layer(replace(layer, draw_order_keys=order_keys))
         except LissomError as error:
             raise LissomError(
                 _("layer {layer!r}: order: {error}").format(layer=part.layer, error=error)
@@ -159,7 +159,7 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
     opacity = part.opacity if isinstance(part.opacity, tuple) else ()
     keyed = [key.frame for key in part.keys] + [switch.frame for switch in layer.visibility_keys]
     keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
-    keyed += [placing.frame for placing in part.order]
+    keyed += [key.frame for key in part.order]
     notices = [
         _("no key is in {cycle}: there is nothing to repeat").format(cycle=cycle.description)
         for cycle in part.cycles

@@ -72,17 +72,17 @@ def pose_document(
         with _whose(part):
             with _among(document, identity, part):
                 document = _prepared(document, identity, part)
-            document, told = _with_material(document, identity, part)
-        notices += told
+            document, found = _with_material(document, identity, part)
+        notices += found
     if script.layers[0].layer is not None:
         for layer in document.layers:
             if layer.id not in named and not layer.still:
                 document = document.with_layer(make_still_layer(layer))
     for identity, part in named.items():
         with _whose(part):
-            layer, told = _posed(document.layer(identity), part, progress, loop=script.loop)
+            layer, found = _posed(document.layer(identity), part, progress, loop=script.loop)
         document = document.with_layer(layer)
-        notices += told
+        notices += found
     document = with_switch_groups(
         with_world_transforms(with_draw_order(document, script), script), script
     )
@@ -243,12 +243,12 @@ def _posed(
     notices: list[str] = []
     for key in part.keys:
         progress(whose + _("solving the key at frame {frame}").format(frame=key.frame))
-        pose, told = _solve(rig, pose, key)
+        pose, found = _solve(rig, pose, key)
         again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
         is_alike = again is not None and _has_same_targets(rig, pose, again.pose)
         if again is not None and is_alike:
             # The same pose to the last digit.
-            pose, told = again.pose, []
+            pose, found = again.pose, []
         cycle = next((each for each in part.cycles if each.last == key.frame), None)
         if again is not None and cycle is not None and cycle.until != cycle.last:
             if not is_alike or key.fronts:
@@ -259,7 +259,7 @@ def _posed(
                     ).format(frame=key.frame, cycle=cycle.description, first=again.frame)
                 )
             continue
-        notices += [f"{whose}{notice}" for notice in told]
+        notices += [f"{whose}{notice}" for notice in found]
         fronts = {identities[name]: front for name, front in key.fronts.items()}
         keys.append(
             Keyframe(

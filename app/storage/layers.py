@@ -87,7 +87,7 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     The canvas has the size of the largest picture; the others are centred.
     """
     all_imported: list[ImportedLayer] = []
-    names, told = UniqueNames(), NoticeCollector()
+    names, collector = UniqueNames(), NoticeCollector()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
@@ -99,8 +99,8 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         all_imported.append(ImportedLayer(name=name, data=data, picture=picture, corner=corner))
         for notice in picture.notices:
-            told.add_note(name, notice)
-    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=told.import_log)
+            collector.add_note(name, notice)
+    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=collector.import_log)
     return _scene(drawing, meshing, is_cut_out=False)
 
 
@@ -274,10 +274,10 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
     if all(layer.still for layer in layers):
         raise LissomError(_("none of its layers can be posed: there is no shape on any of them"))
     pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
-    told = NoticeCollector()
+    collector = NoticeCollector()
     for layer, notices in made:
         for notice in notices:
-            told.add_note(layer.name, notice)
+            collector.add_note(layer.name, notice)
     # A drawing with a background defines its own frame.
     framing: Framing = "canvas" if layers[0].still else "fit"
     document = Document(
@@ -285,6 +285,6 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         size=drawing.size,
         export=ExportSettings(framing=framing),
         groups=drawing.groups,
-        import_log=drawing.summary + told.import_log,
+        import_log=drawing.summary + collector.import_log,
     )
     return OpenedScene(document, pictures)

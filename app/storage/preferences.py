@@ -151,7 +151,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
     recent = content.get("recent")
     paths = recent if isinstance(recent, list) else []
     folder, exported = (
-        Path(told) if isinstance(told := content.get(name), str) else None
+        Path(value) if isinstance(value := content.get(name), str) else None
         for name in ("folder", "exported")
     )
     backdrop = expand_colour(str(content.get("backdrop"))).lower()

@@ -31,7 +31,7 @@ from app.export import (
     with_reduced_meshes,
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT, FormatSettings, format_by_suffix
-from app.motion import Animation, hung_animations
+from app.motion import Animation, placed_animations
 from app.render.gpu.context import create_context
 from app.storage import cut_picture, decode_picture, load_project
 from engine.arrays import Bytes
@@ -116,7 +116,7 @@ def _make(
 
 def _poses(document: Document, arguments: argparse.Namespace) -> dict[int, CachedVertices]:
     alone = [Animation(clip_of(document, layer.id), arguments.variant) for layer in document.layers]
-    hung = hung_animations(alone, document)
+    hung = placed_animations(alone, document)
     return {layer: CachedVertices(animation) for layer, animation in hung.items()}
 
 

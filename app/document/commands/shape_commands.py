@@ -26,9 +26,9 @@ def set_anchor(layer: Layer, anchor: complex | None) -> Layer:
 
 
 @layer_command(_("Set auto-pins"))
-def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
+def set_auto_pins(layer: Layer, *, enabled: bool) -> Layer:
     """Turn auto-pin of a layer on or off."""
-    return layer if stillness == layer.has_auto_pins else replace(layer, has_auto_pins=stillness)
+    return layer if enabled == layer.has_auto_pins else replace(layer, has_auto_pins=enabled)
 
 
 @layer_command(_("Set bounds"))

@@ -231,10 +231,10 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
 
 
 def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
-    placings = []
+    keys = []
     for at, frame, place in _from_frames(content, where, _("where the layer lies, or null")):
         if place is None:
-            placings.append(ScriptDrawOrder(frame=frame, beside=None))
+            keys.append(ScriptDrawOrder(frame=frame, beside=None))
             continue
         read = as_object(place, at)
         (side, *others) = read or {"": ""}
@@ -245,9 +245,9 @@ def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]
                 )
             )
         beside = as_text(read[side], f"{at}.{side}")
-        placings.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
-    check_frame_order([placing.frame for placing in placings], where)
-    return tuple(placings)
+        keys.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
+    check_frame_order([key.frame for key in keys], where)
+    return tuple(keys)
 
 
 def parse_canvas(content: object) -> tuple[int, int]:

@@ -146,7 +146,10 @@ class GroupPaths:
 
 
 def build_layered_picture(
-    size: tuple[int, int], found: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector
+    size: tuple[int, int],
+    found: Sequence[ImportedLayer],
+    groups: GroupPaths,
+    collector: NoticeCollector,
 ) -> LayeredPicture:
     """Return the drawing of the imported layers, each with a unique name.
 
@@ -156,10 +159,10 @@ def build_layered_picture(
         Back to front; blank layers are left out.
     groups : GroupPaths
         All groups of the file.
-    told : NoticeCollector
+    collector : NoticeCollector
         Collects the notices about the layers.
     """
-    kept = _drawn_layers(found, groups, told)
+    kept = _drawn_layers(found, groups, collector)
     if not kept:
         raise LissomError(_("it has no layer on which anything is drawn"))
     # Layers may share a picture.
@@ -176,12 +179,15 @@ def build_layered_picture(
         name = f"{layer.group}/{layer.name}" if is_repeated else layer.name
         layers.append(replace(layer, name=names.claim(name)))
     return LayeredPicture(
-        size=size, layers=tuple(layers), summary=told.import_log, groups=groups.groups_of(layers)
+        size=size,
+        layers=tuple(layers),
+        summary=collector.import_log,
+        groups=groups.groups_of(layers),
     )
 
 
 def _drawn_layers(
-    layers: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector, depth: int = 0
+    layers: Sequence[ImportedLayer], groups: GroupPaths, collector: NoticeCollector, depth: int = 0
 ) -> list[ImportedLayer]:
     """Return the layers with at least one visible pixel.
 
@@ -201,15 +207,15 @@ def _drawn_layers(
         is_clipped = groups.is_clipped(path) if path else run[0].clipped
         if is_clipped and empty:
             for layer in run:
-                told.add_note(
+                collector.add_note(
                     layer.name,
                     empty,
                 )
             continue
         drawn = (
-            _drawn_layers(run, groups, told, depth + 1)
+            _drawn_layers(run, groups, collector, depth + 1)
             if path
-            else _layer_unless_blank(run[0], told)
+            else _layer_unless_blank(run[0], collector)
         )
         if not is_clipped:
             clipped_by = (
@@ -223,11 +229,11 @@ def _drawn_layers(
     return seen
 
 
-def _layer_unless_blank(layer: ImportedLayer, told: NoticeCollector) -> list[ImportedLayer]:
+def _layer_unless_blank(layer: ImportedLayer, collector: NoticeCollector) -> list[ImportedLayer]:
     """Return a layer, or nothing and a notice if it is empty."""
     is_empty = is_blank(layer.picture)
     if is_empty:
-        told.add_note(layer.name, _(EMPTY))
+        collector.add_note(layer.name, _(EMPTY))
     return [] if is_empty else [layer]
 
 

@@ -69,9 +69,9 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
         raise LissomError(_("its stack.xml holds no stack of layers"))
-    told, groups = NoticeCollector(), GroupPaths()
+    collector, groups = NoticeCollector(), GroupPaths()
     # The file lists the stack from the front.
-    elements = list(_layers(stack, _Place(), groups, told))[::-1]
+    elements = list(_layers(stack, _Place(), groups, collector))[::-1]
     check_layer_count(len(elements))
     sources = []
     for element, _place in elements:
@@ -97,7 +97,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         name = element.get("name", "").strip() or "layer"
         if is_blank(picture):
             # An empty layer is no clipping base: the rest below is.
-            told.add_note(name, _(EMPTY))
+            collector.add_note(name, _(EMPTY))
             continue
         layer = ImportedLayer(
             name=name,
@@ -106,19 +106,21 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
             corner=corner_from_top(place.x, place.y, picture.size, size[1]),
             visible=_is_visible(element),
             opacity=_opacity(element),
-            blend=_blend(element, told),
+            blend=_blend(element, collector),
             clipped=_is_clipped(element),
             group=place.group,
         )
-        found.append(replace(layer, clipped=layer.clipped and _clips(found, layer, size, told)))
-    return build_layered_picture(size, found, groups, told)
+        found.append(
+            replace(layer, clipped=layer.clipped and _clips(found, layer, size, collector))
+        )
+    return build_layered_picture(size, found, groups, collector)
 
 
 def _clips(
     found: Sequence[ImportedLayer],
     layer: ImportedLayer,
     size: tuple[int, int],
-    told: NoticeCollector,
+    collector: NoticeCollector,
 ) -> bool:
     """Return whether a layer is clipped; in this format all content below in its group clips it."""
     depth = len(ancestor_paths(layer.group))
@@ -134,12 +136,12 @@ def _clips(
             below.add((*ancestor_paths(each.group)[depth : depth + 1], each)[0])
     if len(below) > 1:
         what = _("clipped by the layer directly below, not by all layers below in its group")
-        told.add_warning(layer.name, what)
+        collector.add_warning(layer.name, what)
     return bool(below)
 
 
 def _layers(
-    stack: ET.Element, around: _Place, groups: GroupPaths, told: NoticeCollector
+    stack: ET.Element, around: _Place, groups: GroupPaths, collector: NoticeCollector
 ) -> Iterator[tuple[ET.Element, _Place]]:
     """Yield the layers of a stack and of its groups, from the front."""
     for element in stack:
@@ -152,7 +154,7 @@ def _layers(
         if element.tag == "layer":
             yield element, place
         elif element.tag == "stack":
-            blend = _blend(element, told)
+            blend = _blend(element, collector)
             group = Group(
                 name=name or "group",
                 opacity=_opacity(element),
@@ -161,9 +163,9 @@ def _layers(
                 clipped=_is_clipped(element),
             )
             inner = replace(place, group=groups.add(around.group, group))
-            yield from _layers(element, inner, groups, told)
+            yield from _layers(element, inner, groups, collector)
         else:
-            told.add_warning(
+            collector.add_warning(
                 name or element.tag, _("left out, since Lissom takes drawn layers only")
             )
 
@@ -189,12 +191,12 @@ def _is_clipped(element: ET.Element) -> bool:
     return element.get("composite-op") == "svg:src-atop" or element.get("alpha-preserve") == "true"
 
 
-def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
+def _blend(element: ET.Element, collector: NoticeCollector) -> BlendMode:
     """Return the blend mode of an element. An unsupported mode gives a notice."""
     mode = element.get("composite-op", "")
     if mode not in MODES:
         name = element.get("name", "").strip() or element.tag
-        told.add_warning(
+        collector.add_warning(
             name,
             _("drawn normally, not in the mode {mode!r}").format(
                 mode=shortened(mode.removeprefix("svg:"))

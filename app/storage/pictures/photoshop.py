@@ -125,8 +125,8 @@ def _require_few_records(data: bytes) -> None:
 
 
 def _read(drawing: Any) -> LayeredPicture:
-    told, groups = NoticeCollector(), GroupPaths()
-    found = list(_drawn_layers(drawing, _Place(), groups, told))
+    collector, groups = NoticeCollector(), GroupPaths()
+    found = list(_drawn_layers(drawing, _Place(), groups, collector))
     check_memory([(layer.width, layer.height) for _place, layer, _clipped in found])
     layers = []
     for place, layer, is_clipped in found:
@@ -134,7 +134,7 @@ def _read(drawing: Any) -> LayeredPicture:
         if not layer.is_group():
             _require_channels(layer, drawing)
         # An empty layer still clips as in the file.
-        image = masked_pixels(layer, place.masks, told) or Image.new("RGBA", (1, 1))
+        image = masked_pixels(layer, place.masks, collector) or Image.new("RGBA", (1, 1))
         picture = Picture(rgba=freeze(np.array(image)))
         read = ImportedLayer(
             name=name,
@@ -143,12 +143,12 @@ def _read(drawing: Any) -> LayeredPicture:
             corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
             visible=layer.visible,
             opacity=layer.opacity / 255 * layer.fill_opacity / 255,
-            blend="normal" if layer.is_group() else _blend(layer, told),
+            blend="normal" if layer.is_group() else _blend(layer, collector),
             clipped=is_clipped,
             group=place.group,
         )
         layers.append(read)
-    if not found and not told.import_log:
+    if not found and not collector.import_log:
         # A file saved without layers holds only the merged picture.
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
         rows = drawing.height * drawing.channels
@@ -156,11 +156,11 @@ def _read(drawing: Any) -> LayeredPicture:
         file = encode_png(drawing.topil().convert("RGBA"))
         flat = decode_picture(file, _("the picture"))
         layers = [ImportedLayer(name="picture", data=file, picture=flat)]
-    return build_layered_picture((drawing.width, drawing.height), layers, groups, told)
+    return build_layered_picture((drawing.width, drawing.height), layers, groups, collector)
 
 
 def _drawn_layers(
-    around: Any, place: _Place, groups: GroupPaths, told: NoticeCollector
+    around: Any, place: _Place, groups: GroupPaths, collector: NoticeCollector
 ) -> Iterator[tuple[_Place, Any, bool]]:
     """Yield all drawn layers from the back: place, layer, and whether it is clipped.
 
@@ -179,23 +179,23 @@ def _drawn_layers(
                 name=name,
                 opacity=layer.opacity / 255 * layer.fill_opacity / 255,
                 hidden=not layer.visible,
-                blend="pass-through" if passes else _blend(layer, told),
+                blend="pass-through" if passes else _blend(layer, collector),
                 clipped=is_clipped,
             )
-            _warn_left_out(layer, name, told)
-            if is_masked(layer, told):
+            _warn_left_out(layer, name, collector)
+            if is_masked(layer, collector):
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
                 masks = (*masks, MaskedGroup(layer, canvas))
-                told.add_note(
+                collector.add_note(
                     name, _("its mask is cut into the layers of the group, as they are drawn")
                 )
             inner = _Place(group=groups.add(place.group, group), masks=masks)
-            drawn = list(_drawn_layers(layer, inner, groups, told))
+            drawn = list(_drawn_layers(layer, inner, groups, collector))
             yield from drawn or [(inner, layer, False)]
         elif layer.kind in DRAWN:
-            _warn_left_out(layer, name, told)
+            _warn_left_out(layer, name, collector)
             if layer.kind == "type":
-                told.add_note(name, _("text, drawn as a picture"))
+                collector.add_note(name, _("text, drawn as a picture"))
             yield replace(place, masks=masks), layer, is_clipped
         else:
             left_out = (
@@ -203,32 +203,34 @@ def _drawn_layers(
                 if layer.kind.endswith("fill")
                 else _("left out, since it is an adjustment layer")
             )
-            told.add_warning(name, left_out)
+            collector.add_warning(name, left_out)
             clips = clips and _is_clipping(layer)
             continue
         has_base = has_base or not is_clipped
         clips = clips or not _is_clipping(layer)
 
 
-def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
+def _warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
     """Add notices about unsupported features that change the look of a layer or group."""
     if layer.has_effects():
         effects = dict.fromkeys(
             _split_camel_case(type(effect).__name__) for effect in layer.effects if effect.enabled
         )
-        told.add_warning(
+        collector.add_warning(
             name, _("drawn without effects ({effects})").format(effects=", ".join(effects))
         )
     if layer.kind == "artboard":
-        told.add_warning(
+        collector.add_warning(
             name, _("an artboard, of which neither the background nor the edges are drawn")
         )
     ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
     pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
     if any(each not in ALL_LEVELS for pair in pairs for each in pair):
-        told.add_warning(name, _("drawn at all brightnesses, whatever its “Blend If” says"))
+        collector.add_warning(name, _("drawn at all brightnesses, whatever its “Blend If” says"))
     if layer.tagged_blocks.get_data(KNOCKOUT):
-        told.add_warning(name, _("drawn over the layers behind, which it knocks out in the file"))
+        collector.add_warning(
+            name, _("drawn over the layers behind, which it knocks out in the file")
+        )
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -241,14 +243,14 @@ def _split_camel_case(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
-def _blend(layer: Any, told: NoticeCollector) -> BlendMode:
+def _blend(layer: Any, collector: NoticeCollector) -> BlendMode:
     """Return the blend mode of a layer. An unsupported mode gives a notice."""
     mode = layer.blend_mode.name
     if mode not in MODES:
         what = _("drawn normally, not in the mode {mode!r}").format(
             mode=mode.lower().replace("_", " ")
         )
-        told.add_warning(layer.name.strip() or "layer", what)
+        collector.add_warning(layer.name.strip() or "layer", what)
     return MODES.get(mode, "normal")
 
 
@@ -258,8 +260,8 @@ def _require_channels(layer: Any, drawing: Any) -> None:
     psd-tools exposes the channels by private names only.
     """
     found = {}
-    for told, channel in zip(layer._record.channel_info, layer._channels, strict=True):  # noqa: SLF001
-        found[int(told.id)] = channel
+    for info, channel in zip(layer._record.channel_info, layer._channels, strict=True):  # noqa: SLF001
+        found[int(info.id)] = channel
     colours = COLOURS.get(drawing.color_mode.name, 0)
     if layer.width and layer.height and not set(range(colours)) <= set(found):
         raise LissomError(

@@ -337,9 +337,9 @@ def test_springs_are_set_and_removed():
 def test_stillness_is_switched_for_a_layer_and_for_handles():
     document = tracked()
     assert document.layers[0].has_auto_pins
-    loose = shape_commands.set_auto_pins(0, stillness=False)(document)
+    loose = shape_commands.set_auto_pins(0, enabled=False)(document)
     assert not loose.layers[0].has_auto_pins
-    assert shape_commands.set_auto_pins(0, stillness=False)(loose) is loose
+    assert shape_commands.set_auto_pins(0, enabled=False)(loose) is loose
     freed = handle_commands.unpin_handles(0, {0, 2}, free=True)(document)
     assert [handle.is_unpinned for handle in freed.layers[0].handles] == [True, False, True]
 

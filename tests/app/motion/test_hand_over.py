@@ -23,7 +23,7 @@ from app.document.keyframe import Handle, Target
 from app.document.layers.attachments import Attachment
 from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
-from app.motion import Animation, ParentTransforms, hung_animations, reparent_in_place
+from app.motion import Animation, ParentTransforms, placed_animations, reparent_in_place
 from engine.geometry import IDENTITY_MOTION
 
 TOL = 1e-9 * 200
@@ -134,7 +134,7 @@ def test_hands_may_take_turns_in_carrying_each_other(hands):
             springs=(Spring(handle=handle.id, frequency=2.0, damping=0.3),),
         )
         document = document.with_layer(layer)
-    animations = hung_animations(
+    animations = placed_animations(
         [Animation(clip_of(document, each), points=np.array([CENTRE])) for each in (0, 2)], document
     )
     for each in (0, 2):
@@ -145,7 +145,7 @@ def test_circles_at_any_frame_are_refused_by_name(hands):
     document = layers.attach_layer(2, CENTRE, Attachment(parent=1, parent_point=CENTRE, frame=20))(
         hands
     )
-    with pytest.raises(LissomError, match=r"at frame 30: '1' on '2', '2' on '1'; detach"):
+    with pytest.raises(LissomError, match=r"at frame 30: '1' → '2' → '1'; detach"):
         layers.attach_layer(1, CENTRE, Attachment(parent=2, parent_point=CENTRE, frame=30))(
             document
         )

@@ -33,8 +33,8 @@ from app.motion import (
     ParentTransforms,
     bounding_box,
     find_parent_motion,
-    hung_animations,
     measure_extent,
+    placed_animations,
     reuse_corrections,
     trace_paths,
 )
@@ -502,7 +502,7 @@ def test_extent_and_exports_are_of_the_shown_frames():
     while (work := frames.missing(document, 0, {0: store.sampler})) is not None:
         frames.take(work())
     animation = Animation(clip)
-    (hung,) = hung_animations([Animation(clip)], document).values()
+    (hung,) = placed_animations([Animation(clip)], document).values()
     places = [animation.positions(float(frame)) for frame in range(9)]
     assert_allclose(hung.positions(3.0), places[3], rtol=0, atol=1e-9)
     found = measure_extent(document, {0: store}, corrected={0: frames})

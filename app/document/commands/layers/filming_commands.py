@@ -22,18 +22,18 @@ Moving = TypeVar("Moving", TransformKey, OpacityKey)
 @command(_("Key the camera"))
 def key_camera(document: Document, key: CameraKey) -> Document:
     """Set the camera key at a frame; an existing key keeps its easing and tangent mode."""
-    return _filmed(document, _with(document.camera, key, [key.frame]))
+    return _with_camera(document, _with(document.camera, key, [key.frame]))
 
 
 @command(_("Move camera key"))
 def move_camera_key(document: Document, frame: int, to: int) -> Document:
-    return _filmed(document, retime.with_moved_keys(document.camera, {frame}, to - frame))
+    return _with_camera(document, retime.with_moved_keys(document.camera, {frame}, to - frame))
 
 
 @command(_("Delete camera key"))
 def delete_camera_key(document: Document, frame: int) -> Document:
     """Delete the camera key at a frame; without keys, frames show the canvas."""
-    return _filmed(document, retime.without_keys(document.camera, {frame}))
+    return _with_camera(document, retime.without_keys(document.camera, {frame}))
 
 
 @layer_command(_("Key opacity"))
@@ -70,21 +70,25 @@ def delete_movement_key(layer: Layer, frame: int) -> Layer:
 
 
 @layer_command(_("Set order key"))
-def place_at(layer: Layer, placing: DrawOrderKey) -> Layer:
+def place_at(layer: Layer, key: DrawOrderKey) -> Layer:
     """Draw a layer directly in front of or behind another one from a frame on."""
-    at = change_frame(layer.draw_order_keys, layer.cycles, placing.frame)
-    placing = replace(placing, frame=at)
-    others = [each for each in layer.draw_order_keys if each.frame != placing.frame]
-    placings = tuple(sorted([*others, placing], key=lambda each: each.frame))
-    return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
+    at = change_frame(layer.draw_order_keys, layer.cycles, key.frame)
+    key = replace(key, frame=at)
+    others = [each for each in layer.draw_order_keys if each.frame != key.frame]
+    order_keys = tuple(sorted([*others, key], key=lambda each: each.frame))
+    return (
+        layer if order_keys == layer.draw_order_keys else replace(layer, draw_order_keys=order_keys)
+    )
 
 
 @layer_command(_("Delete order key"))
 def unplace_at(layer: Layer, frame: int) -> Layer:
     """Delete the draw order key at a frame."""
     at = change_frame(layer.draw_order_keys, layer.cycles, frame)
-    placings = tuple(each for each in layer.draw_order_keys if each.frame != at)
-    return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
+    order_keys = tuple(each for each in layer.draw_order_keys if each.frame != at)
+    return (
+        layer if order_keys == layer.draw_order_keys else replace(layer, draw_order_keys=order_keys)
+    )
 
 
 def _like(layer: Layer, row: Keys[Moving], frame: int) -> list[int]:
@@ -122,7 +126,7 @@ def _with(row: Keys[Key], key: Key, frames: Collection[int]) -> Keys[Key]:
     return retime.with_replaced_keys(row, put)
 
 
-def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:
+def _with_camera(document: Document, camera: tuple[CameraKey, ...]) -> Document:
     """Return a document with other camera keys; its frames grow to contain the keys."""
     if camera is document.camera:
         return document

@@ -312,10 +312,10 @@ def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
 def _without_references_to(layer: Layer, other: int) -> Layer:
     """Return a layer without attachment and draw order keys that refer to another layer."""
     joints = tuple(joint for joint in layer.attachments if joint.parent != other)
-    placings = tuple(placing for placing in layer.draw_order_keys if placing.beside != other)
-    if (joints, placings) == (layer.attachments, layer.draw_order_keys):
+    order_keys = tuple(key for key in layer.draw_order_keys if key.beside != other)
+    if (joints, order_keys) == (layer.attachments, layer.draw_order_keys):
         return layer
-    return replace(layer, attachments=joints, draw_order_keys=placings)
+    return replace(layer, attachments=joints, draw_order_keys=order_keys)
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

@@ -78,7 +78,7 @@ def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, s
 def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
     order = _in_order(document)
     path: tuple[str, ...] = ()
-    told: SwitchGroup | None = None
+    listed_switch: SwitchGroup | None = None
     for index, (layer, choice, where) in enumerate(order):
         around = ancestor_paths(where)
         shared = sum(1 for one, other in zip(path, around, strict=False) if one == other)
@@ -93,7 +93,7 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
                 group=document.group(around[depth]),
             )
         path = around
-        if choice is not None and choice is not told:
+        if choice is not None and choice is not listed_switch:
             yield TreeRow(
                 key=f"choice {choice.name}",
                 depth=len(around),
@@ -101,7 +101,7 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
                 is_open=f"choice {choice.name}" in toggled,
                 switch_group=choice,
             )
-        told = choice
+        listed_switch = choice
         depth = len(around) + (choice is not None)
         yield TreeRow(key=f"{layer.id}", depth=depth, layers=(layer.id,), layer=layer)
 
@@ -115,13 +115,13 @@ def _in_order(document: Document) -> list[_Listed]:
     Members of a switch group are consecutive, at the foremost member.
     """
     order: list[_Listed] = []
-    told: set[str] = set()
+    listed: set[str] = set()
     for layer in reversed(document.layers):
         choice = document.switch_group_of(layer.id)
         if choice is None:
             order.append((layer, None, layer.group))
-        elif choice.name not in told:
-            told.add(choice.name)
+        elif choice.name not in listed:
+            listed.add(choice.name)
             members = (each for each in reversed(document.layers) if each.id in choice.layers)
             order += [(each, choice, layer.group) for each in members]
     return order

@@ -22,6 +22,6 @@ def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:
         small_text(look, "In this drawing no handle stays between keys.")
         hint = "Let handles stay in between where two keys have them at one place"
         if text_button("Let handles stay", FILL, hint):
-            command = shape_commands.set_auto_pins(project.active, stillness=True)
+            command = shape_commands.set_auto_pins(project.active, enabled=True)
             actions.append(do(editing.edit_document, command))
     return actions
