@@ -17,7 +17,7 @@ from app.document import (
     transfer_painted_stiffness,
 )
 from app.solving.drag_solver import Rig, fit_map, pins_of
-from app.texts import _
+from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.domain import build_domain
 from engine.geometry import contains
@@ -111,7 +111,7 @@ def _in_words(layer: Layer, index: int) -> str:
 
 
 def _with_domain(resolver: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyResolver:
-    domain, notices = build_domain(
+    domain, found = build_domain(
         picture,
         triangles=meshing.triangles,
         detail=meshing.detail,
@@ -123,7 +123,7 @@ def _with_domain(resolver: KeyResolver, picture: Bytes, meshing: Meshing) -> Key
     poses = (pose.with_map(rest) for pose in before.poses)
     stiffness = transfer_painted_stiffness(before.stiffness, before.domain, domain)
     into = before.with_poses(poses, domain=domain, meshing=meshing, stiffness=stiffness)
-    return replace(resolver, new_layer=into, notices=notices)
+    return replace(resolver, new_layer=into, notices=tuple(map(message_of, found)))
 
 
 def _solved(resolver: KeyResolver, rig: Rig, index: int) -> Pose:

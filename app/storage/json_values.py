@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from app.errors import LissomError, display_name
 from app.storage.files.reading import read_file
-from app.texts import N_, _
+from app.texts import N_, _, message_of
 
 Parsed = TypeVar("Parsed")
 
@@ -116,7 +116,7 @@ def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) ->
     except RecursionError as error:
         raise LissomError(_(TOO_NESTED).format(path=path)) from error
     except (LissomError, ValueError) as error:
-        raise LissomError(f"{path}: {error}") from error
+        raise LissomError(f"{path}: {message_of(error)}") from error
 
 
 def check_repeated_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -187,13 +187,13 @@ def make_posable_layer(
     notices: tuple[str, ...] = (_("opaque all over, so that it stands still"),)
     if not (is_cut_out and picture.is_opaque):
         try:
-            domain, notices = build_domain(
+            domain, found = build_domain(
                 picture.rgba,
                 triangles=meshing.triangles,
                 detail=meshing.detail,
                 cut_out=cut_out,
             )
-            still = False
+            still, notices = False, tuple(map(message_of, found))
         except EngineError as error:
             notices = (_("stands still: {reason}").format(reason=message_of(error)),)
     layer = replace(

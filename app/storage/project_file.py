@@ -28,7 +28,7 @@ from app.storage.json_values import JsonObject, as_object, as_text, as_whole, ch
 from app.storage.project.archive import MEBIBYTE, Archive, write_archive
 from app.storage.project.document_json import SCHEMA, read_document, write_document
 from app.storage.project.members import layer_members
-from app.texts import N_, _
+from app.texts import N_, _, message_of
 
 LARGEST_JSON = 32 * MEBIBYTE
 # In project.json. A thousand keys of a hundred handles have this many.
@@ -112,7 +112,7 @@ def load_project(path: Path) -> Document:
         ) from error
     except EXPECTED_ERRORS as error:
         raise LissomError(
-            _("cannot open {path}: {error}").format(path=path, error=error)
+            _("cannot open {path}: {error}").format(path=path, error=message_of(error))
         ) from error
     except DAMAGED_ZIP as error:
         raise LissomError(
@@ -153,7 +153,7 @@ def _require_readable(
     except (*EXPECTED_ERRORS, *DAMAGED_ZIP) as error:
         raise LissomError(
             _("cannot write {path}, as Lissom could not open it again: {error}").format(
-                path=path, error=error
+                path=path, error=message_of(error)
             )
         ) from error
     _readable.update(document.layers)

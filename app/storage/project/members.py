@@ -88,7 +88,7 @@ class LayerMembers:
         if picture.sha256 != sha256:
             raise LissomError(_(OTHER_CHECKSUM))
         # The camera's orientation note may have turned the picture by a quarter.
-        width, height = stored_size(picture.data, "its picture")
+        width, height = stored_size(picture.data, _("its picture"))
         if size not in {(width, height), (height, width)}:
             raise LissomError(
                 _(
