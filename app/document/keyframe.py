@@ -193,7 +193,7 @@ class Keyframe:
         require_frame(self.frame, _("A key"))
         require(
             abs(self.revolutions) <= MAX_REVOLUTIONS,
-            N_("There may be {most} whole turns on the way to a key, not {revolutions}."),
+            N_("There may be at most {most} whole turns on the way to a key, not {revolutions}."),
             most=MAX_REVOLUTIONS,
             revolutions=self.revolutions,
         )

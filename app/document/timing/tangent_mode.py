@@ -23,9 +23,6 @@ def require_tangent_mode(passing: str) -> None:
     """Refuse unknown tangent modes, and HOLD, which is stored as an easing."""
     require(
         passing in (TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP),
-        N_(
-            "A key is passed through, in a corner or with a stop, not {passing!r}; to hold is "
-            "an easing."
-        ),
-        passing=str(passing),
+        N_("The tangent of a key is through, corner or stop, not {tangent!r}; hold is an easing."),
+        tangent=str(passing),
     )

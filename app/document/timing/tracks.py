@@ -46,8 +46,8 @@ class TrackKey(BaseKey):
         require(
             self.velocity is None or abs(self.velocity) <= MAX_COORDINATE,
             N_(
-                "A track passes a key at no more than {largest:,.0f} pixels a frame, "
-                "not at {velocity}."
+                "The velocity of a track's key is at most {largest:,.0f} pixels a frame, "
+                "not {velocity}."
             ),
             largest=MAX_COORDINATE,
             velocity=self.velocity,
