@@ -373,7 +373,7 @@ def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
         (["tracks", 0, "keys", 1, "turn"], 10**400, "turn must be finite"),
         (["tracks", 0, "keys", 1, "turn"], -130, "turns by at most 20 whole turns, not by -20.69"),
         (["tracks", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
-        (["tracks", 0, "keys", 1, "tangent_mode"], "hold", "to hold is an easing"),
+        (["tracks", 0, "keys", 1, "tangent_mode"], "hold", "hold is an easing"),
         (["tracks", 0, "delay"], -1, "delay of a track is from 0"),
         (["tracks", 0, "delay"], 10**30, "delay of a track is from 0"),
         (["tracks", 0, "delay"], 60, "late by 60 frames, which is longer than the loop of 59"),

@@ -136,5 +136,5 @@ def test_passings_are_set_and_holds_undone():
     stopped = key_commands.set_tangent_mode(0, {0, 10}, TangentMode.STOP)(held)
     assert [key.shown_tangent_mode for key in stopped.layers[0].keys] == ["stop", "stop", "hold"]
     assert stopped.layers[0].key(10).easing == LINEAR
-    with pytest.raises(LissomError, match="to hold is an easing"):
+    with pytest.raises(LissomError, match="hold is an easing"):
         replace(stopped.layers[0].keys[0], tangent_mode=TangentMode.HOLD)
