@@ -185,8 +185,8 @@ def placed(document, frame, *, to):
 
 
 def is_in_front(document, layer, frame):
-    placing = draw_order_key_at(document, layer, frame)
-    return placing is None or placing.in_front
+    key = draw_order_key_at(document, layer, frame)
+    return key is None or key.in_front
 
 
 @pytest.mark.parametrize(

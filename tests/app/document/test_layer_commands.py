@@ -68,7 +68,7 @@ def test_two_layers_have_two_names():
     assert layers.rename_layer(1, "arm")(document) is document
 
 
-def test_nothing_hangs_on_itself_and_what_it_hung_on_may_go():
+def test_layer_is_never_its_own_ancestor_and_parents_may_go():
     document = scene("body", "arm", "hand")
     joint = Attachment(parent=0, parent_point=CENTRE)
     document = layers.attach_layer(1, CENTRE, joint)(document)

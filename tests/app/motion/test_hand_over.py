@@ -1,4 +1,4 @@
-"""What hangs on one layer, then on another one, and then on none."""
+"""A layer that is attached to one layer, then to another, and then to none."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ TOL = 1e-9 * 200
 
 @pytest.fixture(scope="module")
 def hands():
-    """Two hands that move by themselves, and a thing that hangs on the first of them."""
+    """Two hands that move by themselves, and a thing that is attached to the first of them."""
     document = layers.detach_layer(1, 1, 0)(chain())
     assert document.layer(2).attachments[0].parent == 1
     joint = Attachment(parent=0, parent_point=CENTRE + 20j)
@@ -222,8 +222,8 @@ def test_reparented_layer_is_reparented_in_every_repeat(juggled):
         placed = [seen(juggled, 2, frame + repeat * 48, joints) for repeat in range(3)]
         for other in placed[1:]:
             assert_allclose(other, placed[0], rtol=0, atol=1e-5)
-        carriers = [juggled.parent_chain(2, frame + repeat * 48)[1].id for repeat in range(3)]
-        assert carriers == [1 if 14 <= frame < 32 else 0] * 3
+        parents = [juggled.parent_chain(2, frame + repeat * 48)[1].id for repeat in range(3)]
+        assert parents == [1 if 14 <= frame < 32 else 0] * 3
     for frame in (14, 32, 48, 62, 80, 96, 144):
         before, after = around(joints, 2, frame)
         assert abs(before.factor - after.factor) < 1e-6
@@ -294,8 +294,8 @@ def test_repeats_end_at_their_frame_and_what_comes_later_follows(juggled):
     document = juggled.with_layer(
         replace(layer, attachments=joints, cycles=(Cycle(first=0, last=48, until=96),))
     )
-    carriers = [[each.id for each in document.parent_chain(2, f)[1:]] for f in (62, 96, 130, 150)]
-    assert carriers == [[1], [0], [0], []]
+    parents = [[each.id for each in document.parent_chain(2, f)[1:]] for f in (62, 96, 130, 150)]
+    assert parents == [[1], [0], [0], []]
 
 
 def test_circles_in_repeats_are_refused(hands):

@@ -271,7 +271,7 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         ),
         (["tracks", 0, "keys", 0, "velocity"], 3, says(NOT_POINT, where="keys[0].velocity")),
         (["tracks", 0, "keys", 0, "velocity"], [float("nan"), 0], says(NOT_FINITE)),
-        (["tracks", 0, "keys", 0, "velocity"], [1e9, 0], "no more than 10,000,000 pixels"),
+        (["tracks", 0, "keys", 0, "velocity"], [1e9, 0], "at most 10,000,000 pixels"),
         (
             ["tracks", 0, "keys", 1, "velocity"],
             [1, 0],
@@ -413,13 +413,13 @@ def test_a_key_on_request_pulls_with_bounded_force():
         after = {"frame": 16, "targets": {"start": [32, 44]}}
         script = {"schema": 1, "handles": handles, "keys": [{"frame": 0}, far, after]}
         script["bounds"] = {"k": 0.5, "sigma_a": 2, "sigma_b": 0.5}
-        told, notices = pose_document(document, parse_pose_script(script), lambda _: None)
-        posed[bool(pull)] = told.layers[0], notices
+        result, notices = pose_document(document, parse_pose_script(script), lambda _: None)
+        posed[bool(pull)] = result.layers[0], notices
     (held, _), (pulled, notices) = posed[False], posed[True]
     for layer, far in ((held, True), (pulled, False)):
         for key in layer.keys[1:]:
             assert (abs(layer.target_errors(key.pose)[1]) > 5) == far
-    # It is told how far short it is, and it is wanted where it came to.
+    # A notice names the target error, and the target moves to where the handle is.
     assert len(notices) == 1
     assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
     wanted = pulled.keys[1].pose.targets[0].position
@@ -428,7 +428,7 @@ def test_a_key_on_request_pulls_with_bounded_force():
     assert pulled.keys[2].pose.targets[0].position == wanted
 
 
-def test_a_script_gives_its_layer_tracks_springs_and_stillness():
+def test_a_script_gives_its_layer_tracks_springs_and_auto_pins():
     opened = still_document(bar_picture())
     handles = {"end": [210, 40], "start": {"at": [30, 40], "still": False}}
     script = {

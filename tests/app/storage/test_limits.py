@@ -232,11 +232,11 @@ NOT_READ_BACK = (
 )
 
 
-@pytest.mark.parametrize(("module", "limit", "told"), NOT_READ_BACK)
-def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module, limit, told):
+@pytest.mark.parametrize(("module", "limit", "refusal"), NOT_READ_BACK)
+def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module, limit, refusal):
     before, tmp_path = saved.read_bytes(), saved.parent
     monkeypatch.setattr(module, limit, 3)
-    with pytest.raises(LissomError, match=f"could not open it again: .*{told}"):
+    with pytest.raises(LissomError, match=f"could not open it again: .*{refusal}"):
         save_project(saved, clocked_document())
     assert saved.read_bytes() == before
     assert [*tmp_path.iterdir()] == [saved]
@@ -305,7 +305,7 @@ UNKNOWN_MOTIONS = (
 
 
 @pytest.mark.parametrize(("motion", "reason"), UNKNOWN_MOTIONS)
-def test_motion_is_kept_and_told_when_it_is_not_known(saved, motion, reason):
+def test_motion_is_kept_and_reported_when_it_is_not_known(saved, motion, reason):
     later = KNOWN | {"first": 10, "start": 10, "last": 20}
     with_content(saved, lambda c: c["layers"][0].update(motions=[KNOWN, motion, later]))
     document = load_project(saved)

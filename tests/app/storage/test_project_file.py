@@ -639,7 +639,7 @@ def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, mess
         (["notes", 0], 7, says(NOT_TEXT, where="import_log.notes[0]")),
     ],
 )
-def test_what_was_told_of_an_import_must_be_lines(tmp_path, way, value, message):
+def test_what_was_reported_of_an_import_must_be_lines(tmp_path, way, value, message):
     save_project(tmp_path / "a", clocked_document())
     broken = with_json(read_members(tmp_path / "a"), "import_log", *way, value=value)
     with pytest.raises(LissomError, match=message):
