@@ -31,7 +31,7 @@ def set_auto_pins(layer: Layer, *, enabled: bool) -> Layer:
     return layer if enabled == layer.has_auto_pins else replace(layer, has_auto_pins=enabled)
 
 
-@layer_command(_("Set bounds"))
+@layer_command(_("Set limits"))
 def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
     """Set the limits of distortion; `poses` are all poses solved within them, if they change."""
     if poses is not None:
