@@ -18,6 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Final, Literal
 
+from app.texts import N_, _
 from engine.errors import EngineError
 
 # Optional features, each an extra of the package with its own library.
@@ -25,8 +26,8 @@ Extra = Literal["video", "psd", "figures"]
 LIBRARIES: Final[dict[Extra, str]] = {"video": "av", "psd": "psd-tools", "figures": "matplotlib"}
 ProgressListener = Callable[[float], None]
 _listener: ContextVar[ProgressListener | None] = ContextVar("listener", default=None)
-CANCELLED: Final = "it was cancelled"
-REINSTALL: Final = "install Lissom again"
+CANCELLED: Final = N_("it was cancelled")
+REINSTALL: Final = N_("install Lissom again")
 # On Linux, Python reads the bytes of a file name that are not UTF-8 as these surrogates.
 _UNREADABLE = re.compile("[\ud800-\udfff]")
 MAX_TEXT_LENGTH: Final = 120  # characters of a text from a file or another program
@@ -136,13 +137,16 @@ def join_names(names: Sequence[object]) -> str:
     """Return the first names, separated by commas, and the number of the others."""
     few = ", ".join(map(shortened, names[:MAX_LISTED]))
     more = len(names) - MAX_LISTED
-    return f"{few} and {more:,} more" if more > 0 else few
+    return _("{names} and {count:,} more").format(names=few, count=more) if more > 0 else few
 
 
 def few_notices(notices: Sequence[str]) -> list[str]:
     """Return the first notices and the number of the others."""
     more = len(notices) - MAX_LISTED
-    return [*notices[:MAX_LISTED], *([f"and {more:,} more"] if more > 0 else [])]
+    return [
+        *notices[:MAX_LISTED],
+        *([_("and {count:,} more").format(count=more)] if more > 0 else []),
+    ]
 
 
 def install_hint(extra: Extra) -> str:
@@ -158,7 +162,7 @@ def _how_to_install(extra: Extra) -> str:
     """
     if getattr(sys, "frozen", False):
         # A bundled application contains all libraries.
-        return "a part of Lissom is gone, install it again"
+        return _("a part of Lissom is missing; install it again")
     home = Path(sys.prefix)
     if (home / "pipx_metadata.json").is_file():
         return f"pipx inject {_quoted(home.name)} {_quoted(required_library(extra))}"
@@ -173,7 +177,7 @@ def _how_to_install(extra: Extra) -> str:
 def required_library(extra: Extra) -> str:
     """Return the requirement of an extra: its library with the accepted versions."""
     lines = (line.partition(";") for line in requires("lissom") or ())
-    return next(name.strip() for name, _, case in lines if re.search(rf"\b{extra}\b", case))
+    return next(name.strip() for name, _mark, case in lines if re.search(rf"\b{extra}\b", case))
 
 
 def _quoted(word: str) -> str:

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from app.errors import Extra, LissomError
+from app.texts import _
 
 
 def expand_colour(text: str) -> str:
@@ -48,8 +49,12 @@ class FormatOptions:
             value = getattr(self, name)
             if value is not None and not option.minimum <= value <= option.maximum:
                 raise LissomError(
-                    f"{name.capitalize()} must be {option.minimum:,} to {option.maximum:,}, not "
-                    f"{value}."
+                    _("{option} must be {smallest:,} to {largest:,}, not {value}.").format(
+                        option=name.capitalize(),
+                        smallest=option.minimum,
+                        largest=option.maximum,
+                        value=value,
+                    )
                 )
 
     @classmethod
@@ -64,26 +69,27 @@ class SpriteSheetOptions(FormatOptions):
 
     trimmed: bool = _option(
         True,  # noqa: FBT003 - the usual value
-        label="Frames are",
-        choices=((True, "Trimmed"), (False, "All alike")),
+        label=_("Frames are"),
+        choices=((True, _("Trimmed")), (False, _("All alike"))),
         flag="trim",
-        description="keep only what is seen of a frame on a sprite sheet (default: the project's, "
-        "yes)",
+        description=_(
+            "keep only what is seen of a frame on a sprite sheet (default: the project's, yes)"
+        ),
     )
     padding: int = _option(
         2,
-        label="Padding",
-        tip="Transparent pixels between frames and at the border",
+        label=_("Padding"),
+        tip=_("Transparent pixels between frames and at the border"),
         flag="padding",
-        description="pixels between frames of a sprite sheet",
+        description=_("pixels between frames of a sprite sheet"),
         maximum=256,
     )
     power_of_two: bool = _option(
         False,  # noqa: FBT003 - the usual value
-        label="Sheet sides",
-        choices=((False, "Any"), (True, "Powers of two")),
+        label=_("Sheet sides"),
+        choices=((False, _("Any")), (True, _("Powers of two"))),
         flag="power-of-two",
-        description="let the sides of a sprite sheet be powers of two",
+        description=_("let the sides of a sprite sheet be powers of two"),
     )
 
 
@@ -97,22 +103,26 @@ class MeshOptions(FormatOptions):
 
     triangles: int = _option(
         4_000,
-        label="Triangles",
-        tip="Of each layer, about: more of them bend more smoothly, in a larger file",
+        label=_("Triangles"),
+        tip=_("Of each layer, about: more of them bend more smoothly, in a larger file"),
         flag="triangles",
-        description="of a model, about (default: 4000)",
+        description=_("of a model, about (default: 4000)"),
         minimum=100,
         maximum=2_000_000,  # the largest number of triangles of a domain
     )
     tolerance: float | None = _option(
         None,
-        label="Within",
-        tip="How far the shapes may be from the motion, in pixels. As usual, it takes at most 8 of "
-        "them, which every viewer shows; a tolerance of your own takes as many as it needs",
-        choices=((None, "½ px, 8 shapes"), (0.5, "Own")),
+        label=_("Within"),
+        tip=_(
+            "How far the shapes may be from the motion, in pixels. As usual, it takes at most 8 of "
+            "them, which every viewer shows; a tolerance of your own takes as many as it needs"
+        ),
+        choices=((None, _("½ px, 8 shapes")), (0.5, _("Own"))),
         flag="tolerance",
-        description="how far a model may be from the motion, in pixels, with as many shapes as "
-        "that takes (default: 0.5, with 8 shapes at most)",
+        description=_(
+            "how far a model may be from the motion, in pixels, with as many shapes as "
+            "that takes (default: 0.5, with 8 shapes at most)"
+        ),
         minimum=0.001,
         maximum=100,
     )
@@ -162,52 +172,58 @@ class ExportFormat:
 EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
     {
         "png": ExportFormat(
-            label="PNG frames",
-            group="Frames",
-            use="For compositing and editing: exact, each frame a file of its own.",
-            about="frame_0000.png, ... in the folder --out, which is made if it is missing. Frame "
-            "0 of the timeline is frame_0000.png; numbers go on one by one from that of the first "
-            "frame, with --fps too, and have more digits if one needs them. Frames of before with "
-            "the same names are replaced, other files stay.",
+            label=_("PNG frames"),
+            group=_("Frames"),
+            use=_("For compositing and editing: exact, each frame a file of its own."),
+            about=_(
+                "frame_0000.png, ... in the folder --out, which is made if it is missing. Frame "
+                "0 of the timeline is frame_0000.png; numbers go on one by one from that "
+                "of the first "
+                "frame, with --fps too, and have more digits if one needs them. Frames "
+                "of before with "
+                "the same names are replaced, other files stay."
+            ),
         ),
         "picture": ExportFormat(
-            label="PNG picture",
-            group="Frames",
-            use="One pose, exact, at any size: the frame at the playhead.",
-            about="the frame --frame alone, as a PNG",
+            label=_("PNG picture"),
+            group=_("Frames"),
+            use=_("One pose, exact, at any size: the frame at the playhead."),
+            about=_("the frame --frame alone, as a PNG"),
             suffixes=(".png",),
             is_still=True,
         ),
         "apng": ExportFormat(
-            label="Animated PNG",
-            group="Animation",
-            use="For web pages and chats: exact colours and soft edges; large files.",
-            about="an animation with exact colours and transparency",
+            label=_("Animated PNG"),
+            group=_("Animation"),
+            use=_("For web pages and chats: exact colours and soft edges; large files."),
+            about=_("an animation with exact colours and transparency"),
             suffixes=(".apng", ".png"),
         ),
         "gif": ExportFormat(
-            label="GIF",
-            group="Animation",
-            use="Plays everywhere; hard edges, 255 colours, at most 50 pictures a second.",
-            about="an animation in 255 colours a frame; each pixel is opaque or transparent, so "
-            "that soft edges become hard",
+            label=_("GIF"),
+            group=_("Animation"),
+            use=_("Plays everywhere; hard edges, 255 colours, at most 50 pictures a second."),
+            about=_(
+                "an animation in 255 colours a frame; each pixel is opaque or transparent, so "
+                "that soft edges become hard"
+            ),
             suffixes=(".gif",),
             largest=65_535,
             fastest=50.0,  # programs slow down pictures that last under 2/100 of a second
         ),
         "webp": ExportFormat(
-            label="WebP",
-            group="Animation",
-            use="As exact as Animated PNG and smaller; for browsers, few editors read it.",
-            about="an animation with exact colours and transparency, smaller than apng",
+            label=_("WebP"),
+            group=_("Animation"),
+            use=_("As exact as Animated PNG and smaller; for browsers, few editors read it."),
+            about=_("an animation with exact colours and transparency, smaller than apng"),
             suffixes=(".webp",),
             largest=16_383,
         ),
         "mp4": ExportFormat(
-            label="MP4 video",
-            group="Video",
-            use="Plays everywhere, small; no transparency, even sides only.",
-            about="H.264 video; needs a background colour",
+            label=_("MP4 video"),
+            group=_("Video"),
+            use=_("Plays everywhere, small; no transparency, even sides only."),
+            about=_("H.264 video; needs a background colour"),
             suffixes=(".mp4",),
             is_transparent=False,
             largest=16_384,
@@ -215,43 +231,53 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             extra="video",
         ),
         "webm": ExportFormat(
-            label="WebM video",
-            group="Video",
-            use="For browsers: small, with soft transparency; few editors read it.",
-            about="VP9 video, with its transparency unless there is a background colour",
+            label=_("WebM video"),
+            group=_("Video"),
+            use=_("For browsers: small, with soft transparency; few editors read it."),
+            about=_("VP9 video, with its transparency unless there is a background colour"),
             suffixes=(".webm",),
             largest=16_384,
             extra="video",
         ),
         "mov": ExportFormat(
-            label="ProRes video",
-            group="Video",
-            use="For video editors: nearly exact, with transparency; large files.",
-            about="ProRes 4444 video, with its transparency (straight alpha) unless there is a "
-            "background colour",
+            label=_("ProRes video"),
+            group=_("Video"),
+            use=_("For video editors: nearly exact, with transparency; large files."),
+            about=_(
+                "ProRes 4444 video, with its transparency (straight alpha) unless there is a "
+                "background colour"
+            ),
             suffixes=(".mov",),
             largest=16_384,
             extra="video",
         ),
         "spritesheet": ExportFormat(
-            label="Sprite sheet",
-            group="Engine and web",
-            use="For 2D engines: all frames in one PNG, with data; a fixed rate and size.",
-            about="all frames in one PNG, row by row, and beside it a JSON that tells where each "
-            "is, as TexturePacker writes it, with durations and tags as in Aseprite; tags are made "
-            "of the timeline's markers. Frames are trimmed and 2 pixels apart by default",
+            label=_("Sprite sheet"),
+            group=_("Engine and web"),
+            use=_("For 2D engines: all frames in one PNG, with data; a fixed rate and size."),
+            about=_(
+                "all frames in one PNG, row by row, and beside it a JSON that tells where each "
+                "is, as TexturePacker writes it, with durations and tags as in Aseprite; "
+                "tags are made "
+                "of the timeline's markers. Frames are trimmed and 2 pixels apart by default"
+            ),
             suffixes=(".png",),
             data_suffix=".json",
             largest=16_384,
             options="sheet",
         ),
         "glb": ExportFormat(
-            label="glTF model",
-            group="Engine and web",
-            use="For engines and Blender: a moving mesh at any rate and size, in one small file.",
-            about="a textured mesh with morph targets and their weights in time, for engines, "
-            "Blender and browsers: base shape and targets come within --tolerance of the motion. "
-            "100 pixels are a metre, the middle of the canvas' lower edge is the origin",
+            label=_("glTF model"),
+            group=_("Engine and web"),
+            use=_(
+                "For engines and Blender: a moving mesh at any rate and size, in one small file."
+            ),
+            about=_(
+                "a textured mesh with morph targets and their weights in time, for engines, "
+                "Blender and browsers: base shape and targets come within --tolerance of "
+                "the motion. "
+                "100 pixels are a metre, the middle of the canvas' lower edge is the origin"
+            ),
             suffixes=(".glb",),
             is_drawn=False,
             has_frame=False,
@@ -260,11 +286,15 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             options="shapes",
         ),
         "html": ExportFormat(
-            label="Web page",
-            group="Engine and web",
-            use="For the web: one file that plays sharp at any size; needs a browser with WebGL 2.",
-            about="one page that plays the same shapes as glb by WebGL 2 and needs nothing else; "
-            "it fills its frame, is dragged to scrub and clicked to pause",
+            label=_("Web page"),
+            group=_("Engine and web"),
+            use=_(
+                "For the web: one file that plays sharp at any size; needs a browser with WebGL 2."
+            ),
+            about=_(
+                "one page that plays the same shapes as glb by WebGL 2 and needs nothing else; "
+                "it fills its frame, is dragged to scrub and clicked to pause"
+            ),
             suffixes=(".html", ".htm"),
             is_drawn=False,
             options="shapes",

@@ -17,8 +17,10 @@ DOMAIN, LOCALE = "lissom", Path(__file__).parent / "locale"
 # Also for `argparse`, which takes its own texts from the usual catalogue.
 gettext.bindtextdomain(DOMAIN, str(LOCALE))
 gettext.textdomain(DOMAIN)
-_ = gettext.gettext
-ngettext = gettext.ngettext
+# `gettext.gettext` would search for the catalogue's file at each call.
+_translation = gettext.translation(DOMAIN, str(LOCALE), fallback=True)
+_ = _translation.gettext
+ngettext = _translation.ngettext
 
 
 def N_(text: str) -> str:  # noqa: N802 - gettext's own name

@@ -19,12 +19,13 @@ from app.document.checks import (
 )
 from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.tangent_mode import TangentMode, require_tangent_mode
+from app.texts import N_, _
 from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
 
 MAX_WEIGHT = 1e6
 # Weights of handles by name.
-WEIGHT_PRESETS = {"Soft": 0.1, "Normal": 1.0, "Firm": 10.0}
+WEIGHT_PRESETS = {N_("Soft"): 0.1, N_("Normal"): 1.0, N_("Firm"): 10.0}
 # Factor of a locked handle's weight. If a free handle is dragged to the limits, a locked handle
 # moves by less than a tenth of a pixel.
 LOCKED_WEIGHT = 1e4
@@ -56,19 +57,29 @@ class Handle:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_id(self.id, "a handle")
-        require(bool(self.name.strip()), "A handle needs a name.")
-        require_point(self.position, f"The position of handle {self.name!r}")
+        require_id(self.id, _("A handle"))
+        require(bool(self.name.strip()), N_("A handle needs a name."))
+        require_point(self.position, _("The position of handle {name!r}").format(name=self.name))
         require(
             0 < self.weight <= MAX_WEIGHT,
-            f"The weight of handle {self.name!r} must be above 0 and at most {MAX_WEIGHT:,.0f}, "
-            f"not {self.weight:g}.",
+            N_(
+                "The weight of handle {name!r} must be above 0 and at most {largest:,.0f}, "
+                "not {weight:g}."
+            ),
+            name=self.name,
+            largest=MAX_WEIGHT,
+            weight=self.weight,
         )
         require_depth(self.depth)
         require(
             self.extent is None or 0 < self.extent <= MAX_COORDINATE,
-            f"The extent of handle {self.name!r} must be above 0 and at most {MAX_COORDINATE:,.0f} "
-            f"pixels, not {self.extent}.",
+            N_(
+                "The extent of handle {name!r} must be above 0 and at most "
+                "{largest:,.0f} pixels, not {extent}."
+            ),
+            name=self.name,
+            largest=MAX_COORDINATE,
+            extent=self.extent,
         )
 
     @property
@@ -81,7 +92,8 @@ def require_depth(front: float) -> None:
     """Raise a `LissomError` unless the depth is from −1 to 1."""
     require(
         -1 <= front <= 1,
-        f"What is painted in front is between −1, behind, and 1, in front, not {front:g}.",
+        N_("A depth is from −1, behind, to 1, in front, not {depth:g}."),
+        depth=front,
     )
 
 
@@ -95,10 +107,11 @@ class Target:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_point(self.position, "The target of a handle")
+        require_point(self.position, _("The target of a handle"))
         require(
             self.rotation is None or math.isfinite(self.rotation),
-            f"The rotation of a handle must be finite, not {self.rotation}.",
+            N_("The rotation of a handle must be finite, not {rotation}."),
+            rotation=self.rotation,
         )
 
 
@@ -124,8 +137,12 @@ class Pose:
         largest = max(np.abs(each).max(initial=0.0) for each in (self.phi, self.psi, self.logs))
         require(
             largest <= LARGEST_COEFFICIENT,
-            f"The coefficients of a pose are at most {LARGEST_COEFFICIENT:g} pixels, not "
-            f"{largest:.3g}; move its targets nearer, or choose tighter limits.",
+            N_(
+                "The coefficients of a pose are at most {most:g} pixels, not "
+                "{largest:.3g}; move its targets nearer, or choose tighter limits."
+            ),
+            most=LARGEST_COEFFICIENT,
+            largest=largest,
         )
 
     @classmethod
@@ -154,7 +171,7 @@ class LibraryPose:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(bool(self.name.strip()), "A pose of the library needs a name.")
+        require(bool(self.name.strip()), N_("A pose of the library needs a name."))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -173,11 +190,12 @@ class Keyframe:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, "A key")
+        require_frame(self.frame, _("A key"))
         require(
             abs(self.revolutions) <= MAX_REVOLUTIONS,
-            f"There may be {MAX_REVOLUTIONS} whole turns on the way to a key, not "
-            f"{self.revolutions}.",
+            N_("There may be at most {most} whole turns on the way to a key, not {revolutions}."),
+            most=MAX_REVOLUTIONS,
+            revolutions=self.revolutions,
         )
         require_tangent_mode(self.tangent_mode)
         object.__setattr__(self, "tangent_mode", TangentMode(self.tangent_mode))

@@ -38,6 +38,7 @@ from app.document.timing.cycles import Cycle, require_no_overlap, require_repeat
 from app.document.timing.springs import Spring
 from app.document.timing.tracks import Track
 from app.errors import LissomError
+from app.texts import N_, _
 from engine.arrays import Booleans, Complexes, Floats, readonly
 from engine.deform import MOST_HANDLES
 from engine.domain import MeshedDomain
@@ -46,10 +47,10 @@ from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, LibraryPose)
-NO_KEY = "There is no key at frame {frame}."
-NO_HANDLE = "There is no handle with the id {identity}."
-DUPLICATE_BONES = "Two bones are between handles {!r}."
-POSE_COUNT = "The layer has {count} poses, not {given}."
+NO_KEY = N_("There is no key at frame {frame}.")
+NO_HANDLE = N_("There is no handle with the id {identity}.")
+DUPLICATE_BONES = N_("Two bones are between handles {value!r}.")
+POSE_COUNT = N_("The layer has {count} poses, not {given}.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -62,12 +63,13 @@ class PictureFile:
     sha256: str = field(init=False)
 
     def __post_init__(self) -> None:
-        require(len(self.data) > 0, "The picture is empty.")
+        require(len(self.data) > 0, N_("The picture is empty."))
         require(
             re.fullmatch(r"\.[a-z0-9]{1,8}", self.suffix) is not None,
-            f"A picture's file name ends as in '.png', not {self.suffix!r}.",
+            N_("A picture's file name ends as in '.png', not {suffix!r}."),
+            suffix=self.suffix,
         )
-        require_size(self.size, "picture")
+        require_size(self.size, _("The picture"))
         object.__setattr__(self, "sha256", hashlib.sha256(self.data).hexdigest())
 
 
@@ -134,35 +136,47 @@ class Layer:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_id(self.id, "a layer")
-        require(bool(self.name.strip()), "A layer needs a name.")
-        require_point(self.corner, f"The corner of {self.name!r}")
-        require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require_id(self.id, _("A layer"))
+        require(bool(self.name.strip()), N_("A layer needs a name."))
+        require_point(self.corner, _("The corner of {layer!r}").format(layer=self.name))
+        require(
+            0 <= self.opacity <= 1,
+            N_("Opacity is between 0 and 1, not {opacity:g}."),
+            opacity=self.opacity,
+        )
         require(
             self.blend in BLENDS,
-            f"The blend of {self.name!r} is one of {', '.join(BLENDS)}, not {self.blend!r}.",
+            N_("The blend of {name!r} is one of {blends}, not {blend!r}."),
+            name=self.name,
+            blends=", ".join(BLENDS),
+            blend=self.blend,
         )
         require_ascending_visibility_keys(self.visibility_keys)
         require(
             not self.attachments or self.anchor is not None,
-            f"{self.name!r} is attached, but has no anchor.",
+            N_("{name!r} is attached, but has no anchor."),
+            name=self.name,
         )
         require_attachments(self.attachments)
-        require_ascending_keys(self.transform_keys, f"The movement of {self.name!r}")
-        require_ascending_keys(self.opacity_keys, f"The opacity of {self.name!r}")
-        require_ascending_keys(self.draw_order_keys, f"The order of {self.name!r}")
+        require_ascending_keys(self.transform_keys, N_("The movement of {layer!r}"), self.name)
+        require_ascending_keys(self.opacity_keys, N_("The opacity of {layer!r}"), self.name)
+        require_ascending_keys(self.draw_order_keys, N_("The order of {layer!r}"), self.name)
         require(
-            all(placing.beside != self.id for placing in self.draw_order_keys),
-            f"{self.name!r} cannot be in front of itself, nor behind.",
+            all(key.beside != self.id for key in self.draw_order_keys),
+            N_("{name!r} cannot be in front of itself, nor behind."),
+            name=self.name,
         )
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
-            f"{self.name!r} is a still picture: it has neither handles nor a second key.",
+            N_("{name!r} is a still picture: it has neither handles nor a second key."),
+            name=self.name,
         )
         mask = self.cut_out.mask
         require(
             mask is None or mask.size == self.picture.size,
-            "The mask has another size than the picture; give one of the same width and height.",
+            N_(
+                "The mask has another size than the picture; give one of the same width and height."
+            ),
         )
         self._check_handles()
         self._check_keys()
@@ -170,10 +184,12 @@ class Layer:
         self._check_secondary_motion()
         self._check_stiffness()
         if self.mirror is not None:
-            require_point(complex(self.mirror), "The axis of mirroring")
+            require_point(complex(self.mirror), _("The axis of mirroring"))
         require(
             self.variant in VARIANTS,
-            f"The variant is one of {', '.join(VARIANTS)}, not {str(self.variant)!r}.",
+            N_("The variant is one of {variants}, not {variant!r}."),
+            variants=", ".join(VARIANTS),
+            variant=str(self.variant),
         )
         # Files store the name of the variant.
         object.__setattr__(self, "variant", Variant(self.variant))
@@ -240,7 +256,7 @@ class Layer:
         """Return the layer with other `poses`, in the same order, and with other changes."""
         given = tuple(poses)
         if len(given) != len(self.poses):
-            raise LissomError(POSE_COUNT.format(count=len(self.poses), given=len(given)))
+            raise LissomError(_(POSE_COUNT).format(count=len(self.poses), given=len(given)))
         left = iter(given)
         keys = tuple(_with_pose(key, next(left)) for key in self.keys)
         library = tuple(_with_pose(kept, next(left)) for kept in self.library)
@@ -255,13 +271,13 @@ class Layer:
         for kept in self.library:
             if kept.name == name:
                 return kept
-        raise LissomError(f"There is no pose {name!r} in the library.")
+        raise LissomError(_("There is no pose {name!r} in the library.").format(name=name))
 
     def handle(self, identity: int) -> Handle:
         for handle in self.handles:
             if handle.id == identity:
                 return handle
-        raise LissomError(NO_HANDLE.format(identity=identity))
+        raise LissomError(_(NO_HANDLE).format(identity=identity))
 
     def grouped_handles(self, identity: int) -> frozenset[int]:
         """Return the ids of all handles in the handle's group, its own included."""
@@ -314,7 +330,7 @@ class Layer:
         for key in self.keys:
             if key.frame == frame:
                 return key
-        raise LissomError(NO_KEY.format(frame=frame))
+        raise LissomError(_(NO_KEY).format(frame=frame))
 
     def nearest_key(self, frame: int) -> Keyframe:
         """Return the key nearest to a frame; the earlier one of two."""
@@ -354,44 +370,69 @@ class Layer:
         handles = self.handles
         require(
             len(handles) <= MOST_HANDLES,
-            f"{self.name!r} has {len(handles):,} handles, more than the {MOST_HANDLES:,} that a "
-            "drawing may have.",
+            N_(
+                "{name!r} has {count:,} handles, more than the {largest:,} that a drawing may have."
+            ),
+            name=self.name,
+            count=len(handles),
+            largest=MOST_HANDLES,
         )
-        require_id(self.next_handle, "the next handle")
-        require_distinct((handle.id for handle in handles), "Two handles have the id {!r}.")
-        require_distinct((handle.name for handle in handles), "Two handles have the name {!r}.")
-        require_distinct((each.position for each in handles), "Two handles have the place {!r}.")
+        require_id(self.next_handle, _("The next handle"))
+        require_distinct(
+            (handle.id for handle in handles), N_("Two handles have the id {value!r}.")
+        )
+        require_distinct(
+            (handle.name for handle in handles), N_("Two handles have the name {value!r}.")
+        )
+        require_distinct(
+            (each.position for each in handles), N_("Two handles have the place {value!r}.")
+        )
         require(
             all(handle.id < self.next_handle for handle in self.handles),
-            f"The next handle's id {self.next_handle} is taken.",
+            N_("The next handle's id {next_handle} is taken."),
+            next_handle=self.next_handle,
         )
-        places = {f"handle {handle.name!r}": handle.position for handle in self.handles}
+        places = {
+            _("The handle {name!r}").format(name=handle.name): handle.position
+            for handle in self.handles
+        }
         if self.anchor is not None:
-            require_point(self.anchor, "The anchor")
-            places["anchor"] = self.anchor
+            require_point(self.anchor, _("The anchor"))
+            places[_("The anchor")] = self.anchor
         self.require_on_shape(places)
 
     def require_on_shape(self, places: Mapping[str, complex]) -> None:
         """Raise a `LissomError` for the first of these named points outside the shape."""
         points = np.array(list(places.values()), dtype=np.complex128)
         inside = self.covers(points, tolerance=ON_OUTLINE * diameter(self.domain.outline))
-        for (name, place), is_inside in zip(places.items(), inside, strict=True):
+        for (what, place), is_inside in zip(places.items(), inside, strict=True):
             require(
                 bool(is_inside),
-                f"The {name} at ({place.real:g}, {place.imag:g}) lies outside the shape; "
-                "move it onto the shape or remove it.",
+                N_(
+                    "{what} at ({x:g}, {y:g}) lies outside the shape; move it onto "
+                    "the shape or remove it."
+                ),
+                what=what,
+                x=place.real,
+                y=place.imag,
             )
 
     def _check_keys(self) -> None:
-        require(len(self.keys) > 0, "An animation has at least one key.")
+        require(len(self.keys) > 0, N_("An animation has at least one key."))
         for before, after in pairwise(key.frame for key in self.keys):
-            require(after != before, f"Two keys are at frame {before}.")
-            require(after > before, f"The keys at frames {before} and {after} are mixed up.")
+            require(after != before, N_("Two keys are at frame {before}."), before=before)
+            require(
+                after > before,
+                N_("The keys at frames {before} and {after} are mixed up."),
+                before=before,
+                after=after,
+            )
         for key in self.keys:
-            self._check_pose(key.pose, f"The key at frame {key.frame}")
+            self._check_pose(key.pose, _("The key at frame {frame}").format(frame=key.frame))
             require(
                 key.depths.keys() <= key.pose.targets.keys(),
-                f"The key at frame {key.frame} puts a handle in front that is not there.",
+                N_("The key at frame {frame} puts a handle in front that is not there."),
+                frame=key.frame,
             )
         frames = [key.frame for key in self.keys]
         require_no_overlap(self.cycles)
@@ -399,22 +440,26 @@ class Layer:
             require_repeatable_cycle(cycle, frames)
 
     def _check_library(self) -> None:
-        require_distinct((kept.name for kept in self.library), "Two poses have the name {!r}.")
+        require_distinct(
+            (kept.name for kept in self.library), N_("Two poses have the name {value!r}.")
+        )
         for kept in self.library:
-            self._check_pose(kept.pose, f"The pose {kept.name!r}")
+            self._check_pose(kept.pose, _("The pose {name!r}").format(name=kept.name))
 
     def _check_secondary_motion(self) -> None:
         known = {handle.id for handle in self.handles}
         tracked = [identity for track in self.tracks for identity in track.handles]
         following = [spring.handle for spring in self.springs]
-        for what, identities in (("track", tracked), ("spring", following)):
-            for identity in identities:
-                require(
-                    identity in known, f"A {what} is of the handle {identity}, which is not there."
-                )
-            require_distinct(identities, f"Two {what}s are of the handle {{!r}}.")
+        for identity in {*tracked, *following} - known:
+            raise LissomError(_(NO_HANDLE).format(identity=identity))
+        require_distinct(tracked, N_("Two tracks are of the handle {value!r}."))
+        require_distinct(following, N_("Two springs are of the handle {value!r}."))
         for root in {spring.root for spring in self.springs} - {None}:
-            require(root in known, f"A spring swings about the handle {root}, which is not there.")
+            require(
+                root in known,
+                N_("A spring swings about the handle {root}, which is not there."),
+                root=root,
+            )
         require_motions(self.motions, known)
 
     def _check_stiffness(self) -> None:
@@ -425,27 +470,40 @@ class Layer:
             )
         require(
             len(self.bones) <= MOST_HANDLES,
-            f"A drawing has at most {MOST_HANDLES:,} bones, not {len(self.bones):,}.",
+            N_("A drawing has at most {largest:,} bones, not {count:,}."),
+            largest=MOST_HANDLES,
+            count=len(self.bones),
         )
         known = {handle.id for handle in self.handles}
         for bone in self.bones:
             for end in bone.ends:
-                require(end in known, f"A bone ends at the handle {end}, which is not there.")
+                require(
+                    end in known,
+                    N_("A bone ends at the handle {end}, which is not there."),
+                    end=end,
+                )
         require_distinct((tuple(sorted(bone.ends)) for bone in self.bones), DUPLICATE_BONES)
 
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(
             pose.targets.keys() == {handle.id for handle in self.handles},
-            f"{what} does not have one target for each handle.",
+            N_("{what} does not have one target for each handle."),
+            what=what,
         )
         count = sum(map(len, self.domain.cages))
         require(
             len(pose.phi) == len(pose.psi) == count,
-            f"{what} has coefficients for a cage of {len(pose.phi)} vertices, not of {count}.",
+            N_("{what} has coefficients for a cage of {given} vertices, not of {count}."),
+            what=what,
+            given=len(pose.phi),
+            count=count,
         )
         require(
             len(pose.logs) == len(self.domain.holes),
-            f"{what} is around {len(pose.logs)} holes, not {len(self.domain.holes)}.",
+            N_("{what} is around {given} holes, not {count}."),
+            what=what,
+            given=len(pose.logs),
+            count=len(self.domain.holes),
         )
 
 

@@ -23,9 +23,12 @@ from app.document.rig.mirror_names import PAIRS, SidePairs, require_pairs
 from app.document.settings import ExportSettings, FrameRange, Marker, require_fps
 from app.document.timing.cycles import count_repeated_changes
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError
+from app.texts import N_, _
 
-NO_LAYER = "There is no layer with the id {identity}."
-PARENT_CIRCLE = "{name!r} would hang on itself{when}: {links}; detach one of them first."
+NO_LAYER = N_("There is no layer with the id {identity}.")
+PARENT_CIRCLE = N_(
+    "{name!r} would be attached to itself at frame {frame:g}: {links}; detach one of them first."
+)
 # Sum over all layers, repeats of cycles included.
 MAX_CHANGES = 100_000
 
@@ -79,15 +82,22 @@ class Document:
         require(
             self.preview is None
             or (self.preview.first in self.frames and self.preview.last in self.frames),
-            f"The preview range {self.preview} is not within {self.frames}.",
+            N_("The preview range {preview} is not within {frames}."),
+            preview=self.preview,
+            frames=self.frames,
         )
         for before, after in pairwise(marker.frame for marker in self.markers):
-            require(after != before, f"Two markers are at frame {before}.")
-            require(after > before, f"The markers at frames {before} and {after} are mixed up.")
-        require_ascending_keys(self.camera, "The camera")
+            require(after != before, N_("Two markers are at frame {before}."), before=before)
+            require(
+                after > before,
+                N_("The markers at frames {before} and {after} are mixed up."),
+                before=before,
+                after=after,
+            )
+        require_ascending_keys(self.camera, N_("The camera"))
         for key in self.camera:
             self._require_inside(key.frame)
-        require_fps(self.fps, "The speed")
+        require_fps(self.fps, _("The speed"))
 
     @property
     def played_frames(self) -> FrameRange:
@@ -115,7 +125,7 @@ class Document:
 
     def group(self, path: str) -> Group:
         if path not in self._groups:
-            raise LissomError(f"There is no group {path!r}.")
+            raise LissomError(_("There is no group {path!r}.").format(path=path))
         return self._groups[path]
 
     def groups_around(self, path: str) -> tuple[Group, ...]:
@@ -124,14 +134,14 @@ class Document:
 
     def layer(self, identity: int) -> Layer:
         if identity not in self._layers:
-            raise LissomError(NO_LAYER.format(identity=identity))
+            raise LissomError(_(NO_LAYER).format(identity=identity))
         return self._layers[identity]
 
     def switch_group(self, name: str) -> SwitchGroup:
         for choice in self.switch_groups:
             if choice.name == name:
                 return choice
-        raise LissomError(f"There is no choice {name!r}.")
+        raise LissomError(_("There is no switch {name!r}.").format(name=name))
 
     def switch_group_of(self, identity: int) -> SwitchGroup | None:
         """Return the switch group of the layer with this id, if any."""
@@ -141,7 +151,7 @@ class Document:
         for marker in self.markers:
             if marker.frame == frame:
                 return marker
-        raise LissomError(f"There is no marker at frame {frame}.")
+        raise LissomError(_("There is no marker at frame {frame}.").format(frame=frame))
 
     def with_layer(self, changed: Layer) -> "Document":
         """Return the document with another layer of the same id; its frames extend to all keys."""
@@ -206,18 +216,22 @@ class Document:
         return first + (frame - first) % period if is_beyond else frame
 
     def _check_layers(self) -> None:
-        require(len(self.layers) > 0, "A document has at least one layer.")
+        require(len(self.layers) > 0, N_("A document has at least one layer."))
         if self.size is not None:
-            require_size(self.size, "canvas")
-        require_distinct((layer.id for layer in self.layers), "Two layers have the id {!r}.")
-        require_distinct((layer.name for layer in self.layers), "Two layers are called {!r}.")
+            require_size(self.size, _("The canvas"))
+        require_distinct(
+            (layer.id for layer in self.layers), N_("Two layers have the id {value!r}.")
+        )
+        require_distinct(
+            (layer.name for layer in self.layers), N_("Two layers are called {value!r}.")
+        )
         self._check_groups()
         for layer in self.layers:
             for frame in layer.keyed_range:
                 self._require_inside(frame)
-            for placing in layer.draw_order_keys:
-                if placing.beside is not None:
-                    self.layer(placing.beside)
+            for key in layer.draw_order_keys:
+                if key.beside is not None:
+                    self.layer(key.beside)
         self._check_switch_groups()
         self._check_repeats()
         self._check_attachments()
@@ -235,27 +249,31 @@ class Document:
             count += count_repeated_changes([turn.frame for turn in choice.keys], cycles, end)
         require(
             count <= MAX_CHANGES,
-            f"With their repeats, layers are shown, hidden, ordered and attached {count:,} times, "
-            f"more than {MAX_CHANGES:,}; let the repeats end earlier.",
+            N_(
+                "With their repeats, layers are shown, hidden, ordered and attached {count:,} "
+                "times, more than {most:,}; let the repeats end earlier."
+            ),
+            count=count,
+            most=MAX_CHANGES,
         )
 
     def _check_attachments(self) -> None:
         """Refuse layers that are attached to each other in a circle at any frame."""
-        hung = [each for each in self.layers if each.attachments]
+        children = [each for each in self.layers if each.attachments]
         links = {
             each.id: {
                 self.layer(joint.parent).id
                 for joint in each.attachments
                 if joint.parent is not None
             }
-            for each in hung
+            for each in children
         }
         try:
             TopologicalSorter(links).prepare()
         except CycleError:
-            self._check_circles(hung)
+            self._check_circles(children)
 
-    def _check_circles(self, hung: Sequence[Layer]) -> None:
+    def _check_circles(self, children: Sequence[Layer]) -> None:
         """Refuse a circle of layers whose attachments begin at different frames.
 
         A circle begins at a frame where one of its layers is attached, so only these frames are
@@ -270,28 +288,30 @@ class Document:
                 place,
                 joint.parent,
             )
-            for place, each in enumerate(hung)
+            for place, each in enumerate(children)
             for joint in self.attachments_of(each)
             if not (self.loop and joint.frame > last)
         )
         parents: dict[int, int | None] = {}
         for frame, at_once in groupby(changes, key=itemgetter(0)):
-            attached = {hung[place].id: parent for _, _, place, parent in at_once}
+            attached = {children[place].id: parent for _, _, place, parent in at_once}
             parents |= attached
             if any(_leads_back(parents, identity) for identity in attached):
-                for layer in hung:
+                for layer in children:
                     self.parent_chain(layer.id, frame)  # raises the error about the circle
 
     def _require_inside(self, frame: int) -> None:
         require(
             frame in self.frames,
-            f"The key at frame {frame} lies outside the animation's frames {self.frames.first} to "
-            f"{self.frames.last}.",
+            N_("The key at frame {frame} lies outside the animation's frames {first} to {last}."),
+            frame=frame,
+            first=self.frames.first,
+            last=self.frames.last,
         )
 
     def _check_switch_groups(self) -> None:
         require_distinct(
-            (choice.name for choice in self.switch_groups), "Two choices are called {!r}."
+            (choice.name for choice in self.switch_groups), N_("Two switches are called {value!r}.")
         )
         taken: dict[int, str] = {}
         for choice in self.switch_groups:
@@ -299,36 +319,48 @@ class Document:
                 layer = self.layer(identity)
                 require(
                     identity not in taken,
-                    f"The layer {layer.name!r} is in two choices, {taken.get(identity)!r} and "
-                    f"{choice.name!r}; take it out of one.",
+                    N_(
+                        "The layer {layer!r} is in two switches, {other!r} and {name!r}; remove it "
+                        "from one."
+                    ),
+                    layer=layer.name,
+                    other=taken.get(identity),
+                    name=choice.name,
                 )
                 require(
                     not layer.visibility_keys,
-                    f"The layer {layer.name!r} is shown and hidden at frames of its own, and is "
-                    f"in the choice {choice.name!r}, which alone decides that; leave out one.",
+                    N_(
+                        "The layer {layer!r} has visibility keys and is in the switch {name!r}, "
+                        "which alone decides the visibility; remove one of them."
+                    ),
+                    layer=layer.name,
+                    name=choice.name,
                 )
                 taken[identity] = choice.name
 
     def _refuse_circle(self, circle: Sequence[Layer], frame: float) -> NoReturn:
         """Refuse a circle of layers, each with the next as parent; the last equals the first."""
-        links = ", ".join(f"{one.name!r} on {other.name!r}" for one, other in pairwise(circle))
-        changes = any(joint.frame > 0 for layer in circle for joint in layer.attachments)
-        when = f" at frame {frame:g}" if changes else ""
-        raise LissomError(PARENT_CIRCLE.format(name=circle[0].name, when=when, links=links))
+        links = " → ".join(repr(layer.name) for layer in circle)
+        raise LissomError(_(PARENT_CIRCLE).format(name=circle[0].name, frame=frame, links=links))
 
     def _check_groups(self) -> None:
         known: set[str] = set()
         for group in self.groups:
-            require(group.name not in known, f"Two groups are called {group.name!r}.")
+            require(
+                group.name not in known, N_("Two groups are called {group!r}."), group=group.name
+            )
             require(
                 known.issuperset(ancestor_paths(group.name)[:-1]),
-                f"The group {group.name!r} comes before the one that it is in.",
+                N_("The group {group!r} comes before the one that it is in."),
+                group=group.name,
             )
             known.add(group.name)
         for layer in self.layers:
             require(
                 not layer.group or layer.group in known,
-                f"{layer.name!r} is in the group {layer.group!r}, which is not there.",
+                N_("{layer!r} is in the group {group!r}, which is not there."),
+                layer=layer.name,
+                group=layer.group,
             )
 
     def _check_loop(self, layer: Layer) -> None:
@@ -337,21 +369,32 @@ class Document:
         for cycle in layer.cycles if self.loop and len(layer.keys) > 1 else ():
             require(
                 any(cycle.contains(key.frame) for key in layer.keys),
-                f"There is no key of {layer.name!r} in {cycle.description} that could repeat in "
-                "a loop; "
-                "insert one there first.",
+                N_(
+                    "There is no key of {layer!r} in {cycle} that could repeat in a "
+                    "loop; insert one there first."
+                ),
+                layer=layer.name,
+                cycle=cycle.description,
             )
         for track in layer.tracks if self.loop else ():
             require(
                 track.delay <= period,
-                f"A track of {layer.name!r} is late by {track.delay} frames, which is longer than "
-                f"the loop of {period}; make its delay shorter first.",
+                N_(
+                    "A track of {layer!r} is late by {delay} frames, which is longer than the "
+                    "loop of {period}; make its delay shorter first."
+                ),
+                layer=layer.name,
+                delay=track.delay,
+                period=period,
             )
         for spring in layer.springs if self.loop else ():
             require(
                 spring.damping > 0 or not spring.enabled,
-                f"A spring of {layer.name!r} has no damping, so that it never comes round in a "
-                "loop; give it some.",
+                N_(
+                    "A spring of {layer!r} has no damping, so that it never comes round in a "
+                    "loop; give it some."
+                ),
+                layer=layer.name,
             )
 
 

@@ -6,6 +6,7 @@ from typing import Self
 
 from app.document.model import Document
 from app.errors import LissomError
+from app.texts import _
 
 # Frames. A clock reading of n / fps counts as frame n despite rounding.
 SLACK = 1e-6
@@ -22,7 +23,11 @@ class Playhead:
 
     def __post_init__(self) -> None:
         if self.speed == 0 or not math.isfinite(self.speed):
-            raise LissomError(f"The speed of play must be a number other than 0, not {self.speed}.")
+            raise LissomError(
+                _("The speed of play must be a number other than 0, not {speed}.").format(
+                    speed=self.speed
+                )
+            )
 
     def frame_at(self, document: Document, now: float) -> int:
         """Return the frame that is shown at clock reading `now`.

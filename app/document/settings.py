@@ -13,6 +13,7 @@ from app.document.checks import (
     require_size,
 )
 from app.export_formats import EXPORT_FORMATS, FormatSettings, expand_colour
+from app.texts import N_, _
 from engine.domain import MOST_TRIANGLES
 from engine.domain.outline.enclosure import Detail
 from engine.maps import Bounds
@@ -36,19 +37,19 @@ class DistortionLimitPreset(NamedTuple):
 # handle is dragged by a third of its width; at σ_a ≤ 2.5 already the whole head follows. Stiff:
 # limbs up to a seventh as thick as long bend by a right angle.
 STIFF: Final = DistortionLimitPreset(
-    name="Stiff",
+    name=N_("Stiff"),
     bounds=Bounds(k=0.35, sigma_a=1.5, sigma_b=0.67),
-    hint="It bends a little, and keeps its size",
+    hint=N_("It bends a little, and keeps its size"),
 )
 NATURAL: Final = DistortionLimitPreset(
-    name="Natural",
+    name=N_("Natural"),
     bounds=Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5),
-    hint="Limbs bend and stretch, and a head stays a head",
+    hint=N_("Limbs bend and stretch, and a head stays a head"),
 )
 RUBBERY: Final = DistortionLimitPreset(
-    name="Rubbery",
+    name=N_("Rubbery"),
     bounds=Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2),
-    hint="It follows far pulls, which may draw it out of shape",
+    hint=N_("It follows far pulls, which may draw it out of shape"),
 )
 LIMIT_PRESETS: Final = (STIFF, NATURAL, RUBBERY)
 
@@ -81,7 +82,10 @@ def require_fps(fps: float, what: str) -> None:
     """Raise a `LissomError` unless the rate is from SLOWEST to FASTEST."""
     require(
         SLOWEST <= fps <= FASTEST,
-        f"{what} is from 1/60 to {FASTEST:,.0f} frames per second, not {fps:g}.",
+        N_("{what} is from 1/60 to {fastest:,.0f} frames per second, not {fps:g}."),
+        what=what,
+        fastest=FASTEST,
+        fps=fps,
     )
 
 
@@ -93,8 +97,13 @@ class FrameRange:
     def __post_init__(self) -> None:
         require(
             0 <= self.first <= self.last <= LAST_FRAME,
-            f"Frames {self.first} to {self.last} are not a range: it goes from 0 or later to the "
-            f"same frame or a later one, at most {LAST_FRAME:,}.",
+            N_(
+                "Frames {first} to {last} are not a range: it goes from 0 or later to the same "
+                "frame or a later one, at most {largest:,}."
+            ),
+            first=self.first,
+            last=self.last,
+            largest=LAST_FRAME,
         )
 
     def __contains__(self, frame: float) -> bool:
@@ -114,8 +123,8 @@ class Marker:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, "A marker")
-        require(bool(self.name.strip()), "A marker needs a name.")
+        require_frame(self.frame, _("A marker"))
+        require(bool(self.name.strip()), N_("A marker needs a name."))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -134,13 +143,16 @@ class PictureSettings:
 def _require_pictures(name: str, size: tuple[int, int] | None, background: str) -> None:
     require(
         name in EXPORT_FORMATS,
-        f"The export format is one of {', '.join(EXPORT_FORMATS)}, not {name!r}.",
+        N_("The export format is one of {formats}, not {name!r}."),
+        formats=", ".join(EXPORT_FORMATS),
+        name=name,
     )
     if size is not None:
-        require_size(size, "export")
+        require_size(size, _("The export"))
     require(
         re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", background) is not None,
-        f"The background is 'transparent' or a colour '#rrggbb' or '#rgb', not {background!r}.",
+        N_("The background is 'transparent' or a colour '#rrggbb' or '#rgb', not {background!r}."),
+        background=background,
     )
 
 
@@ -169,13 +181,19 @@ class ExportSettings(FormatSettings):
         _require_pictures(self.format, self.size, self.background)
         require(
             self.framing in FRAMINGS,
-            f"The framing is one of {', '.join(FRAMINGS)}, not {self.framing!r}.",
+            N_("The framing is one of {framings}, not {framing!r}."),
+            framings=", ".join(FRAMINGS),
+            framing=self.framing,
         )
         require(
             re.fullmatch(rf"{_LITERAL}#+{_LITERAL}", self.names) is not None
             and not self.names.startswith("."),
-            f"File names of frames have '#' for each digit of the number, as in {FRAME_NAMES}, and "
-            f"nothing that file names cannot hold, unlike {self.names!r}.",
+            N_(
+                "File names of frames have '#' for each digit of the number, as in "
+                "{example}, and nothing that file names cannot hold, unlike {names!r}."
+            ),
+            example=FRAME_NAMES,
+            names=self.names,
         )
 
     def in_format(self, name: str) -> Self:
@@ -213,8 +231,15 @@ class Meshing:
 
     def __post_init__(self) -> None:
         details = get_args(Detail)
-        require(self.detail in details, f"The detail is one of {details}, not {self.detail!r}.")
+        require(
+            self.detail in details,
+            N_("The detail is one of {details}, not {detail!r}."),
+            details=details,
+            detail=self.detail,
+        )
         require(
             0 < self.triangles <= MOST_TRIANGLES,
-            f"There must be 1 to {MOST_TRIANGLES:,} triangles, not {self.triangles}.",
+            N_("There must be 1 to {most:,} triangles, not {triangles}."),
+            most=MOST_TRIANGLES,
+            triangles=self.triangles,
         )

@@ -10,6 +10,7 @@ from typing import Final
 
 from app.errors import LissomError
 from app.storage import lock
+from app.texts import _
 
 _PATIENCE: Final = 20  # seconds
 _POWERSHELL: Final = (
@@ -36,8 +37,10 @@ def clipboard_program() -> tuple[str, ...]:
         return ("xclip", "-selection", "clipboard", "-target", "image/png")
     needed = "wl-clipboard" if os.environ.get("WAYLAND_DISPLAY") else "xclip"
     raise LissomError(
-        f"nothing here takes pictures to the clipboard: install {needed} (sudo apt install "
-        f"{needed}), or export the picture as a file"
+        _(
+            "nothing here takes pictures to the clipboard: install {needed} (sudo apt install "
+            "{needed}), or export the picture as a file"
+        ).format(needed=needed)
     )
 
 
@@ -64,5 +67,7 @@ def put_on_clipboard(picture: Path) -> None:
             )
     except (OSError, subprocess.SubprocessError) as error:
         raise LissomError(
-            f"the picture could not be put on the clipboard by {command[0]}; export it as a file"
+            _(
+                "the picture could not be put on the clipboard by {command}; export it as a file"
+            ).format(command=command[0])
         ) from error

@@ -11,20 +11,21 @@ from typing import Final
 from app.errors import LissomError
 from app.export_formats import EXPORT_FORMATS
 from app.storage import NO_FOLDER, check_writable
+from app.texts import N_, _
 
 FRAMES: Final = " frames"  # suffix of a frame folder's name
 # Placeholder of the project's name.
 PROJECT: Final = "{name}"
 # A dot before a digit starts no suffix, as in v1.2.
 _ENDING: Final = re.compile(r"\.[a-z]\w*")
-NAMED_LIKE_FILE = (
-    "{label} go to a folder, but {out} is named like a file; name a folder, or choose the format "
-    "of the name"
+NAMED_LIKE_FILE = N_(
+    "{label} go to a folder, but {out} is named like a file; name a folder, or choose "
+    "the format of the name"
 )
-FRAMES_TO_FILE = "cannot write frames to {out}: it is a file; name a folder"
-TOO_LITTLE_ROOM = (
-    "there are only {left:,.1f} MB left where {folder} is, and this export takes {needed:,.1f} MB "
-    "or more; make room or choose another folder"
+FRAMES_TO_FILE = N_("cannot write frames to {out}: it is a file; name a folder")
+TOO_LITTLE_ROOM = N_(
+    "there are only {left:,.1f} MB left where {folder} is, and this export takes "
+    "{needed:,.1f} MB or more; make room or choose another folder"
 )
 
 
@@ -74,29 +75,39 @@ def check_destination(
     suffixes, label = EXPORT_FORMATS[name].suffixes, EXPORT_FORMATS[name].label
     if out.name.lower() in _all_suffixes():
         raise LissomError(
-            f"{out} is only the ending of a name; put a name before it, as in animation{out.name}"
+            _(
+                "{out} is only the ending of a name; put a name before it, as in animation{ending}"
+            ).format(out=out, ending=out.name)
         )
     if suffixes:
         check_writable(*_files(out, name, frames), sources=sources)
         ending = out.suffix.lower()
         if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
-                f"{out} is not named like {name}; let the name end in {' or '.join(suffixes)}"
+                _("{out} is not named like {name}; let the name end in {suffixes}").format(
+                    out=out, name=name, suffixes=", ".join(suffixes)
+                )
             )
     elif out.is_dir():
         there = [file for file in _files(out, name, frames) if os.path.lexists(file)]
         check_writable(*there, sources=sources)
     else:
         if out.exists():
-            raise LissomError(FRAMES_TO_FILE.format(out=out))
+            raise LissomError(_(FRAMES_TO_FILE).format(out=out))
         if out.suffix.lower() in _all_suffixes():
-            raise LissomError(NAMED_LIKE_FILE.format(label=label, out=out))
+            raise LissomError(_(NAMED_LIKE_FILE).format(label=label, out=out))
         if not out.parent.is_dir():
-            raise LissomError(f"cannot write {out}: {NO_FOLDER.format(folder=out.parent)}")
+            raise LissomError(
+                _("cannot write {path}: {reason}").format(
+                    path=out, reason=_(NO_FOLDER).format(folder=out.parent)
+                )
+            )
     folder = out if out.is_dir() else out.parent
     if not os.access(folder, os.W_OK):
         raise LissomError(
-            f"cannot write {out}: the folder {folder} may not be written to; choose another one"
+            _(
+                "cannot write {out}: the folder {folder} may not be written to; choose another one"
+            ).format(out=out, folder=folder)
         )
 
 
@@ -106,7 +117,7 @@ def check_room(out: Path, needed: int) -> None:
     free = shutil.disk_usage(folder).free
     if free < needed:
         raise LissomError(
-            TOO_LITTLE_ROOM.format(left=free / 1e6, folder=folder, needed=needed / 1e6)
+            _(TOO_LITTLE_ROOM).format(left=free / 1e6, folder=folder, needed=needed / 1e6)
         )
 
 

@@ -22,6 +22,7 @@ from app.render.gpu.mesh import GpuMesh
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.target import RenderTarget
 from app.storage import Cancellation
+from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.domain import find_closed_cuts
 from engine.domain.meshing.mesh import Mesh
@@ -140,10 +141,18 @@ class FrameRenderer:
         try:
             positions = [poses.positions(frame) for poses in self._poses]
         except EXPECTED_ERRORS as error:
-            raise LissomError(f"frame {frame:g} cannot be drawn: {error}") from error
+            raise LissomError(
+                _("frame {frame:g} cannot be drawn: {error}").format(
+                    frame=frame, error=message_of(error)
+                )
+            ) from error
         box = bounding_box(np.concatenate(positions))
         if not np.isfinite(box).all():
-            raise LissomError(f"frame {frame:g} cannot be drawn: its points are not all finite")
+            raise LissomError(
+                _("frame {frame:g} cannot be drawn: its points are not all finite").format(
+                    frame=frame
+                )
+            )
         self._reach = self._reach.joined(box)
         vertices = []
         layers = zip(positions, self._clips, self._orders, self._thinnings, strict=True)
@@ -184,10 +193,18 @@ class FrameRenderer:
                 self._renderer.draw(self._target, tile.view, scene)
                 self._read(posed, tile.view, pixels[tile.top :, tile.left :])
         except (*EXPECTED_ERRORS, GlError) as error:
-            raise LissomError(f"frame {posed.frame:g} cannot be drawn: {error}") from error
+            raise LissomError(
+                _("frame {frame:g} cannot be drawn: {error}").format(
+                    frame=posed.frame, error=message_of(error)
+                )
+            ) from error
         # OpenGL continues after an error, with black or outdated pictures.
         if self._context.error != _NO_ERROR:
-            raise LissomError(f"frame {posed.frame:g} cannot be drawn: OpenGL failed; try again")
+            raise LissomError(
+                _("frame {frame:g} cannot be drawn: OpenGL failed; try again").format(
+                    frame=posed.frame
+                )
+            )
         return pixels
 
     def _read(self, posed: PosedFrame, view: View, pixels: Bytes) -> None:
@@ -221,7 +238,7 @@ class FrameRenderer:
         # A camera crops on purpose.
         if self._document.camera or self._room.contains(self._reach, slack=_OUTSIDE):
             return ()
-        return ("the motion leaves the frame; the framing 'fit' shows all of it",)
+        return (_("the motion leaves the frame; the framing 'fit' shows all of it"),)
 
     def release(self) -> None:
         self._owned.close()
@@ -254,8 +271,10 @@ def _tiles(view: View, side: int) -> list[_Tile]:
     width, height = view.size
     if width * height > _MOST_PIXELS:
         raise LissomError(
-            f"a frame of {width} × {height} pixels is too large: it may have {_MOST_PIXELS:,} of "
-            "them; choose a smaller size"
+            _(
+                "a frame of {width} × {height} pixels is too large: it may have "
+                "{most:,} of them; choose a smaller size"
+            ).format(width=width, height=height, most=_MOST_PIXELS)
         )
     size = min(width, side), min(height, side)
     half = complex(*size) / 2

@@ -18,6 +18,7 @@ from app.export.run import wait_some
 from app.export.writers.table import SHAPE_WRITERS
 from app.export_formats import EXPORT_FORMATS
 from app.storage import Cancellation, write_atomically
+from app.texts import _
 from engine.arrays import Bytes
 
 _BATCH: Final = 16  # steps between two checks for cancellation
@@ -96,51 +97,72 @@ class MeshExport:
             count, error = len(shape.motion.targets), shape.motion.error
             if wanted is None and error > DEFAULT_TOLERANCE:
                 found.append(
-                    f"{count} shapes come within {error:.2g} pixels of the motion of {shape.name}; "
-                    "a tolerance of your own takes as many as it needs"
+                    _(
+                        "{count} shapes come within {error:.2g} pixels of the motion of {name}; "
+                        "a tolerance of your own takes as many as it needs"
+                    ).format(count=count, error=error, name=shape.name)
                 )
             elif count > MOST_TARGETS:
                 found.append(
-                    f"{shape.name} has {count} shapes, and viewers of glTF need show only "
-                    f"{MOST_TARGETS}; a larger tolerance takes fewer"
+                    _(
+                        "{name} has {count} shapes, and viewers of glTF need show only {most}; a "
+                        "larger tolerance takes fewer"
+                    ).format(name=shape.name, count=count, most=MOST_TARGETS)
                 )
             if len(shape.triangle_orders) > 1 and not format_.keeps_order:
                 found.append(
-                    f"what lies in front of what changes in {shape.name}; a {format_.label} keeps "
-                    "what is so at first"
+                    _(
+                        "the parts of {name} change their depth; the {format} keeps their first "
+                        "order"
+                    ).format(name=shape.name, format=format_.label)
                 )
         layers = self._document.exported_layers
-        constant = [f"the opacity of {each.name}" for each in layers if each.opacity_keys]
-        constant += [f"the order of {each.name}" for each in layers if each.draw_order_keys]
-        constant += ["the camera"] if self._document.camera and not format_.has_frame else []
+        constant = [
+            _("the opacity of {name}").format(name=each.name)
+            for each in layers
+            if each.opacity_keys
+        ]
+        constant += [
+            _("the order of {name}").format(name=each.name)
+            for each in layers
+            if each.draw_order_keys
+        ]
+        constant += [_("the camera")] if self._document.camera and not format_.has_frame else []
         if constant:
-            found.append(f"in a {format_.label} these do not change: {', '.join(constant)}")
+            found.append(
+                _("in the {format} these do not change: {channels}").format(
+                    format=format_.label, channels=", ".join(constant)
+                )
+            )
         return (*found, *(() if format_.composites else self._uncomposited(format_.label)))
 
     def _uncomposited(self, label: str) -> Iterator[str]:
         """Yield notices about blends that a format without compositing cannot show."""
         groups = self._document.groups
         painted: list[Layer | Group] = [*self._document.exported_layers, *groups]
-        for what, names in (
-            ("multiplied", [each.name for each in painted if each.blend == "multiply"]),
-            ("screened", [each.name for each in painted if each.blend == "screen"]),
-            ("clipped", [each.name for each in painted if each.clipped]),
+        not_multiplied = _("{names}: not multiplied in the {format}, but painted over the rest")
+        not_screened = _("{names}: not screened in the {format}, but painted over the rest")
+        not_clipped = _("{names}: not clipped in the {format}, but painted over the rest")
+        for notice, names in (
+            (not_multiplied, [each.name for each in painted if each.blend == "multiply"]),
+            (not_screened, [each.name for each in painted if each.blend == "screen"]),
+            (not_clipped, [each.name for each in painted if each.clipped]),
         ):
             if names:
-                yield f"{', '.join(names)}: not {what} in a {label}, but painted over the rest"
+                yield notice.format(names=", ".join(names), format=label)
         faint = [group.name for group in groups if group.opacity < 1]
         if faint:
-            yield (
-                f"{', '.join(faint)}: faded layer by layer in a {label}, so that they shine "
-                "through each other"
-            )
+            yield _(
+                "{names}: faded layer by layer in the {format}, so that the layers shine through "
+                "each other"
+            ).format(names=", ".join(faint), format=label)
 
     def _write(self, scene: MorphScene, cancellation: Cancellation) -> None:
         contents = SHAPE_WRITERS[self._plan.format](scene, self._plan)
         write_atomically(self._plan.out, lambda file: file.write(contents), cancellation)
 
     def _advance(self) -> None:
-        for _ in range(_BATCH):
+        for _step in range(_BATCH):
             try:
                 self._share = next(self._work)
             except StopIteration as stop:

@@ -23,6 +23,7 @@ from app.export.frame_vertices import FrameVertices
 from app.export.plan import ExportPlan
 from app.export_formats import EXPORT_FORMATS
 from app.motion import TriangleOrder, bounding_box
+from app.texts import _
 from engine.arrays import Bytes, Complexes, Floats, Integers, freeze
 from engine.domain import ClosedCuts, find_closed_cuts
 from engine.domain.meshing.draw_order import copy_draw_order
@@ -124,7 +125,7 @@ def build_morph_scene(
         and any(is_visible(document, layer, frame) for frame in numbers)
     ]
     if not clips:
-        raise LissomError("no layer is seen in these frames; there is nothing to export")
+        raise LissomError(_("no layer is seen in these frames; there is nothing to export"))
     found = []
     for index, clip in enumerate(clips):
         layer, mesh = clip.layer, clip.layer.domain.mesh
@@ -141,7 +142,7 @@ def build_morph_scene(
         texture, uv = _cut_out(pictures[layer.id], places - layer.corner)
         order = TriangleOrder(mesh)
         orders = [(frame, order.triangles(clip, frame)) for frame in numbers]
-        sights = [(frame, is_visible(document, layer, frame)) for frame in numbers]
+        visibility = [(frame, is_visible(document, layer, frame)) for frame in numbers]
         shape = MorphMesh(
             name=plan.out.stem if len(document.layers) == 1 else layer.name,
             texture=bleed_edges(texture),
@@ -152,7 +153,7 @@ def build_morph_scene(
                 ((n - first) / document.fps, order) for n, order in _changes(orders)
             ),
             visibility_changes=tuple(
-                ((n - first) / document.fps, seen) for n, seen in _changes(sights)
+                ((n - first) / document.fps, seen) for n, seen in _changes(visibility)
             ),
             motion=replace(motion, times=freeze((motion.times - first) / document.fps)),
         )

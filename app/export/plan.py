@@ -29,6 +29,7 @@ from app.export.framing import frame_view
 from app.export_formats import EXPORT_FORMATS, FormatSettings
 from app.motion import BoundingBox, bounding_box, motion_bounding_box
 from app.render import View
+from app.texts import _, ngettext
 
 # Minimum of bytes per frame pixel: an empty PNG has about as many.
 LEAST: Final = 0.001
@@ -125,12 +126,19 @@ def check_request(document: Document, request: ExportRequest) -> None:
     """
     settings = request.settings
     if not document.exported_layers:
-        raise LissomError("there is nothing to export: every layer is hidden or a reference")
+        raise LissomError(_("there is nothing to export: every layer is hidden or a reference"))
     frames = _frames(document, settings)
     if frames.first not in document.frames or frames.last not in document.frames:
         raise LissomError(
-            f"frames {frames.first} to {frames.last} are not all in the animation, which has "
-            f"frames {document.frames.first} to {document.frames.last}"
+            _(
+                "frames {first} to {last} are not all in the animation, which has frames "
+                "{start} to {end}"
+            ).format(
+                first=frames.first,
+                last=frames.last,
+                start=document.frames.first,
+                end=document.frames.last,
+            )
         )
     name, format_ = settings.format, EXPORT_FORMATS[settings.format]
     check_destination(request.out, name, _names(document, request), request.sources)
@@ -139,26 +147,42 @@ def check_request(document: Document, request: ExportRequest) -> None:
         width, height = format_.whole_blocks(settings.size)
         if (width, height) != settings.size:
             raise LissomError(
-                f"{name} keeps colours in blocks of {format_.block} × {format_.block} pixels, and "
-                f"{settings.size[0]} × {settings.size[1]} has an odd side; choose {width} × "
-                f"{height}"
+                _(
+                    "{name} keeps colours in blocks of {block} × {block} pixels, and {width} × "
+                    "{height} has an odd side; choose {even_width} × {even_height}"
+                ).format(
+                    name=name,
+                    block=format_.block,
+                    width=settings.size[0],
+                    height=settings.size[1],
+                    even_width=width,
+                    even_height=height,
+                )
             )
     if request.fps is not None and not format_.is_drawn:
-        raise LissomError(f"{name} plays at any rate; leave the frames per second out")
+        raise LissomError(
+            _("{name} plays at any rate; leave the frames per second out").format(name=name)
+        )
     fps = document.fps if request.fps is None else request.fps
     if format_.fastest is not None and fps > format_.fastest:
         raise LissomError(
-            f"{name} shows at most {format_.fastest:g} pictures a second, not {fps:g}; choose "
-            "fewer frames per second for it, or apng or webp"
+            _(
+                "{name} shows at most {fastest:g} pictures a second, not {fps:g}; choose fewer "
+                "frames per second for it, or apng or webp"
+            ).format(name=name, fastest=format_.fastest, fps=fps)
         )
     if not format_.is_transparent and settings.background == "transparent":
         raise LissomError(
-            f"{name} has no transparency: choose a background colour such as #ffffff, or the "
-            "format apng or webp"
+            _(
+                "{name} has no transparency: choose a background colour such as #ffffff, or "
+                "the format apng or webp"
+            ).format(name=name)
         )
     if format_.extra and (remedy := install_hint(format_.extra)):
         raise LissomError(
-            f"{name} needs the library {LIBRARIES[format_.extra]}, which is not installed: {remedy}"
+            _("{name} needs the library {library}, which is not installed: {remedy}").format(
+                name=name, library=LIBRARIES[format_.extra], remedy=remedy
+            )
         )
 
 
@@ -224,8 +248,10 @@ def _check_size(name: str, size: tuple[int, int]) -> None:
     largest = EXPORT_FORMATS[name].largest
     if largest is not None and max(size) > largest:
         raise LissomError(
-            f"{name} holds at most {largest:,} pixels each way, not {size[0]} × {size[1]}; choose "
-            "a smaller size"
+            _(
+                "{name} holds at most {largest:,} pixels each way, not {width} × {height}; "
+                "choose a smaller size"
+            ).format(name=name, largest=largest, width=size[0], height=size[1])
         )
 
 
@@ -272,7 +298,11 @@ def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
     if (width, height) == plan.view.size:
         return ()
     return (
-        f"{plan.format} needs even sides: the frames got background, to {width} × {height} pixels",
+        _(
+            "{format} needs even sides: the frames are extended by background to {width} "
+            "× {height} "
+            "pixels"
+        ).format(format=plan.format, width=width, height=height),
     )
 
 
@@ -287,5 +317,9 @@ def _left_frames(plan: ExportPlan) -> tuple[str, ...]:
         return ()
     which = others[0] if len(others) == 1 else f"{others[0]} … {others[-1]}"
     return (
-        f"{plan.out} holds {len(others)} frames of another export ({which}); they stay as they are",
+        ngettext(
+            "{folder} holds {count} frame of another export ({names}), which stays as it is",
+            "{folder} holds {count} frames of another export ({names}), which stay as they are",
+            len(others),
+        ).format(folder=plan.out, count=len(others), names=which),
     )

@@ -13,7 +13,7 @@ from app.motion.corrected_frames import (
 from app.motion.deform_mesh import DeformMesh as DeformMesh, MeshPoints as MeshPoints
 from app.motion.displayed_frame import (
     DisplayedFrame as DisplayedFrame,
-    hang_shown as hang_shown,
+    place_displayed_frames as place_displayed_frames,
     show as show,
 )
 from app.motion.extents.extent import (
@@ -48,9 +48,9 @@ from app.motion.parenting.attach import (
 from app.motion.parenting.parent_transforms import (
     ParentTransforms as ParentTransforms,
     find_parent_motion as find_parent_motion,
-    hung_animations as hung_animations,
     layer_animation as layer_animation,
     parenting_key as parenting_key,
+    placed_animations as placed_animations,
 )
 from app.motion.rival_methods.boundary_keyframes import (
     discrete_harmonic as discrete_harmonic,

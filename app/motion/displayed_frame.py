@@ -144,7 +144,7 @@ def show(
     )
 
 
-def hang_shown(
+def place_displayed_frames(
     document: Document,
     shown: Mapping[int, DisplayedFrame],
     joints: ParentTransforms | None,
@@ -157,7 +157,7 @@ def hang_shown(
     document. Without the document's `joints`, placements have the accuracy of the meshes. Until
     they exist, the transforms of an earlier document serve attachments with `keep_world_transform`.
     """
-    hung = {}
+    placed = {}
     for identity, each in shown.items():
         layer = document.layer(identity)
         if not layer.attachments:
@@ -171,8 +171,8 @@ def hang_shown(
         else:
             placement = joints.placement(identity, each.frame, poses)
         same = placement == each.placement
-        hung[identity] = each if same else replace(each, placement=placement)
-    return hung
+        placed[identity] = each if same else replace(each, placement=placement)
+    return placed
 
 
 def _earlier_transform(

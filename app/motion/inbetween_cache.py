@@ -212,12 +212,12 @@ class InbetweenCache:
         From 0, a stop, to 1; only for computed segments.
         """
         found: dict[int, float] = {}
-        for number, transit in enumerate(pose_segments(clip)):
+        for number, segment in enumerate(pose_segments(clip)):
             known = self.segment(clip, number)
             if known is None or not known.is_ready:
                 continue
-            first = int(isinstance(transit.start, InteriorKnot))
-            ends, keys = (transit.start, transit.end), transit.keys[first : first + 2]
+            first = int(isinstance(segment.start, InteriorKnot))
+            ends, keys = (segment.start, segment.end), segment.keys[first : first + 2]
             for end, key, kept in zip(ends, keys, known.velocity_shares or (1.0, 1.0), strict=True):
                 if isinstance(end, InteriorKnot):
                     found[key.frame] = kept

@@ -212,10 +212,10 @@ class DragSolver:
         deformer = self.deformer
         if rig.deformer.handles is not deformer.handles:
             deformer = replace(deformer, handles=rig.deformer.handles)
-        wish = rig.build_targets(targets, self.pins, hands)
+        wanted = rig.build_targets(targets, self.pins, hands)
         state = self.state
         for _ in range(steps):
-            state = deformer.step(state, wish)
+            state = deformer.step(state, wanted)
             if state.status.is_final:
                 break
         return replace(self, rig=rig, deformer=deformer, state=state)
@@ -228,9 +228,9 @@ class DragSolver:
         Yielding joints get new targets too. A pose at rest is also at rest for the new targets,
         unless a bone at its limit pulls at a fixed handle.
         """
-        wish = self.rig.build_targets(targets, self.pins, hands)
+        wanted = self.rig.build_targets(targets, self.pins, hands)
         at = self.deformer.positions(self.state)
-        left = wish.released(at, self.deformer.handles.stiffness).positions
+        left = wanted.released(at, self.deformer.handles.stiffness).positions
         giving = (*hands, *self.rig.find_yielding_joints(hands))
         pulled = {identity for hand in giving for identity in hand.handles}
         places = {

@@ -34,15 +34,15 @@ def flip_targets(
     Partners are found by name, then by position. On a symmetric shape, a handle without a partner
     takes the motion of the shape at its mirror image. Otherwise it mirrors its own motion.
     """
-    shape, likeness = layer.map_of(pose), SimilarityTransform.reflection(axis)
+    shape, similarity = layer.map_of(pose), SimilarityTransform.reflection(axis)
     handles = {handle.id: handle for handle in layer.handles}
     partners = mirrored_handles(layer.handles, axis, layer.domain.outline, pairs)
-    is_symmetric = is_similar(layer, layer, likeness)
+    is_symmetric = is_similar(layer, layer, similarity)
     targets = {}
     for handle in layer.handles:
         partner = handles.get(partners.get(handle.id, -1))
         place, target = handle.position, pose.targets[handle.id]
-        mirrored = likeness.apply_to_point(place)
+        mirrored = similarity.apply_to_point(place)
         if partner is not None:
             place, target = partner.position, pose.targets[partner.id]
         elif is_symmetric and layer.covers(np.array([mirrored]))[0]:
@@ -50,19 +50,19 @@ def flip_targets(
             target = replace(target, position=complex(shape(np.array([place]))[0]), rotation=None)
         targets[handle.id] = replace(
             pose.targets[handle.id],
-            position=likeness.transform_target(shape, place, target.position, handle.position),
+            position=similarity.transform_target(shape, place, target.position, handle.position),
             rotation=None if target.rotation is None else -target.rotation,
         )
     return targets
 
 
 def _flip(rig: Rig, pose: Pose, axis: float, pairs: SidePairs) -> Pose:
-    likeness = SimilarityTransform.reflection(axis)
+    similarity = SimilarityTransform.reflection(axis)
     targets = flip_targets(rig.layer, pose, axis, pairs)
     shape = rig.layer.map_of(pose)
     pins = [
-        Target(position=likeness.transform_target(shape, joint, pin.position, joint))
+        Target(position=similarity.transform_target(shape, joint, pin.position, joint))
         for joint, pin in zip(rig.pins, pins_of(rig.layer, pose), strict=True)
     ]
-    begin, ways = find_initial_map(rig, rig.layer, pose, likeness, targets)
+    begin, ways = find_initial_map(rig, rig.layer, pose, similarity, targets)
     return solve_from_map(rig, begin, targets, pins, ways)

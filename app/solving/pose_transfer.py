@@ -84,7 +84,7 @@ class SimilarityTransform:
         self,
         shape: HarmonicMap,
         place: complex,
-        wished: complex,
+        target: complex,
         point: complex,
         turn: complex | None = None,
     ) -> complex:
@@ -101,7 +101,7 @@ class SimilarityTransform:
         if turn is None:
             (fz,), _ = shape.derivatives(np.array([place]))
             turn = complex(fz / abs(fz))
-        return self.apply_to_point(wished) + self.transform_rotation(turn) * (
+        return self.apply_to_point(target) + self.transform_rotation(turn) * (
             point - self.apply_to_point(place)
         )
 
@@ -160,9 +160,9 @@ class PoseTransfer:
         pins = []
         for joint in rig.pins:
             beside = min(held, key=lambda place: abs(self.similarity.apply_to_point(place) - joint))
-            wished = complex(shape(np.array([beside]))[0])
+            target = complex(shape(np.array([beside]))[0])
             pins.append(
-                Target(position=self.similarity.transform_target(shape, beside, wished, joint))
+                Target(position=self.similarity.transform_target(shape, beside, target, joint))
             )
         return pins
 
@@ -175,9 +175,9 @@ def solve_from_map(
     ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
 ) -> Pose:
     """Return the pose for these targets, solved from a map with some starting points."""
-    deformer, wish = rig.deformer, rig.build_targets(targets, tuple(pins))
+    deformer, wanted = rig.deformer, rig.build_targets(targets, tuple(pins))
     state, _ = deformer.settle(
-        rig.start_at(begin), wish, ways=ways, at_most=MOST_STEPS, throw=False
+        rig.start_at(begin), wanted, ways=ways, at_most=MOST_STEPS, throw=False
     )
     # Steps that lead into the limits are proven for wider ones.
     proven = certify(state.map, deformer.boundary, deformer.bounds)
@@ -188,7 +188,7 @@ def find_initial_map(
     rig: Rig,
     source: Layer,
     pose: Pose,
-    likeness: SimilarityTransform,
+    similarity: SimilarityTransform,
     targets: Mapping[int, Target],
 ) -> tuple[HarmonicMap, tuple[StartingPoint, ...]]:
     """Return the solver's first map for the image of a pose, and its starting points.
@@ -197,9 +197,9 @@ def find_initial_map(
     Otherwise it is the undeformed map with the mean rotation of that image.
     """
     shape = source.map_of(pose)
-    if is_similar(rig.layer, source, likeness):
-        return _image(rig, source, shape, likeness), (StartingPoint.HERE,)
-    turn = likeness.transform_rotation(mean_rotation(source, shape))
+    if is_similar(rig.layer, source, similarity):
+        return _image(rig, source, shape, similarity), (StartingPoint.HERE,)
+    turn = similarity.transform_rotation(mean_rotation(source, shape))
     apart = [
         target.position - turn * rig.layer.handle(identity).position
         for identity, target in targets.items()
@@ -215,9 +215,9 @@ def mean_rotation(layer: Layer, shape: HarmonicMap) -> complex:
     return turn / abs(turn) if turn else 1.0 + 0j
 
 
-def is_similar(layer: Layer, source: Layer, likeness: SimilarityTransform) -> bool:
+def is_similar(layer: Layer, source: Layer, similarity: SimilarityTransform) -> bool:
     """Return whether nearly all of a layer lies on the image of another layer."""
-    places = likeness.apply_inverse(_some(layer.domain.mesh.vertices))
+    places = similarity.apply_inverse(_some(layer.domain.mesh.vertices))
     # Many vertices of a coarse mesh are on its outline, and thus slightly off the other's image.
     found = source.covers(places, tolerance=BESIDE * diameter(source.domain.outline))
     return bool(found.mean() >= SIMILAR_SHARE)
@@ -228,18 +228,18 @@ def _some(vertices: Complexes) -> Complexes:
 
 
 def _image(
-    rig: Rig, source: Layer, shape: HarmonicMap, likeness: SimilarityTransform
+    rig: Rig, source: Layer, shape: HarmonicMap, similarity: SimilarityTransform
 ) -> HarmonicMap:
     """Return the map nearest to S ∘ f ∘ S⁻¹."""
     boundary = rig.deformer.boundary
-    places = likeness.apply_inverse(boundary.points)
+    places = similarity.apply_inverse(boundary.points)
     cage, *inner = source.domain.cages
     inside = contains(cage, places, holes=inner)
     points = places[inside]
     fz, fzbar = shape.derivatives(points)
     # With d S⁻¹ = dw/a or its conjugate: (S ∘ f ∘ S⁻¹)_w = f_z, and the other derivative is f_z̄
     # a/conj(a). If S mirrors, both are conjugated before this rotation.
-    if likeness.mirrors:
+    if similarity.mirrors:
         fz, fzbar = fz.conj(), fzbar.conj()
-    turned = likeness.factor / likeness.factor.conjugate()
-    return fit_map(boundary, fz, turned * fzbar, likeness.apply(shape(points)), inside=inside)
+    turned = similarity.factor / similarity.factor.conjugate()
+    return fit_map(boundary, fz, turned * fzbar, similarity.apply(shape(points)), inside=inside)

@@ -77,8 +77,8 @@ def _replanted(before: Layer, track: Track, places: Mapping[complex, complex]) -
 
     def moved(key: TrackKey) -> TrackKey:
         shape = before.map_of(before.nearest_key(key.frame).pose)
-        wished = transfer_target(Target(position=key.place), shape, place, places[place])
-        return replace(key, place=wished.position)
+        target = transfer_target(Target(position=key.place), shape, place, places[place])
+        return replace(key, place=target.position)
 
     return replace(track, keys=tuple(map(moved, track.keys)))
 

@@ -18,6 +18,7 @@ from app.document import (
     transfer_painted_stiffness,
 )
 from app.solving.drag_solver import Rig, fit_map, pins_of
+from app.texts import _, message_of
 from engine.arrays import Bytes
 from engine.geometry import contains
 from engine.maps import Bounds, HarmonicMap, certify
@@ -57,8 +58,10 @@ class KeyResolver:
     def status_text(self) -> str:
         """Description of the next step."""
         if self.meshing is not None and self.new_layer is None:
-            return "Building the domain"
-        return f"Solving pose {len(self.poses) + 1} of {len(self.before.poses)}"
+            return _("Building the domain")
+        return _("Solving pose {number} of {count}").format(
+            number=len(self.poses) + 1, count=len(self.before.poses)
+        )
 
     @property
     def command(self) -> Command:
@@ -68,7 +71,9 @@ class KeyResolver:
             return shape_commands.set_limits(identity, self.bounds, self.poses)
         if self.replaces_picture:
             posed = shape_commands.set_limits(identity, self.bounds, self.poses)
-            return _joined("Replace picture", layer_commands.replace_layer(identity, into), posed)
+            return _joined(
+                _("Replace picture"), layer_commands.replace_layer(identity, into), posed
+            )
         domain = shape_commands.replace_domain(identity, into.domain, into.meshing, self.poses)
         return _joined(domain.label, domain, layer_commands.keep_attachments(identity))
 
@@ -82,47 +87,49 @@ def _joined(label: str, *commands: Command) -> Command:
     return Command(label, change)
 
 
-def step_resolver(renewal: KeyResolver, picture: Bytes) -> KeyResolver:
+def step_resolver(resolver: KeyResolver, picture: Bytes) -> KeyResolver:
     """Build the domain of the picture, or solve the next key; on the worker thread."""
-    if renewal.meshing is not None and renewal.new_layer is None:
-        return _with_domain(renewal, picture, renewal.meshing)
-    rig = renewal.rig or Rig.of(replace(renewal.new_layer or renewal.before, bounds=renewal.bounds))
-    index = len(renewal.poses)
-    pose = _solved(renewal, rig, index)
-    outside = renewal.unsolved
+    if resolver.meshing is not None and resolver.new_layer is None:
+        return _with_domain(resolver, picture, resolver.meshing)
+    rig = resolver.rig or Rig.of(
+        replace(resolver.new_layer or resolver.before, bounds=resolver.bounds)
+    )
+    index = len(resolver.poses)
+    pose = _solved(resolver, rig, index)
+    outside = resolver.unsolved
     if not pose.certificate.is_certified:
-        outside = (*outside, _in_words(renewal.before, index))
-    return replace(renewal, rig=rig, poses=(*renewal.poses, pose), unsolved=outside)
+        outside = (*outside, _in_words(resolver.before, index))
+    return replace(resolver, rig=rig, poses=(*resolver.poses, pose), unsolved=outside)
 
 
 def _in_words(layer: Layer, index: int) -> str:
     """Return the place of a pose: the frame of its key, or its name in the library."""
     count = len(layer.keys)
     if index < count:
-        return f"at frame {layer.keys[index].frame}"
-    return f"“{layer.library[index - count].name}”"
+        return _("at frame {frame}").format(frame=layer.keys[index].frame)
+    return _("“{name}”").format(name=layer.library[index - count].name)
 
 
-def _with_domain(renewal: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyResolver:
-    domain, notices = build_picture_domain(
+def _with_domain(resolver: KeyResolver, picture: Bytes, meshing: Meshing) -> KeyResolver:
+    domain, found = build_picture_domain(
         picture,
         triangles=meshing.triangles,
         detail=meshing.detail,
-        cut_out=renewal.before.cut_out,
+        cut_out=resolver.before.cut_out,
     )
-    before = renewal.before
+    before = resolver.before
     domain = domain.moved(before.corner)
     rest = HarmonicMap.identity(domain.cage, domain.holes)
     poses = (pose.with_map(rest) for pose in before.poses)
     stiffness = transfer_painted_stiffness(before.stiffness, before.domain, domain)
     into = before.with_poses(poses, domain=domain, meshing=meshing, stiffness=stiffness)
-    return replace(renewal, new_layer=into, notices=notices)
+    return replace(resolver, new_layer=into, notices=tuple(map(message_of, found)))
 
 
-def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
+def _solved(resolver: KeyResolver, rig: Rig, index: int) -> Pose:
     """Return a pose over the rig's cage, within its limits, solved for its targets."""
     boundary, bounds = rig.deformer.boundary, rig.deformer.bounds
-    before, into = renewal.before, renewal.new_layer
+    before, into = resolver.before, resolver.new_layer
     old = before.poses[index]
     pose, pins, shape = old, pins_of(before, old), before.map_of(old)
     first = shape
@@ -130,14 +137,16 @@ def _solved(renewal: KeyResolver, rig: Rig, index: int) -> Pose:
         pose, first = into.poses[index], _carried_over(before, old, rig)
         if before.anchor is not None and into.anchor is not None:
             pins = tuple(transfer_target(pin, shape, before.anchor, into.anchor) for pin in pins)
-    if not renewal.solves_all and certify(first, boundary, bounds).is_certified:
+    if not resolver.solves_all and certify(first, boundary, bounds).is_certified:
         return pose
-    wish = rig.build_targets(pose.targets, pins)
-    state, _ = rig.deformer.settle(rig.start_at(first), wish, at_most=MOST_STEPS, throw=False)
+    wanted = rig.build_targets(pose.targets, pins)
+    state, _ = rig.deformer.settle(rig.start_at(first), wanted, at_most=MOST_STEPS, throw=False)
     certificate = certify(state.map, boundary, bounds)
     if into is not None and not certificate.is_certified:
         # If the new shape is larger, the transferred map may not lead back into the limits.
-        state, _ = rig.deformer.settle(rig.deformer.start(), wish, at_most=MOST_STEPS, throw=False)
+        state, _ = rig.deformer.settle(
+            rig.deformer.start(), wanted, at_most=MOST_STEPS, throw=False
+        )
         certificate = certify(state.map, boundary, bounds)
     if into is None and not certificate.is_certified:
         return replace(pose, certificate=certify(first, boundary, bounds))

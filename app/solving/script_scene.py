@@ -23,12 +23,17 @@ from app.errors import LissomError, join_names
 from app.motion import ParentTransforms, anchor_or_default, reparent_in_place
 from app.solving.script.layers import ScriptAttachment
 from app.solving.script.pose_script import LayerScript, PoseScript
+from app.texts import _
 
 
 def find_layer(document: Document, name: str) -> Layer:
     names = {layer.name: layer for layer in document.layers}
     if name not in names:
-        raise LissomError(f"there is no layer {name!r}; the layers are {join_names([*names])}")
+        raise LissomError(
+            _("there is no layer {name!r}; the layers are {names}").format(
+                name=name, names=join_names([*names])
+            )
+        )
     return names[name]
 
 
@@ -45,9 +50,10 @@ def with_attachments(document: Document, identity: int, part: LayerScript) -> Do
     joints = tuple(_attachment(document, joint, anchor) for joint in part.attach)
     if part.anchor is None and not layer.covers(np.array([anchor])).all():
         raise LissomError(
-            f"it is attached at ({anchor.real:g}, {anchor.imag:g}), which is on "
-            f"{part.attach[0].to!r} but not on itself; give it an anchor by which it hangs there, "
-            "or choose a point that is on both"
+            _(
+                "it is attached at ({x:g}, {y:g}), which is on {parent!r} but not on itself; give "
+                "it an anchor, or choose a point that is on both"
+            ).format(x=anchor.real, y=anchor.imag, parent=part.attach[0].to)
         )
     return document.with_layer(replace(layer, anchor=anchor, attachments=joints))
 
@@ -58,7 +64,9 @@ def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) ->
         at = complex(parent.domain.nearest(np.array([anchor]))[0])
     elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
         raise LissomError(
-            f"it is attached at ({at.real:g}, {at.imag:g}), which is not on {parent.name!r}"
+            _("it is attached at ({x:g}, {y:g}), which is not on {parent!r}").format(
+                x=at.real, y=at.imag, parent=parent.name
+            )
         )
     return Attachment(
         parent=None if parent is None else parent.id,
@@ -94,7 +102,7 @@ def with_draw_order(document: Document, script: PoseScript) -> Document:
             continue
         try:
             layer = find_layer(document, part.layer)
-            placings = tuple(
+            order_keys = tuple(
                 DrawOrderKey(
                     each.frame,
                     None if each.beside is None else find_layer(document, each.beside).id,
@@ -102,9 +110,11 @@ def with_draw_order(document: Document, script: PoseScript) -> Document:
                 )
                 for each in part.order
             )
-            document = document.with_layer(replace(layer, draw_order_keys=placings))
+            document = document.with_layer(replace(layer, draw_order_keys=order_keys))
         except LissomError as error:
-            raise LissomError(f"layer {part.layer!r}: order: {error}") from error
+            raise LissomError(
+                _("layer {layer!r}: order: {error}").format(layer=part.layer, error=error)
+            ) from error
     return document
 
 
@@ -114,7 +124,9 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
         try:
             identities = {name: find_layer(document, name).id for name in given.layers}
         except LissomError as error:
-            raise LissomError(f"choice {given.name!r}: {error}") from error
+            raise LissomError(
+                _("switch {name!r}: {error}").format(name=given.name, error=error)
+            ) from error
         form = switch_group_commands.create_switch_group(given.name, tuple(identities.values()))
         document = form(document)
         turns = tuple(SwitchKey(frame, identities[layer]) for frame, layer in given.turns)
@@ -131,11 +143,13 @@ def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
         if part.layer is None or not part.movement:
             continue
         layer = find_layer(document, part.layer)
-        carriers = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
-        if all(carriers):
+        ancestors = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
+        if all(ancestors):
             notices.append(
-                f"{part.layer} hangs on {carriers[0][0].name} and goes with it: its own movement "
-                "is not seen"
+                _(
+                    "{layer} is attached to {parent} and moves with it: its own movement has no "
+                    "effect"
+                ).format(layer=part.layer, parent=ancestors[0][0].name)
             )
     return notices
 
@@ -145,9 +159,9 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
     opacity = part.opacity if isinstance(part.opacity, tuple) else ()
     keyed = [key.frame for key in part.keys] + [switch.frame for switch in layer.visibility_keys]
     keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
-    keyed += [placing.frame for placing in part.order]
+    keyed += [key.frame for key in part.order]
     notices = [
-        f"nothing is keyed in {cycle.description}: there is nothing to repeat"
+        _("no key is in {cycle}: there is nothing to repeat").format(cycle=cycle.description)
         for cycle in part.cycles
         if not (
             any(map(cycle.contains, keyed))
@@ -155,24 +169,26 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
             or attachments_repeat(layer.attachments, cycle)
         )
     ]
-    rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]]
-    rows = {"movement": part.movement, "opacity": opacity}
-    for name, row in rows.items():
+    rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]] = {
+        _("its movement ends otherwise than it begins in {cycle}, and does not repeat"): (
+            part.movement
+        ),
+        _("its opacity ends otherwise than it begins in {cycle}, and does not repeat"): opacity,
+    }
+    for notice, row in rows.items():
         cycle = next(
             (each for each in part.cycles if len(row) > 1 and each.repeats_keys(row)), None
         )
         if cycle is not None and repeating_cycle(layer, row) is None:
-            notices.append(
-                f"its {name} ends otherwise than it begins in {cycle.description}, and does not "
-                "repeat"
-            )
+            notices.append(notice.format(cycle=cycle.description))
     for cycle in part.cycles:
         changes = any(cycle.first < joint.frame < cycle.last for joint in layer.attachments)
         if changes and not attachments_repeat(layer.attachments, cycle):
             notices.append(
-                f"what it hangs on changes in the repeats of {cycle.description}, too, or is "
-                "another one "
-                "at their end than at their beginning, and does not repeat"
+                _(
+                    "its attachments do not repeat with {cycle}: the parent changes in the repeats "
+                    "too, or differs at their start and end"
+                ).format(cycle=cycle.description)
             )
     return notices
 
@@ -187,8 +203,10 @@ def warn_unused_switches(document: Document) -> list[str]:
         others = [each.name for each in layers if cycle not in each.cycles]
         if cycle is not None and others:
             notices.append(
-                f"choice {choice.name!r}: its keys do not repeat, as {cycle.description} do not of "
-                f"{', '.join(others)}; give all its layers that cycle, or leave it out"
+                _(
+                    "switch {name!r}: its keys do not repeat, since {cycle} do not repeat in "
+                    "{layers}; give all its layers that cycle, or leave it out"
+                ).format(name=choice.name, cycle=cycle.description, layers=", ".join(others))
             )
     return notices
 
@@ -206,29 +224,45 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
         if any(is_visible(document, layer, frame) for frame in range(first, last + 1)):
             continue
         if choice is not None:
-            notices.append(f"{part.layer} is never seen: the choice {choice.name!r} never shows it")
+            notices.append(
+                _("{layer} is never seen: the switch {name!r} never shows it").format(
+                    layer=part.layer, name=choice.name
+                )
+            )
         elif part.visible is None:
             notices.append(
-                f"{part.layer} is hidden in the drawing, and so never seen; with "
-                '"visible": [[0, true]] it is'
+                _(
+                    "{layer} is hidden in the drawing, so that it is never seen; show it with "
+                    '"visible": [[0, true]]'
+                ).format(layer=part.layer)
             )
         elif late:
             notices.append(
-                f"{part.layer} is never seen: it is shown from frame {late[0]} on, and the "
-                f"animation ends at frame {last}"
+                _(
+                    "{layer} is never seen: it is shown from frame {frame} on, and the animation "
+                    "ends at frame {last}"
+                ).format(layer=part.layer, frame=late[0], last=last)
             )
         else:
-            notices.append(f"{part.layer} is never seen: its visible shows it at no frame")
+            notices.append(
+                _("{layer} is never seen: its visible shows it at no frame").format(
+                    layer=part.layer
+                )
+            )
     late_changes = [
-        (f"choice {given.name!r}: {layer}", frame)
+        (_("switch {name!r}: {layer}").format(name=given.name, layer=layer), frame)
         for given in script.choices
         for frame, layer in given.turns
     ]
     for part in script.layers:
-        late_changes += [(f"what {part.layer} hangs on", joint.frame) for joint in part.attach]
-        late_changes += [(f"the order of {part.layer}", each.frame) for each in part.order]
+        parent = _("the parent of {layer}").format(layer=part.layer)
+        order = _("the order of {layer}").format(layer=part.layer)
+        late_changes += [(parent, joint.frame) for joint in part.attach]
+        late_changes += [(order, each.frame) for each in part.order]
     return notices + [
-        f"{what} from frame {frame} on is never seen, as the animation ends at frame {last}"
+        _("{what} from frame {frame} on is never seen: the animation ends at frame {last}").format(
+            what=what, frame=frame, last=last
+        )
         for what, frame in late_changes
         if frame > last
     ]

@@ -37,6 +37,7 @@ from app.solving.script_scene import (
     with_world_transforms,
 )
 from app.storage import make_still_layer
+from app.texts import _, message_of
 from engine.deform import BoundedPull
 from engine.errors import EngineError
 
@@ -71,17 +72,17 @@ def pose_document(
         with _whose(part):
             with _among(document, identity, part):
                 document = _prepared(document, identity, part)
-            document, told = _with_material(document, identity, part)
-        notices += told
+            document, found = _with_material(document, identity, part)
+        notices += found
     if script.layers[0].layer is not None:
         for layer in document.layers:
             if layer.id not in named and not layer.still:
                 document = document.with_layer(make_still_layer(layer))
     for identity, part in named.items():
         with _whose(part):
-            layer, told = _posed(document.layer(identity), part, progress, loop=script.loop)
+            layer, found = _posed(document.layer(identity), part, progress, loop=script.loop)
         document = document.with_layer(layer)
-        notices += told
+        notices += found
     document = with_switch_groups(
         with_world_transforms(with_draw_order(document, script), script), script
     )
@@ -101,7 +102,9 @@ def _whose(part: LayerScript) -> Iterator[None]:
     except (LissomError, EngineError) as error:
         if part.layer is None:
             raise
-        raise LissomError(f"layer {part.layer!r}: {error}") from error
+        raise LissomError(
+            _("layer {layer!r}: {error}").format(layer=part.layer, error=message_of(error))
+        ) from error
 
 
 @contextmanager
@@ -119,9 +122,16 @@ def _among(document: Document, identity: int, part: LayerScript) -> Iterator[Non
             raise
         own = layer.name
         raise LissomError(
-            f"{error} The script names no layer, so that its handles are on {own!r}, the one in "
-            f"front. The drawing has also {', '.join(names)}: say which layer is meant in "
-            f'"layers": [{{"layer": {json.dumps(own, ensure_ascii=False)}, ...}}].'
+            _(
+                "{error} The script names no layer, so that its handles are on {own!r}, the "
+                "one in front. The drawing has also {names}: say which layer is meant in "
+                '"layers": [{{"layer": {name}, ...}}].'
+            ).format(
+                error=message_of(error),
+                own=own,
+                names=", ".join(names),
+                name=json.dumps(own, ensure_ascii=False),
+            )
         ) from error
 
 
@@ -137,8 +147,10 @@ def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
         is_posed = bool(part.handles) or len(part.keys) > 1 or part.layer is None
         if layer is None or (layer.still and is_posed):
             raise LissomError(
-                f"the layer {part.layer!r} stands still: there is no shape on it to be posed; it "
-                "may be moved as a whole, without handles and with one key"
+                _(
+                    "the layer {layer!r} stands still: there is no shape on it to be posed; it "
+                    "may be moved as a whole, without handles and with one key"
+                ).format(layer=part.layer)
             )
         named[layer.id] = part
     return named
@@ -194,12 +206,15 @@ def _with_material(
     notices = []
     for each in part.parts:
         at, options = each.around, {"radius": each.radius, "amount": each.amount}
-        _, reached = brushed_stiffness(document.layer(identity), [at], **options)
+        *_stiffness, reached = brushed_stiffness(document.layer(identity), [at], **options)
         if not reached:
             whose = "" if part.layer is None else f"{part.layer}, "
             notices.append(
-                f"{whose}no outline is seen within {each.radius:g} px of ({at.real:g}, "
-                f"{at.imag:g}): nothing is stiff or soft there"
+                whose
+                + _(
+                    "no outline is within {radius:g} px of ({x:g}, {y:g}): nothing is stiff or "
+                    "soft there"
+                ).format(radius=each.radius, x=at.real, y=at.imag)
             )
         document = stiffness_commands.paint_stiffness(identity, [at], **options)(document)
     ids = [handle.id for handle in document.layer(identity).handles]
@@ -209,7 +224,11 @@ def _with_material(
         try:
             document = stiffness_commands.add_bone(identity, ends, bone.stiffness)(document)
         except EngineError as error:
-            raise LissomError(f"stiff from {first!r} to {second!r}: {error}") from error
+            raise LissomError(
+                _("stiff from {first!r} to {second!r}: {error}").format(
+                    first=first, second=second, error=message_of(error)
+                )
+            ) from error
     return document, notices
 
 
@@ -223,24 +242,24 @@ def _posed(
     keys: list[Keyframe] = []
     notices: list[str] = []
     for key in part.keys:
-        progress(f"solving {whose}the key at frame {key.frame}")
-        pose, told = _solve(rig, pose, key)
+        progress(whose + _("solving the key at frame {frame}").format(frame=key.frame))
+        pose, found = _solve(rig, pose, key)
         again = keys[0] if loop and key is part.keys[-1] and keys else _repeated(part, keys, key)
         is_alike = again is not None and _has_same_targets(rig, pose, again.pose)
         if again is not None and is_alike:
             # The same pose to the last digit.
-            pose, told = again.pose, []
+            pose, found = again.pose, []
         cycle = next((each for each in part.cycles if each.last == key.frame), None)
         if again is not None and cycle is not None and cycle.until != cycle.last:
             if not is_alike or key.fronts:
                 raise LissomError(
-                    f"the key at frame {key.frame} is where {cycle.description} begin again, "
-                    "but it is "
-                    f"not like the key at frame {again.frame}; leave it out, or let them end "
-                    "elsewhere"
+                    _(
+                        "the key at frame {frame} is where {cycle} begin again, but it differs "
+                        "from the key at frame {first}; leave it out, or end the cycle elsewhere"
+                    ).format(frame=key.frame, cycle=cycle.description, first=again.frame)
                 )
             continue
-        notices += [f"{whose}{notice}" for notice in told]
+        notices += [f"{whose}{notice}" for notice in found]
         fronts = {identities[name]: front for name, front in key.fronts.items()}
         keys.append(
             Keyframe(
@@ -277,8 +296,9 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     turned = {identities[name]: turn for name, turn in key.turns.items()}
     carried = layer.sprung_handles & named.keys()
     notices = [
-        f"frame {key.frame}: {layer.handle(identity).name!r} follows by its spring, and goes "
-        "where the body carries it, whatever its target"
+        _(
+            "frame {frame}: {handle!r} has a spring and follows the body; its target has no effect"
+        ).format(frame=key.frame, handle=layer.handle(identity).name)
         for identity in sorted(carried)
     ]
     for identity in carried:
@@ -289,22 +309,26 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
         place = named.get(identity, before.position)
         targets[identity] = Target(position=place, rotation=turned.get(identity, before.rotation))
     if all(
-        (start.targets[i].position, start.targets[i].rotation) == (wished.position, wished.rotation)
-        for i, wished in targets.items()
+        (start.targets[i].position, start.targets[i].rotation) == (target.position, target.rotation)
+        for i, target in targets.items()
     ):
         return start, notices
     hands = tuple(BoundedPull((identity,), key.pull) for identity in named)
     drag = DragSolver.begin(rig, start).step_towards(targets, MOST_STEPS, hands)
-    shortfall = measure_target_errors(layer, drag.make_pose(targets))
+    target_errors = measure_target_errors(layer, drag.make_pose(targets))
     drag, released = drag.release(targets, hands)
     left = {**targets, **released}
     pose = drag.step_towards(left, MOST_STEPS).make_pose(left)
     # Joints of bones may yield, since the script does not hold them.
     joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
     notices += [
-        f"frame {key.frame}: {layer.handle(identity).name!r} is {lag:.1f} px short of "
-        f"its target, {shortfall.reason}"
-        for identity, lag in shortfall.errors.items()
+        _("frame {frame}: {handle!r} is {error:.1f} px short of its target, {reason}").format(
+            frame=key.frame,
+            handle=layer.handle(identity).name,
+            error=error,
+            reason=target_errors.reason,
+        )
+        for identity, error in target_errors.errors.items()
         if identity not in joints
     ]
     return pose, notices

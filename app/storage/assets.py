@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from app.errors import REINSTALL, LissomError
+from app.texts import _
 
 _APP = Path(__file__).resolve().parents[1]
 
@@ -25,7 +26,11 @@ def manual_page(name: str = "index") -> Path:
     """Return a page of the manual. Its pictures and all other pages are in the same folder."""
     page = _APP / "manual" / "site" / f"{name}.html"
     if not page.is_file():
-        raise LissomError(f"the page {page} of the manual is missing; {REINSTALL}")
+        raise LissomError(
+            _("the page {page} of the manual is missing; {reinstall}").format(
+                page=page, reinstall=_(REINSTALL)
+            )
+        )
     return page
 
 
@@ -33,7 +38,9 @@ def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise LissomError(f"cannot read {path}; {REINSTALL}") from error
+        raise LissomError(
+            _("cannot read {path}; {reinstall}").format(path=path, reinstall=_(REINSTALL))
+        ) from error
 
 
 def _folder(name: str) -> Path:
@@ -41,4 +48,8 @@ def _folder(name: str) -> Path:
     for path in (_APP / "shipped" / name, _APP.parent / name):
         if path.is_dir():
             return path
-    raise LissomError(f"the folder {name!r} of Lissom is missing; {REINSTALL}")
+    raise LissomError(
+        _("the folder {name!r} of Lissom is missing; {reinstall}").format(
+            name=name, reinstall=_(REINSTALL)
+        )
+    )

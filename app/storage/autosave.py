@@ -54,9 +54,11 @@ class Autosave:
 
         Waits for a write of another thread, so that the last request wins.
         """
-        told = json.dumps({"name": origin.name, "path": origin.path and str(origin.path)}).encode()
+        content = json.dumps(
+            {"name": origin.name, "path": origin.path and str(origin.path)}
+        ).encode()
         # One file holds both, so that a crash cannot separate them.
-        members = MappingProxyType({**document.unknown_members, SOURCE_INFO: told})
+        members = MappingProxyType({**document.unknown_members, SOURCE_INFO: content})
         with self._writing:
             self._prepare()
             save_project(self._path, replace(document, unknown_members=members), is_private=True)
@@ -149,18 +151,18 @@ def open_fault_log(folder: Path) -> int:
 def read_fault_log(folder: Path) -> str:
     """Return Python's traceback of a crash and empty the log; empty if there was no crash."""
     try:
-        told = read_file(folder / FAULT_LOG, largest=LARGEST_REPORT).decode(errors="replace")
+        content = read_file(folder / FAULT_LOG, largest=LARGEST_REPORT).decode(errors="replace")
         # Other windows may have the file open.
         os.truncate(folder / FAULT_LOG, 0)
     except (LissomError, OSError):
         return ""
-    return told
+    return content
 
 
-def _parse_source_info(told: bytes) -> SourceInfo:
+def _parse_source_info(content: bytes) -> SourceInfo:
     """Parse the source of unsaved work. An unreadable source must not hide the work itself."""
     try:
-        match json.loads(told):
+        match json.loads(content):
             case {"name": str(name), "path": str(path)} if Path(path).is_absolute():
                 return SourceInfo(display_name(name), Path(path))
             case {"name": str(name)}:

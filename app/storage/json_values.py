@@ -12,21 +12,22 @@ from typing import Any, TypeVar
 
 from app.errors import LissomError, display_name
 from app.storage.files.reading import read_file
+from app.texts import N_, _, message_of
 
 Parsed = TypeVar("Parsed")
 
 MISSING: Any = object()  # marks an absent value
-NOT_TRUE_OR_FALSE = "{where} must be true or false, not {content}"
-NOT_WHOLE = "{where} must be a whole number, not {content}"
-NOT_NUMBER = "{where} must be a number, not {content}"
-NOT_LIST = "{where} must be a list [...], not {content}"
-NOT_OBJECT = "{where} must be an object {{...}}, not {content}"
-NOT_TEXT = "{where} must be a text, not {content}"
-NOT_POINT = "{where} must be a point [x, y], not {content}"
-NOT_FINITE = "{where} must be finite, not {content}"
-NOT_JSON = "{path} is not JSON: {reason} in line {line}, column {column}"
-TOO_NESTED = "{path} is nested too deeply"
-LACKS_FIELD = "{where} lacks the field {name!r}"
+NOT_TRUE_OR_FALSE = N_("{where} must be true or false, not {content}")
+NOT_WHOLE = N_("{where} must be a whole number, not {content}")
+NOT_NUMBER = N_("{where} must be a number, not {content}")
+NOT_LIST = N_("{where} must be a list [...], not {content}")
+NOT_OBJECT = N_("{where} must be an object {{...}}, not {content}")
+NOT_TEXT = N_("{where} must be a text, not {content}")
+NOT_POINT = N_("{where} must be a point [x, y], not {content}")
+NOT_FINITE = N_("{where} must be finite, not {content}")
+NOT_JSON = N_("{path} is not JSON: {reason} in line {line}, column {column}")
+TOO_NESTED = N_("{path} is nested too deeply")
+LACKS_FIELD = N_("{where} lacks the field {name!r}")
 
 
 class JsonObject(dict[str, Any]):
@@ -37,56 +38,56 @@ class JsonObject(dict[str, Any]):
         self.where = where
 
     def __missing__(self, name: str) -> Any:
-        raise LissomError(LACKS_FIELD.format(where=self.where, name=name))
+        raise LissomError(_(LACKS_FIELD).format(where=self.where, name=name))
 
 
 def as_object(content: object, where: str) -> JsonObject:
     if not isinstance(content, dict):
-        raise LissomError(NOT_OBJECT.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_OBJECT).format(where=where, content=repr_for_error(content)))
     return JsonObject(content, where)
 
 
 def as_list(content: object, where: str) -> list[Any]:
     if not isinstance(content, list):
-        raise LissomError(NOT_LIST.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_LIST).format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_text(content: object, where: str) -> str:
     if not isinstance(content, str):
-        raise LissomError(NOT_TEXT.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_TEXT).format(where=where, content=repr_for_error(content)))
     return display_name(content)
 
 
 def as_flag(content: object, where: str) -> bool:
     if not isinstance(content, bool):
-        raise LissomError(NOT_TRUE_OR_FALSE.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_TRUE_OR_FALSE).format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_whole(content: object, where: str) -> int:
     if not isinstance(content, int) or isinstance(content, bool):
-        raise LissomError(NOT_WHOLE.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_WHOLE).format(where=where, content=repr_for_error(content)))
     return content
 
 
 def as_number(content: object, where: str) -> float:
     """Return a finite float."""
     if isinstance(content, bool) or not isinstance(content, (int, float)):
-        raise LissomError(NOT_NUMBER.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_NUMBER).format(where=where, content=repr_for_error(content)))
     try:
         number = float(content)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise LissomError(NOT_FINITE.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_FINITE).format(where=where, content=repr_for_error(content)))
     return number
 
 
 def as_point(content: object, where: str) -> complex:
     """Return a point x + iy, written [x, y]."""
     if not isinstance(content, list) or len(content) != 2:
-        raise LissomError(NOT_POINT.format(where=where, content=repr_for_error(content)))
+        raise LissomError(_(NOT_POINT).format(where=where, content=repr_for_error(content)))
     return complex(as_number(content[0], f"{where}[0]"), as_number(content[1], f"{where}[1]"))
 
 
@@ -105,25 +106,27 @@ def load_json(path: Path, parse: Callable[[object], Parsed], *, largest: int) ->
     try:
         text = read_file(path, largest=largest).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise LissomError(f"{path} is not a text file in UTF-8") from error
+        raise LissomError(_("{path} is not a text file in UTF-8").format(path=path)) from error
     try:
         return parse(json.loads(text, object_pairs_hook=check_repeated_fields))
     except json.JSONDecodeError as error:
         raise LissomError(
-            NOT_JSON.format(path=path, reason=error.msg, line=error.lineno, column=error.colno)
+            _(NOT_JSON).format(path=path, reason=error.msg, line=error.lineno, column=error.colno)
         ) from error
     except RecursionError as error:
-        raise LissomError(TOO_NESTED.format(path=path)) from error
+        raise LissomError(_(TOO_NESTED).format(path=path)) from error
     except (LissomError, ValueError) as error:
-        raise LissomError(f"{path}: {error}") from error
+        raise LissomError(f"{path}: {message_of(error)}") from error
 
 
 def check_repeated_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """Refuse repeated fields; the `object_pairs_hook` of `json.loads`."""
     content = dict(pairs)
     if len(content) < len(pairs):
-        (repeated, _), *_ = Counter(name for name, _ in pairs).most_common(1)
-        raise LissomError(f"the field {repeated!r} is given twice in one object")
+        ((repeated, _count),) = Counter(name for name, _value in pairs).most_common(1)
+        raise LissomError(
+            _("the field {name!r} is given twice in one object").format(name=repeated)
+        )
     return content
 
 
@@ -145,7 +148,7 @@ class Codec:
     known_fields: Mapping[str, Any] = field(default_factory=dict)
 
 
-def verbatim(value: Any, _: str = "") -> Any:
+def verbatim(value: Any, _where: str = "") -> Any:
     """Return a value unchanged: it is its own JSON."""
     return value
 
@@ -185,7 +188,7 @@ def pair(
     make: Callable[[Any, Any], Any] = lambda one, other: (one, other),
     of: Callable[[Any], tuple[Any, Any]] = verbatim,
 ) -> Codec:
-    """Return a codec of a value made of two parts; errors describe the pair by `what`."""
+    """Return a codec of a value made of two parts; `what`, a marked text, stands in errors."""
 
     def write(value: Any) -> list[Any]:
         one, other = of(value)
@@ -194,7 +197,11 @@ def pair(
     def read(content: object, where: str) -> Any:
         values = as_list(content, where)
         if len(values) != 2:
-            raise LissomError(f"{where} must be {what}, not {repr_for_error(values)}")
+            raise LissomError(
+                _("{where} must be {what}, not {content}").format(
+                    where=where, what=_(what), content=repr_for_error(values)
+                )
+            )
         return make(first.read(values[0], where), second.read(values[1], where))
 
     return Codec(write, read)
@@ -252,8 +259,8 @@ def record(
     known |= {field.legacy_name: field.codec.known_fields for field in fields if field.legacy_name}
 
     def write(value: Any) -> dict[str, Any]:
-        told = ((field, field.value_of(value)) for field in fields)
-        written = {field.name: field.codec.write(of) for field, of in told if of != field.default}
+        values = ((field, field.value_of(value)) for field in fields)
+        written = {field.name: field.codec.write(of) for field, of in values if of != field.default}
         return with_unknown_fields(written, unknown(value) if unknown else {}, known)
 
     def read(content: object, where: str) -> Any:

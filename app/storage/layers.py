@@ -28,6 +28,7 @@ from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
+from app.texts import _, message_of
 from engine.arrays import Bytes, readonly
 from engine.domain import rectangle_domain
 from engine.errors import EngineError
@@ -49,7 +50,9 @@ def read_layered(path: Path) -> LayeredPicture:
     try:
         return READERS[path.suffix.lower()](data)
     except LissomError as error:
-        raise LissomError(f"cannot open {path}: {error}") from error
+        raise LissomError(
+            _("cannot open {path}: {error}").format(path=path, error=error)
+        ) from error
 
 
 def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
@@ -71,9 +74,12 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
     merged = encode_png(Image.fromarray(flatten_layers(scene.document, textures)))
     opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
     count = len(scene.document.layers)
-    told = (f"the {count} layers of {path.name} are merged into one drawing",) if count > 1 else ()
+    merged_layers = _("the {count} layers of {name} are merged into one drawing").format(
+        count=count, name=path.name
+    )
+    notices = (merged_layers,) if count > 1 else ()
     document = replace(opened.document, import_log=scene.document.import_log)
-    return opened._replace(document=document, notices=told + opened.notices)
+    return opened._replace(document=document, notices=notices + opened.notices)
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
@@ -82,20 +88,20 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
     The canvas has the size of the largest picture; the others are centred.
     """
     all_imported: list[ImportedLayer] = []
-    names, told = UniqueNames(), NoticeCollector()
+    names, collector = UniqueNames(), NoticeCollector()
     files = [(read_file(path), str(path)) for path in paths]
     pictures = decode_pictures(files)
     size = (
         max(picture.size[0] for picture in pictures),
         max(picture.size[1] for picture in pictures),
     )
-    for path, (data, _), picture in zip(paths, files, pictures, strict=True):
+    for path, (data, _name), picture in zip(paths, files, pictures, strict=True):
         name = names.claim(display_name(path.stem))
         corner = complex((size[0] - picture.size[0]) // 2, (size[1] - picture.size[1]) // 2)
         all_imported.append(ImportedLayer(name=name, data=data, picture=picture, corner=corner))
         for notice in picture.notices:
-            told.add_note(name, notice)
-    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=told.import_log)
+            collector.add_note(name, notice)
+    drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=collector.import_log)
     return _scene(drawing, meshing, is_cut_out=False)
 
 
@@ -179,18 +185,18 @@ def make_posable_layer(
     file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
-    notices: tuple[str, ...] = ("opaque all over, so that it stands still",)
+    notices: tuple[str, ...] = (_("opaque all over, so that it stands still"),)
     if not (is_cut_out and picture.is_opaque):
         try:
-            domain, notices = build_picture_domain(
+            domain, found = build_picture_domain(
                 picture.rgba,
                 triangles=meshing.triangles,
                 detail=meshing.detail,
                 cut_out=cut_out,
             )
-            still = False
+            still, notices = False, tuple(map(message_of, found))
         except EngineError as error:
-            notices = (f"stands still: {error}",)
+            notices = (_("stands still: {reason}").format(reason=message_of(error)),)
     layer = replace(
         new_layer(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
         id=identity,
@@ -267,12 +273,12 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         for imported, (layer, _) in zip(drawing.layers, made, strict=True)
     )
     if all(layer.still for layer in layers):
-        raise LissomError("none of its layers can be posed: there is no shape on any of them")
+        raise LissomError(_("none of its layers can be posed: there is no shape on any of them"))
     pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
-    told = NoticeCollector()
+    collector = NoticeCollector()
     for layer, notices in made:
         for notice in notices:
-            told.add_note(layer.name, notice)
+            collector.add_note(layer.name, notice)
     # A drawing with a background defines its own frame.
     framing: Framing = "canvas" if layers[0].still else "fit"
     document = Document(
@@ -280,6 +286,6 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         size=drawing.size,
         export=ExportSettings(framing=framing),
         groups=drawing.groups,
-        import_log=drawing.summary + told.import_log,
+        import_log=drawing.summary + collector.import_log,
     )
     return OpenedScene(document, pictures)

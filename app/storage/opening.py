@@ -11,6 +11,7 @@ from app.document import Document, Meshing, PictureFile, new_layer
 from app.errors import display_name
 from app.storage.files.reading import read_file
 from app.storage.pictures.picture import Picture, decode_picture
+from app.texts import message_of
 from engine.arrays import Booleans, Bytes, freeze
 from engine.domain import HoleMap, find_holes
 from engine.errors import EngineError
@@ -88,7 +89,7 @@ def build_scene(data: bytes, path: Path, meshing: Meshing, cut_out: CutOut) -> O
     file = PictureFile(data=data, suffix=picture.suffix, size=picture.size)
     layer = new_layer(file, domain, meshing, cut_out)
     named = replace(layer, name=display_name(path.stem).strip() or layer.name)
-    notices = picture.notices + remedies
+    notices = (*picture.notices, *map(message_of, remedies))
     return OpenedScene(Document(layers=(named,)), {named.id: picture}, notices)
 
 

@@ -14,6 +14,7 @@ from app.errors import LissomError
 from app.export_formats import expand_colour
 from app.storage.files.atomic import write_atomically
 from app.storage.files.reading import read_file
+from app.texts import _
 
 ThemeName = Literal["dark", "light"]
 SMALLEST_SCALE, LARGEST_SCALE = 0.75, 3.0
@@ -114,10 +115,12 @@ def make_settings_folder(folder: Path) -> None:
             folder.chmod(0o700)
     except OSError as error:
         raise LissomError(
-            f"the folder {folder} cannot be made: {error.strerror or error}"
+            _("the folder {folder} cannot be made: {reason}").format(
+                folder=folder, reason=error.strerror or error
+            )
         ) from error
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise LissomError(f"the folder {folder} may not be written to")
+        raise LissomError(_("the folder {folder} may not be written to").format(folder=folder))
 
 
 def load_preferences(folder: Path) -> Preferences:
@@ -148,7 +151,7 @@ def _understood(content: dict[str, Any]) -> Preferences:
     recent = content.get("recent")
     paths = recent if isinstance(recent, list) else []
     folder, exported = (
-        Path(told) if isinstance(told := content.get(name), str) else None
+        Path(value) if isinstance(value := content.get(name), str) else None
         for name in ("folder", "exported")
     )
     backdrop = expand_colour(str(content.get("backdrop"))).lower()

@@ -25,9 +25,10 @@ from app.errors import EXPECTED_ERRORS, LissomError, shortened
 from app.storage.files.atomic import sync_folder, write_atomically
 from app.storage.files.reading import DAMAGED_ZIP, open_file, open_zip, tail_digest
 from app.storage.json_values import JsonObject, as_object, as_text, as_whole, check_repeated_fields
-from app.storage.project.archive import MEBIBYTE, NO_PROJECT, Archive, write_archive
+from app.storage.project.archive import MEBIBYTE, Archive, write_archive
 from app.storage.project.document_json import SCHEMA, read_document, write_document
 from app.storage.project.members import layer_members
+from app.texts import N_, _, message_of
 
 LARGEST_JSON = 32 * MEBIBYTE
 # In project.json. A thousand keys of a hundred handles have this many.
@@ -36,9 +37,9 @@ LARGEST_THUMBNAIL = 2 * MEBIBYTE
 PROJECT_JSON, THUMBNAIL = "project.json", "thumbnail.png"
 # Nesting of lists and objects. Unknown fields are kept, and must be writable.
 DEEPEST = 40
-NEWER_LISSOM = (
-    "it was saved by a newer Lissom ({version}, schema {schema}); this version reads schema {own}. "
-    "Update Lissom to open it"
+NEWER_LISSOM = N_(
+    "it was saved by a newer Lissom ({version}, schema {schema}); this version reads "
+    "schema {own}. Update Lissom to open it"
 )
 _readable: Final = WeakSet[Layer]()  # layers unchanged since they were read from a file
 
@@ -91,7 +92,9 @@ def project_digest(path: Path) -> str | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+        raise LissomError(
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
+        ) from error
 
 
 def load_project(path: Path) -> Document:
@@ -104,11 +107,17 @@ def load_project(path: Path) -> Document:
         with open_file(path) as (file, size), open_zip(file) as members:
             document = _read(Archive(members, size))
     except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+        raise LissomError(
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
+        ) from error
     except EXPECTED_ERRORS as error:
-        raise LissomError(f"cannot open {path}: {error}") from error
+        raise LissomError(
+            _("cannot open {path}: {error}").format(path=path, error=message_of(error))
+        ) from error
     except DAMAGED_ZIP as error:
-        raise LissomError(f"{path} {NO_PROJECT}, or it is damaged") from error
+        raise LissomError(
+            _("cannot open {path}: it is not a Lissom project, or it is damaged").format(path=path)
+        ) from error
     _readable.update(document.layers)
     return document
 
@@ -143,7 +152,9 @@ def _require_readable(
             _read(Archive(written, size, arrays), known)
     except (*EXPECTED_ERRORS, *DAMAGED_ZIP) as error:
         raise LissomError(
-            f"cannot write {path}, as Lissom could not open it again: {error}"
+            _("cannot write {path}, as Lissom could not open it again: {error}").format(
+                path=path, error=message_of(error)
+            )
         ) from error
     _readable.update(document.layers)
 
@@ -153,9 +164,9 @@ def _read(archive: Archive, known: Mapping[int, Layer] = MappingProxyType({})) -
     schema = as_whole(content["schema"], "schema")
     if schema > SCHEMA:
         app_version = shortened(as_text(content.get("app_version", "?"), "app_version"))
-        raise LissomError(NEWER_LISSOM.format(version=app_version, schema=schema, own=SCHEMA))
+        raise LissomError(_(NEWER_LISSOM).format(version=app_version, schema=schema, own=SCHEMA))
     if schema < 1:
-        raise LissomError(f"its schema {schema} does not exist")
+        raise LissomError(_("its schema {schema} does not exist").format(schema=schema))
     document = read_document(content, archive, known)
     attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
     return (
@@ -170,7 +181,9 @@ def _read_json(archive: Archive) -> JsonObject:
     # Each value but the first follows one of these marks. A decoded value takes some hundred bytes.
     if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
         raise LissomError(
-            f"its project.json holds more values than any project, which has {MOST_VALUES:,}"
+            _("its project.json holds more values than any project, which has {most:,}").format(
+                most=MOST_VALUES
+            )
         )
     try:
         content = json.loads(
@@ -182,23 +195,27 @@ def _read_json(archive: Archive) -> JsonObject:
     except RecursionError:
         content = None
     except ValueError as error:
-        raise LissomError(f"its project.json is not JSON: {error}") from error
+        raise LissomError(_("its project.json is not JSON: {error}").format(error=error)) from error
     if content is None or _is_deeper(content):
-        raise LissomError(f"its project.json is nested deeper than {DEEPEST} levels")
+        raise LissomError(
+            _("its project.json is nested deeper than {most} levels").format(most=DEEPEST)
+        )
     return as_object(content, "project.json")
 
 
 def _finite(text: str) -> float:
     number = float(text)
     if not isfinite(number):
-        raise LissomError(f"its project.json holds {text}, which is not a finite number")
+        raise LissomError(
+            _("its project.json holds {text}, which is not a finite number").format(text=text)
+        )
     return number
 
 
 def _is_deeper(content: object) -> bool:
     """Return whether lists and objects are nested too deeply for a project."""
     inside = [content] if isinstance(content, (dict, list)) else []
-    for _ in range(DEEPEST + 1):
+    for _level in range(DEEPEST + 1):
         inside = [
             value
             for each in inside

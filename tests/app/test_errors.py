@@ -45,7 +45,9 @@ def test_many_names_and_notices_are_counted():
     assert join_names(names[:MAX_LISTED]) == ", ".join(names[:MAX_LISTED])
     assert join_names(names).endswith("n9 and 1,990 more")
     assert few_notices(names) == [*names[:MAX_LISTED], "and 1,990 more"]
-    told = NoticeCollector()
+    collector = NoticeCollector()
     for name in ("a\x1b", *names):
-        told.add_warning(name, "is lost")
-    assert told.import_log.warnings == (rf"a\x1b, {', '.join(names[:9])} and 1,991 more: is lost",)
+        collector.add_warning(name, "is lost")
+    assert collector.import_log.warnings == (
+        rf"a\x1b, {', '.join(names[:9])} and 1,991 more: is lost",
+    )

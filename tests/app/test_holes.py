@@ -102,7 +102,7 @@ def test_the_screen_shows_the_map_around_a_hole():
     assert_allclose(mesh.pose_vertices(pose), expected, rtol=0, atol=1e-3)
 
 
-def test_a_motion_around_a_hole_is_certified_and_its_correction_told(tmp_path, capsys):
+def test_a_motion_around_a_hole_is_certified_and_its_correction_reported(tmp_path, capsys):
     path = tmp_path / "ring.lissom"
     (layer,) = document().layers
     from_key_to_key = Document(layers=(replace(layer, keys=layer.keys[:2]),))

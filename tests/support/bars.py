@@ -85,7 +85,7 @@ def bend_bar(
         playback.seek(window.session, last)
     elif held == "loose":
         bar = window.again(bend_bar, None, "auto-pins")
-        bar.history.extend_step(shape_commands.set_auto_pins(bar.active, stillness=False))
+        bar.history.extend_step(shape_commands.set_auto_pins(bar.active, enabled=False))
     else:
         bar = window.again(open_bar)
         playback.seek(window.session, BENT)

@@ -362,7 +362,7 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         *_camera_commands(rng, document),
         scene_commands.set_mirror_names((("near", "far"), (f"é {rng.integers(3)}", "B"))),
         shape_commands.set_variant(0, VARIANTS[rng.integers(len(VARIANTS))]),
-        shape_commands.set_auto_pins(0, stillness=bool(rng.integers(2))),
+        shape_commands.set_auto_pins(0, enabled=bool(rng.integers(2))),
         shape_commands.set_anchor(0, None if rng.random() < 0.3 else inside(rng)),
         scene_commands.set_export(_random_export(rng)),
         shape_commands.set_limits(0, bounds),

@@ -17,18 +17,19 @@ from app.document.queries.pose_tangents import have_same_map
 from app.document.timing.cycles import Cycle
 from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
+from app.texts import N_, _
 
 # Pixels and radians. A track with smaller values at its ends does not move the handle there.
 SAME_POSE_DISTANCE = 1e-6
 
 Moving = TypeVar("Moving", TransformKey, OpacityKey)
-TWO_POSES_SHOWN = (
-    "Frames {first} and {last} show two poses, but what repeats ends as it began; give the latter "
-    "the pose of the former, or choose other keys."
+TWO_POSES_SHOWN = N_(
+    "Frames {first} and {last} show two poses, but a cycle ends with the pose with "
+    "which it begins; give them the same pose, or choose other keys."
 )
 
 
-@layer_command("Repeat stretch")
+@layer_command(_("Repeat stretch"))
 def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> Layer:
     """Create a cycle that repeats until a frame, or until the end of the document.
 
@@ -40,13 +41,13 @@ def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> 
     keys = layer.keys
     if until != last and {first, last} <= layer.key_frames:
         if not have_same_map(layer.key(first), layer.key(last)):
-            raise LissomError(TWO_POSES_SHOWN.format(first=first, last=last))
+            raise LissomError(_(TWO_POSES_SHOWN).format(first=first, last=last))
         keys = tuple(key for key in keys if key.frame != last)
     others = (each for each in layer.cycles if each.first != first)
     return replace(layer, keys=keys, cycles=_ordered((*others, cycle)))
 
 
-@command("Stop repeating")
+@command(_("Stop repeating"))
 def delete_cycle(document: Document, identity: int, first: int) -> Document:
     """Delete the cycle that begins at a frame; its range still ends as it began.
 
@@ -76,7 +77,7 @@ def _without_cycle(layer: Layer, first: int) -> Layer:
     )
 
 
-@command("Bake repeats")
+@command(_("Bake repeats"))
 def bake_cycle(document: Document, identity: int, first: int, end: int) -> Document:
     """Replace the repeats of the cycle that begins at a frame with keys.
 
@@ -144,9 +145,10 @@ def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
     for cycle in layer.cycles:
         if first < cycle.first < last:
             raise LissomError(
-                f"Frames {first} to {last} cannot repeat, as {cycle.description} in them repeat "
-                "already; "
-                "stop those first, or choose other keys."
+                _(
+                    "Frames {first} to {last} cannot repeat, since they contain a cycle, {cycle}; "
+                    "delete that first, or choose other keys."
+                ).format(first=first, last=last, cycle=cycle.description)
             )
     after = [frame for frame in layer.key_frames if frame > last]
     after += [cycle.first for cycle in layer.cycles if cycle.first > first]
@@ -158,8 +160,10 @@ def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
     ends = [frame + period for frame in own if last < frame + period <= limit]
     if whole == last and not ends:
         raise LissomError(
-            f"There is no room for frames {first} to {last} to repeat before frame {limit}; move "
-            "the keys there further back first."
+            _(
+                "There is no room for frames {first} to {last} to repeat before frame {limit}; "
+                "move the keys there further back first."
+            ).format(first=first, last=last, limit=limit)
         )
     return whole if whole > last else max(ends)
 
@@ -196,7 +200,9 @@ def cycle_starting_at(layer: Layer, first: int) -> Cycle:
     for cycle in layer.cycles:
         if cycle.first == first:
             return cycle
-    raise LissomError(f"Nothing of {layer.name!r} repeats from frame {first} on.")
+    raise LissomError(
+        _("No cycle of {layer!r} begins at frame {first}.").format(layer=layer.name, first=first)
+    )
 
 
 def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
@@ -240,10 +246,16 @@ def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Tr
     acts = [max(abs(key.place), abs(key.turn)) > SAME_POSE_DISTANCE for key in (first, last)]
     if not is_whole and starts and (track.is_scene_space or any(acts)):
         raise LissomError(
-            f"The track of {layer.handle(track.handles[0]).name!r} acts in a part of "
-            f"{cycle.description} only, so that its repeats are no keys of one track; let it "
-            "act from "
-            f"frame {cycle.first} to {cycle.last}, or begin and end where the pose has the handle."
+            _(
+                "The track of {handle!r} acts in a part of {cycle} only, so that its repeats "
+                "cannot be keys of one track; let it act from frame {first} to {last}, or begin "
+                "and end at the handle's place in the pose."
+            ).format(
+                handle=layer.handle(track.handles[0]).name,
+                cycle=cycle.description,
+                first=cycle.first,
+                last=cycle.last,
+            )
         )
     # If the track fills the cycle, its last key equals its first.
     own = track.keys[:-1] if is_whole else track.keys

@@ -11,9 +11,10 @@ from app.document.commands.command import layer_command, with_number
 from app.document.commands.track_handles import with_moved_handle, without_handles
 from app.document.keyframe import Handle, Pose, Target
 from app.document.layer import Layer
+from app.texts import _
 
 
-@layer_command("Add handle")
+@layer_command(_("Add handle"))
 def add_handle(
     layer: Layer, position: complex, *, name: str | None = None, weight: float = 1.0
 ) -> Layer:
@@ -32,7 +33,7 @@ def add_handle(
     return _with_poses(layer, partial(_follow, layer, handle), (*layer.handles, handle))
 
 
-@layer_command("Add handles")
+@layer_command(_("Add handles"))
 def add_handles(layer: Layer, handles: Sequence[Handle]) -> Layer:
     """Add several handles; they get new ids from `layer.next_handle` on."""
     for number, handle in enumerate(handles, start=layer.next_handle):
@@ -42,7 +43,7 @@ def add_handles(layer: Layer, handles: Sequence[Handle]) -> Layer:
     return layer
 
 
-@layer_command("Move handle")
+@layer_command(_("Move handle"))
 def move_handle(layer: Layer, identity: int, position: complex) -> Layer:
     """Move a handle on the picture; its targets become the images of its new position."""
     if layer.handle(identity).position == position:
@@ -54,7 +55,7 @@ def move_handle(layer: Layer, identity: int, position: complex) -> Layer:
     return _with_poses(moved, partial(_follow, layer, handle), handles)
 
 
-@layer_command("Delete handle")
+@layer_command(_("Delete handle"))
 def remove_handles(layer: Layer, identities: Collection[int]) -> Layer:
     """Delete handles with their springs, tracks and bones. The poses keep their shapes."""
     gone = {layer.handle(identity).id for identity in identities}
@@ -78,29 +79,29 @@ def remove_handles(layer: Layer, identities: Collection[int]) -> Layer:
     return _with_poses(left, remaining, handles)
 
 
-@layer_command("Rename handle")
+@layer_command(_("Rename handle"))
 def rename_handle(layer: Layer, identity: int, name: str) -> Layer:
     return with_handles(layer, {identity}, name=name)
 
 
-@layer_command("Set handle weight")
+@layer_command(_("Set handle weight"))
 def set_handle_weight(layer: Layer, identities: Collection[int], weight: float) -> Layer:
     """Set the weight of handles in later solves."""
     return with_handles(layer, identities, weight=weight)
 
 
-@layer_command("Lock or unlock handles")
+@layer_command(_("Lock or unlock handles"))
 def lock_handles(layer: Layer, identities: Collection[int], *, locked: bool) -> Layer:
     return with_handles(layer, identities, locked=locked)
 
 
-@layer_command("Free or keep still")
+@layer_command(_("Free or keep still"))
 def unpin_handles(layer: Layer, identities: Collection[int], *, free: bool) -> Layer:
     """Turn auto-pin off or on for handles."""
     return with_handles(layer, identities, is_unpinned=free)
 
 
-@layer_command("Group handles")
+@layer_command(_("Group handles"))
 def group_handles(layer: Layer, identities: Collection[int], group: str) -> Layer:
     """Put handles in a group that is selected and dragged together; "" ungroups them."""
     return with_handles(layer, identities, group=group.strip())
@@ -128,7 +129,7 @@ def _with_poses(layer: Layer, change: Callable[[Pose], Pose], handles: tuple[Han
 
 def _require_on_shape(layer: Layer, handle: Handle) -> None:
     """Refuse a handle outside the shape, where the map is not defined."""
-    layer.require_on_shape({f"handle {handle.name!r}": handle.position})
+    layer.require_on_shape({_("The handle {name!r}").format(name=handle.name): handle.position})
 
 
 def _follow(layer: Layer, handle: Handle, pose: Pose) -> Pose:

@@ -18,16 +18,17 @@ from app.document.timing.cycles import Cycle
 from app.document.timing.easing import LINEAR, Easing
 from app.document.timing.tangent_mode import TangentMode
 from app.errors import LissomError
+from app.texts import _
 
 Held = TypeVar("Held", VisibilityKey, DrawOrderKey)
 
 
-@layer_command("Pose")
+@layer_command(_("Pose"))
 def replace_key_pose(layer: Layer, frame: int, pose: Pose) -> Layer:
     return replace_keys(layer, {frame: replace(layer.key(frame), pose=pose)})
 
 
-@layer_command("Insert key")
+@layer_command(_("Insert key"))
 def insert_key(layer: Layer, frame: int, pose: Pose, *, easing: Easing = LINEAR) -> Layer:
     """Insert a key at a frame without a key.
 
@@ -38,7 +39,7 @@ def insert_key(layer: Layer, frame: int, pose: Pose, *, easing: Easing = LINEAR)
     return _inserted(layer, frame, pose, easing)
 
 
-@layer_command("Paste pose")
+@layer_command(_("Paste pose"))
 def insert_pose(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
     """Set the pose of the key at a frame, or insert a key."""
     if frame not in layer.key_frames:
@@ -47,37 +48,37 @@ def insert_pose(layer: Layer, frame: int, pose: Pose, easing: Easing) -> Layer:
     return layer if old.pose is pose else replace_keys(layer, {frame: replace(old, pose=pose)})
 
 
-@layer_command("Paste keys")
+@layer_command(_("Paste keys"))
 def insert_keys(layer: Layer, keys: Sequence[Keyframe]) -> Layer:
     """Put keys at their frames, in place of existing keys."""
     return _with_keys(layer, retime.with_overwritten_keys(layer.keys, keys))
 
 
-@layer_command("Move keys")
+@layer_command(_("Move keys"))
 def move_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
     """Move the keys at some frames, with their cycles and motion presets."""
     keys = retime.with_moved_keys(layer.keys, frames, by)
     return _rearranged(layer, keys, frames, lambda frame: frame + by)
 
 
-@layer_command("Copy keys")
+@layer_command(_("Copy keys"))
 def copy_keys(layer: Layer, frames: Collection[int], by: int) -> Layer:
     return _with_keys(layer, retime.with_copied_keys(layer.keys, frames, by))
 
 
-@layer_command("Delete keys")
+@layer_command(_("Delete keys"))
 def delete_keys(layer: Layer, frames: Collection[int]) -> Layer:
     """Delete the keys at some frames; one key must remain. Cycles without keys are deleted."""
     keys = retime.without_keys(layer.keys, frames)
     if not keys:
-        raise LissomError("An animation has at least one key; pose the last one instead.")
+        raise LissomError(_("An animation has at least one key; pose the last one instead."))
     kept = {key.frame for key in keys}
     gone = {cycle for cycle in layer.cycles if not any(map(cycle.contains, kept))}
     gone &= {cycle for cycle in layer.cycles if any(map(cycle.contains, frames))}
     return _with_keys(layer, keys, tuple(each for each in layer.cycles if each not in gone))
 
 
-@layer_command("Reverse keys")
+@layer_command(_("Reverse keys"))
 def reverse_keys(
     layer: Layer, frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Layer:
@@ -85,7 +86,7 @@ def reverse_keys(
     return _with_keys(layer, retime.with_reversed_keys(layer.keys, frames, span))
 
 
-@layer_command("Scale time of keys")
+@layer_command(_("Scale time of keys"))
 def scale_keys(
     layer: Layer, frames: Collection[int], factor: float, first: int | None = None
 ) -> Layer:
@@ -95,29 +96,29 @@ def scale_keys(
     return _rearranged(layer, keys, frames, TimeScale(stays, factor))
 
 
-@layer_command("Make last key equal first")
+@layer_command(_("Make last key equal first"))
 def match_loop_ends(layer: Layer) -> Layer:
     first, last = layer.keys[0], layer.keys[-1]
     if first is last:
-        raise LissomError("A loop needs two keys; insert a second one first.")
+        raise LissomError(_("A loop needs two keys; insert a second one first."))
     if first.pose is last.pose:
         return layer
     return replace_keys(layer, {last.frame: replace(last, pose=first.pose)})
 
 
-@layer_command("Set easing")
+@layer_command(_("Set easing"))
 def set_easing(layer: Layer, frames: Collection[int], easing: Easing) -> Layer:
     """Set the easing from the keys at some frames to the next keys."""
     return _with_keys(layer, retime.with_easing(layer.keys, frames, easing))
 
 
-@layer_command("Set passing")
+@layer_command(_("Set tangent"))
 def set_tangent_mode(layer: Layer, frames: Collection[int], passing: TangentMode) -> Layer:
     """Set the tangent mode of the keys at some frames; a hold ends."""
     return _with_keys(layer, retime.with_tangent_mode(layer.keys, frames, passing))
 
 
-@layer_command("Set turns")
+@layer_command(_("Set turns"))
 def set_revolutions(layer: Layer, frames: Collection[int], turns: int) -> Layer:
     """Set the additional full turns after the keys at some frames."""
     keys = retime.keys_at_frames(layer.keys, frames)
@@ -202,16 +203,19 @@ def _moved_cycles(
 
 def with_scaled_time(layer: Layer, scale: TimeScale) -> Layer:
     """Return the layer with all of its frames scaled; springs keep their frequencies in seconds."""
-    of_layer = f"of {layer.name!r}"
     return replace(
         layer,
         visibility_keys=scale.retimed(
-            layer.visibility_keys, f"visibility keys {of_layer}", _at_frame
+            layer.visibility_keys,
+            _("visibility keys of {layer!r}").format(layer=layer.name),
+            _at_frame,
         ),
         attachments=scale.retimed(
-            layer.attachments, f"attachments {of_layer}", lambda joint, _: joint.retimed(scale)
+            layer.attachments,
+            _("attachments of {layer!r}").format(layer=layer.name),
+            lambda joint, _: joint.retimed(scale),
         ),
-        keys=scale.paced(layer.keys, f"keys {of_layer}"),
+        keys=scale.paced(layer.keys, _("keys of {layer!r}").format(layer=layer.name)),
         cycles=tuple(cycle.retimed(scale) for cycle in layer.cycles),
         motions=tuple(
             motion.moved(scale)
@@ -221,15 +225,21 @@ def with_scaled_time(layer: Layer, scale: TimeScale) -> Layer:
         tracks=tuple(
             replace(
                 track,
-                keys=scale.paced(track.keys, f"track keys {of_layer}"),
+                keys=scale.paced(track.keys, _("track keys of {layer!r}").format(layer=layer.name)),
                 delay=retime.nearest_frame(scale.factor * track.delay),
             )
             for track in layer.tracks
         ),
-        transform_keys=scale.paced(layer.transform_keys, f"movement keys {of_layer}"),
-        opacity_keys=scale.paced(layer.opacity_keys, f"opacity keys {of_layer}"),
+        transform_keys=scale.paced(
+            layer.transform_keys, _("movement keys of {layer!r}").format(layer=layer.name)
+        ),
+        opacity_keys=scale.paced(
+            layer.opacity_keys, _("opacity keys of {layer!r}").format(layer=layer.name)
+        ),
         draw_order_keys=scale.retimed(
-            layer.draw_order_keys, f"draw order keys {of_layer}", _at_frame
+            layer.draw_order_keys,
+            _("draw order keys of {layer!r}").format(layer=layer.name),
+            _at_frame,
         ),
     )
 

@@ -9,12 +9,13 @@ from app.document.commands.command import layer_command, with_number
 from app.document.keyframe import LibraryPose, Pose, Target
 from app.document.layer import Layer
 from app.document.model import Document
+from app.texts import _
 
 # For a layer and its pose: the pose that replaces it.
 PoseReplacement = Callable[[Layer, Pose], Pose]
 
 
-@layer_command("Save pose")
+@layer_command(_("Save pose"))
 def save_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
     """Add a pose to the library, by default under a free name."""
     taken = {kept.name for kept in layer.library}
@@ -23,7 +24,7 @@ def save_pose(layer: Layer, pose: Pose, name: str | None = None) -> Layer:
     return replace(layer, library=(*layer.library, kept))
 
 
-@layer_command("Rename pose")
+@layer_command(_("Rename pose"))
 def rename_pose(layer: Layer, name: str, to: str) -> Layer:
     renamed = layer.library_pose(name)
     if to == name:
@@ -32,14 +33,14 @@ def rename_pose(layer: Layer, name: str, to: str) -> Layer:
     return replace(layer, library=library)
 
 
-@layer_command("Delete pose")
+@layer_command(_("Delete pose"))
 def delete_pose(layer: Layer, name: str) -> Layer:
     """Delete a pose from the library; keys made from it stay."""
     gone = layer.library_pose(name)
     return replace(layer, library=tuple(kept for kept in layer.library if kept is not gone))
 
 
-@layer_command("Move mirror axis")
+@layer_command(_("Move mirror axis"))
 def set_mirror(layer: Layer, mirror: float | None) -> Layer:
     """Set the vertical mirror axis of poses; None takes the default axis."""
     return layer if mirror == layer.mirror else replace(layer, mirror=mirror)

@@ -17,6 +17,7 @@ from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.tangent_mode import TangentMode
 from app.document.timing.tracks import TrackKey
 from app.errors import LissomError
+from app.texts import N_, _
 
 Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, TransformKey, OpacityKey)
 Keys = tuple[Key, ...]
@@ -31,12 +32,12 @@ class AtFrame(Protocol):
 
 
 Timed = TypeVar("Timed", bound=AtFrame)
-KEYS_COLLIDE = "Two keys would be at frame {frame}; move or delete the one there first."
-KEYS_MEET = (
-    "The {keys} at frames {one} and {other} would both be at frame {frame}. Delete one of them "
-    "first, or shorten the time less."
+KEYS_COLLIDE = N_("Two keys would be at frame {frame}; move or delete the one there first.")
+KEYS_MEET = N_(
+    "The {keys} at frames {one} and {other} would both be at frame {frame}. Delete one "
+    "of them first, or shorten the time less."
 )
-BAD_TIME_FACTOR = "Time can be scaled by more than 0 and up to 1000, not by {factor:g}."
+BAD_TIME_FACTOR = N_("Time can be scaled by more than 0 and up to 1000, not by {factor:g}.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class TimeScale:
 
     def __post_init__(self) -> None:
         if not 0 < self.factor <= 1000:
-            raise LissomError(BAD_TIME_FACTOR.format(factor=self.factor))
+            raise LissomError(_(BAD_TIME_FACTOR).format(factor=self.factor))
 
     def __call__(self, frame: int) -> int:
         """Return the scaled frame, at least 0."""
@@ -71,7 +72,7 @@ class TimeScale:
             at = self(key.frame)
             if at in placed and key.frame > self.stays:
                 one, other = placed[at].frame, key.frame
-                raise LissomError(KEYS_MEET.format(keys=named, one=one, other=other, frame=at))
+                raise LissomError(_(KEYS_MEET).format(keys=named, one=one, other=other, frame=at))
             placed[at] = key
         return tuple(at_frame(key, at) for at, key in placed.items())
 
@@ -89,7 +90,7 @@ def keys_at_frames(keys: Keys[Key], frames: Iterable[int]) -> list[Key]:
     found = {key.frame: key for key in keys}
     for frame in frames:
         if frame not in found:
-            raise LissomError(NO_KEY.format(frame=frame))
+            raise LissomError(_(NO_KEY).format(frame=frame))
     return [found[frame] for frame in sorted(set(frames))]
 
 
@@ -98,7 +99,7 @@ def sorted_by_frame(keys: Iterable[Key]) -> Keys[Key]:
     ordered = tuple(sorted(keys, key=lambda key: key.frame))
     for frame, count in Counter(key.frame for key in ordered).items():
         if count > 1:
-            raise LissomError(KEYS_COLLIDE.format(frame=frame))
+            raise LissomError(_(KEYS_COLLIDE).format(frame=frame))
     return ordered
 
 

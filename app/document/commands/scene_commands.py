@@ -14,19 +14,20 @@ from app.document.rig.applied_motion import AppliedMotion
 from app.document.rig.mirror_names import SidePairs
 from app.document.settings import ExportSettings, FrameRange, Marker
 from app.errors import LissomError
+from app.texts import N_, _
 
-KEY_OUTSIDE = (
-    "The key at frame {frame} would lie outside frames {first} to {last}; move or delete it first, "
-    "or set a preview range instead."
+KEY_OUTSIDE = N_(
+    "The key at frame {frame} would lie outside frames {first} to {last}; move or "
+    "delete it first, or set a preview range instead."
 )
 
 
-@command("Set frames per second")
+@command(_("Set frames per second"))
 def set_fps(document: Document, fps: float) -> Document:
     return document if fps == document.fps else replace(document, fps=float(fps))
 
 
-@command("Set frames")
+@command(_("Set frames"))
 def set_frames(document: Document, frames: FrameRange) -> Document:
     """Set the first and last frame and clip all ranges to them; a key outside is refused."""
     if frames == document.frames:
@@ -35,7 +36,9 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     ends += [key.frame for key in document.camera]
     outside = next((frame for frame in ends if frame not in frames), None)
     if outside is not None:
-        raise LissomError(KEY_OUTSIDE.format(frame=outside, first=frames.first, last=frames.last))
+        raise LissomError(
+            _(KEY_OUTSIDE).format(frame=outside, first=frames.first, last=frames.last)
+        )
 
     def cut(part: FrameRange) -> FrameRange | None:
         if part.last < frames.first or part.first > frames.last:
@@ -61,35 +64,35 @@ def _with_ranges(
     return replace(document, frames=frames, preview=preview, export=export, **changes)
 
 
-@command("Set preview range")
+@command(_("Set preview range"))
 def set_preview(document: Document, preview: FrameRange | None) -> Document:
     """Set the range of playback; None plays all frames. Exports ignore the range."""
     return document if preview == document.preview else replace(document, preview=preview)
 
 
-@command("Set loop")
+@command(_("Set loop"))
 def set_loop(document: Document, *, loop: bool) -> Document:
     return document if loop == document.loop else replace(document, loop=loop)
 
 
-@command("Set export")
+@command(_("Set export"))
 def set_export(document: Document, export: ExportSettings) -> Document:
     return document if export == document.export else replace(document, export=export)
 
 
-@command("Set pairs of names")
+@command(_("Set pairs of names"))
 def set_mirror_names(document: Document, pairs: SidePairs) -> Document:
     """Set the words or names for the two sides of layers and handles."""
     return document if pairs == document.pairs else replace(document, pairs=pairs)
 
 
-@command("Set canvas")
+@command(_("Set canvas"))
 def set_canvas(document: Document, size: tuple[int, int]) -> Document:
     """Set the size of the canvas, whose lower left corner is the origin; layers stay in place."""
     return document if size == document.canvas else replace(document, size=size)
 
 
-@command("Scale time")
+@command(_("Scale time"))
 def scale_time(document: Document, factor: float) -> Document:
     """Scale all keys, markers and ranges around the first frame."""
     scale = TimeScale(document.frames.first, factor)
@@ -105,24 +108,24 @@ def scale_time(document: Document, factor: float) -> Document:
         scaled,
         layers=tuple(with_scaled_time(layer, scale) for layer in document.layers),
         markers=scale.retimed(
-            document.markers, "markers", lambda marker, at: replace(marker, frame=at)
+            document.markers, _("markers"), lambda marker, at: replace(marker, frame=at)
         ),
         switch_groups=tuple(
             replace(
                 choice,
                 keys=scale.retimed(
                     choice.keys,
-                    f"switch keys of {choice.name!r}",
+                    _("switch keys of {name!r}").format(name=choice.name),
                     lambda turn, at: turn._replace(frame=at),
                 ),
             )
             for choice in document.switch_groups
         ),
-        camera=scale.paced(document.camera, "camera keys"),
+        camera=scale.paced(document.camera, _("camera keys")),
     )
 
 
-@command("Add marker")
+@command(_("Add marker"))
 def add_marker(document: Document, frame: int, name: str | None = None) -> Document:
     """Add a marker, by default under a free name."""
     taken = {marker.name for marker in document.markers}
@@ -131,17 +134,17 @@ def add_marker(document: Document, frame: int, name: str | None = None) -> Docum
     return _with_markers(document, (*document.markers, marker))
 
 
-@command("Rename marker")
+@command(_("Rename marker"))
 def rename_marker(document: Document, frame: int, name: str) -> Document:
     return _with_marker(document, frame, replace(document.marker(frame), name=name))
 
 
-@command("Move marker")
+@command(_("Move marker"))
 def move_marker(document: Document, frame: int, to: int) -> Document:
     return _with_marker(document, frame, replace(document.marker(frame), frame=to))
 
 
-@command("Delete marker")
+@command(_("Delete marker"))
 def delete_marker(document: Document, frame: int) -> Document:
     gone = document.marker(frame)
     return _with_markers(document, (marker for marker in document.markers if marker is not gone))
@@ -161,12 +164,14 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
     for one, other in pairwise(ordered):
         if one.frame == other.frame:
             raise LissomError(
-                f"Two markers would be at frame {one.frame}; move or delete the one there first."
+                _(
+                    "Two markers would be at frame {frame}; move or delete the one there first."
+                ).format(frame=one.frame)
             )
     return replace(document, markers=tuple(ordered))
 
 
-@command("Give a motion")
+@command(_("Give a motion"))
 def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
     """Replace a layer by one with a motion preset; a document without motion becomes its loop."""
     is_new = not _moves(document)

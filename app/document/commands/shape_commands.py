@@ -9,29 +9,30 @@ from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.rig.stiffness import transfer_painted_stiffness
 from app.document.settings import Meshing
+from app.texts import _
 from engine.domain import MeshedDomain
 from engine.maps import Bounds
 from engine.variant import Variant
 
 
-@layer_command("Set interpolation")
+@layer_command(_("Set interpolation"))
 def set_variant(layer: Layer, variant: Variant) -> Layer:
     return layer if variant == layer.variant else replace(layer, variant=variant)
 
 
-@layer_command("Set anchor")
+@layer_command(_("Set anchor"))
 def set_anchor(layer: Layer, anchor: complex | None) -> Layer:
     """Set the point whose position and rotation are interpolated directly; None is automatic."""
     return layer if anchor == layer.anchor else replace(layer, anchor=anchor)
 
 
-@layer_command("Set auto-pins")
-def set_auto_pins(layer: Layer, *, stillness: bool) -> Layer:
+@layer_command(_("Set auto-pins"))
+def set_auto_pins(layer: Layer, *, enabled: bool) -> Layer:
     """Turn auto-pin of a layer on or off."""
-    return layer if stillness == layer.has_auto_pins else replace(layer, has_auto_pins=stillness)
+    return layer if enabled == layer.has_auto_pins else replace(layer, has_auto_pins=enabled)
 
 
-@layer_command("Set bounds")
+@layer_command(_("Set limits"))
 def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None) -> Layer:
     """Set the limits of distortion; `poses` are all poses solved within them, if they change."""
     if poses is not None:
@@ -39,21 +40,21 @@ def set_limits(layer: Layer, bounds: Bounds, poses: Sequence[Pose] | None = None
     return layer if bounds == layer.bounds else replace(layer, bounds=bounds)
 
 
-@layer_command("Brush")
+@layer_command(_("Brush"))
 def cut_with_brush(layer: Layer, stroke: Stroke) -> Layer:
     """Keep or remove a part of the picture; the domain stays stale until it is rebuilt."""
     strokes = (*layer.cut_out.strokes, stroke)
     return replace(layer, cut_out=replace(layer.cut_out, strokes=strokes), is_stale=True)
 
 
-@layer_command("Cut by the knife")
+@layer_command(_("Cut by the knife"))
 def cut_with_line(layer: Layer, slit: CutLine) -> Layer:
     """Separate touching parts along a line; the domain stays stale until it is rebuilt."""
     slits = (*layer.cut_out.cut_lines, slit)
     return replace(layer, cut_out=replace(layer.cut_out, cut_lines=slits), is_stale=True)
 
 
-@layer_command("Change cut-out")
+@layer_command(_("Change cut-out"))
 def set_cut_out(layer: Layer, cut_out: CutOut) -> Layer:
     """Set the cut-out of the subject; the domain stays stale until it is rebuilt."""
     if cut_out == layer.cut_out:
@@ -61,7 +62,7 @@ def set_cut_out(layer: Layer, cut_out: CutOut) -> Layer:
     return replace(layer, cut_out=cut_out, is_stale=True)
 
 
-@layer_command("Rebuild domain")
+@layer_command(_("Rebuild domain"))
 def replace_domain(
     layer: Layer, domain: MeshedDomain, meshing: Meshing, poses: Sequence[Pose]
 ) -> Layer:

@@ -17,12 +17,13 @@ from app.document.rig.stiffness import (
     require_stiffness_amount,
 )
 from app.errors import LissomError
+from app.texts import N_, _
 from engine.arrays import Floats
 from engine.domain.material.transfer import copy_nearest_stiffness
 from engine.errors import EngineError
 
 
-@layer_command("Paint stiffness")
+@layer_command(_("Paint stiffness"))
 def paint_stiffness(
     layer: Layer,
     places: Sequence[complex],
@@ -33,38 +34,44 @@ def paint_stiffness(
 ) -> Layer:
     """Paint stiffness along a stroke by `brushed_stiffness`."""
     require_stiffness_amount(amount)
-    require(radius > 0, f"The radius of a brush is above 0, not {radius:g}.")
-    require(0 <= softness <= 1, f"A brush is soft from 0 to 1, not {softness:g}.")
+    require(radius > 0, N_("The radius of a brush is above 0, not {radius:g}."), radius=radius)
+    require(
+        0 <= softness <= 1, N_("A brush is soft from 0 to 1, not {softness:g}."), softness=softness
+    )
     stiffness, reached = brushed_stiffness(
         layer, places, radius=radius, amount=amount, softness=softness
     )
     return replace(layer, stiffness=stiffness) if reached else layer
 
 
-@layer_command("Clear stiffness")
+@layer_command(_("Clear stiffness"))
 def clear_stiffness(layer: Layer) -> Layer:
     """Delete all painted stiffness; bones stay."""
     return layer if layer.stiffness is None else replace(layer, stiffness=None)
 
 
-@layer_command("Add bone")
+@layer_command(_("Add bone"))
 def add_bone(layer: Layer, ends: tuple[int, int], amount: float = DEFAULT_BONE_STIFFNESS) -> Layer:
     """Add a bone between two handles; the straight bone must stay inside the drawing."""
     bone = Bone(ends=ends, stiffness=amount)
     names = [layer.handle(identity).name for identity in ends]
     if any(other.is_between(ends) for other in layer.bones):
-        raise LissomError(f"There is a bone from {names[0]!r} to {names[1]!r} already.")
+        raise LissomError(
+            _("There is a bone from {first!r} to {second!r} already.").format(
+                first=names[0], second=names[1]
+            )
+        )
     bone_region(layer, bone, layer.domain.outline)
     return replace(layer, bones=(*layer.bones, bone))
 
 
-@layer_command("Delete bone")
+@layer_command(_("Delete bone"))
 def remove_bone(layer: Layer, ends: tuple[int, int]) -> Layer:
     gone = _bone(layer, ends)
     return replace(layer, bones=tuple(bone for bone in layer.bones if bone is not gone))
 
 
-@layer_command("Set bone strength")
+@layer_command(_("Set bone strength"))
 def set_bone_stiffness(layer: Layer, ends: tuple[int, int], amount: float) -> Layer:
     old = _bone(layer, ends)
     if old.stiffness == amount:
@@ -73,14 +80,14 @@ def set_bone_stiffness(layer: Layer, ends: tuple[int, int], amount: float) -> La
     return replace(layer, bones=tuple(bones))
 
 
-@layer_command("Show or hide bones")
+@layer_command(_("Show or hide bones"))
 def set_bones_visible(layer: Layer, *, shown: bool) -> Layer:
     """Show or hide all bones of a layer; hidden bones act too."""
     bones = tuple(replace(bone, is_shown=shown) for bone in layer.bones)
     return layer if bones == layer.bones else replace(layer, bones=bones)
 
 
-@layer_command("Mirror material")
+@layer_command(_("Mirror material"))
 def mirror_stiffness(layer: Layer, pairs: SidePairs = PAIRS) -> Layer:
     """Make the stiffness of a layer symmetric.
 
@@ -121,4 +128,6 @@ def _bone(layer: Layer, ends: tuple[int, int]) -> Bone:
         if bone.is_between(ends):
             return bone
     names = [layer.handle(identity).name for identity in ends]
-    raise LissomError(f"There is no bone from {names[0]!r} to {names[1]!r}.")
+    raise LissomError(
+        _("There is no bone from {first!r} to {second!r}.").format(first=names[0], second=names[1])
+    )

@@ -21,21 +21,22 @@ from app.document.timing.springs import Spring
 from app.document.timing.tangent_mode import TangentMode
 from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
+from app.texts import _
 
 
-@layer_command("Set track")
+@layer_command(_("Set track"))
 def put_track(layer: Layer, track: Track) -> Layer:
     """Give handles a track; they leave their former tracks, and empty tracks are deleted."""
     return _with_track(layer, track)
 
 
-@layer_command("Delete track")
+@layer_command(_("Delete track"))
 def remove_tracks(layer: Layer, handles: Collection[int]) -> Layer:
     gone = [_track(layer, handle) for handle in handles]
     return _with_tracks(layer, (track for track in layer.tracks if track not in gone))
 
 
-@layer_command("Key handle")
+@layer_command(_("Key handle"))
 def put_track_key(
     layer: Layer,
     handle: int,
@@ -74,25 +75,25 @@ def put_track_key(
     return _with_track(layer, Track(handles=(handle,), is_scene_space=planted, keys=(key,)))
 
 
-@layer_command("Paste keys of track")
+@layer_command(_("Paste keys of track"))
 def put_track_keys(layer: Layer, handle: int, keys: Sequence[TrackKey]) -> Layer:
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_overwritten_keys(track.keys, keys))
 
 
-@layer_command("Move keys of track")
+@layer_command(_("Move keys of track"))
 def move_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_moved_keys(track.keys, frames, by))
 
 
-@layer_command("Copy keys of track")
+@layer_command(_("Copy keys of track"))
 def copy_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_copied_keys(track.keys, frames, by))
 
 
-@layer_command("Delete keys of track")
+@layer_command(_("Delete keys of track"))
 def delete_track_keys(layer: Layer, handle: int, frames: Collection[int]) -> Layer:
     """Delete the keys of a track at some frames; a track without keys is deleted."""
     track = _track(layer, handle)
@@ -102,7 +103,7 @@ def delete_track_keys(layer: Layer, handle: int, frames: Collection[int]) -> Lay
     return _with_keys(layer, track, keys)
 
 
-@layer_command("Reverse keys of track")
+@layer_command(_("Reverse keys of track"))
 def reverse_track_keys(
     layer: Layer, handle: int, frames: Collection[int], span: tuple[int, int] | None = None
 ) -> Layer:
@@ -111,7 +112,7 @@ def reverse_track_keys(
     return _with_keys(layer, track, retime.with_reversed_keys(track.keys, frames, span))
 
 
-@layer_command("Scale time of keys of track")
+@layer_command(_("Scale time of keys of track"))
 def scale_track_keys(
     layer: Layer, handle: int, frames: Collection[int], factor: float, first: int | None = None
 ) -> Layer:
@@ -120,14 +121,14 @@ def scale_track_keys(
     return _with_keys(layer, track, retime.with_scaled_keys(track.keys, frames, factor, first))
 
 
-@layer_command("Set easing")
+@layer_command(_("Set easing"))
 def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing: Easing) -> Layer:
     """Set the easing after some keys of a track, which lose their own velocities."""
     track = _track(layer, handle)
     return _with_keys(layer, track, retime.with_easing(_unled(track, frames), frames, easing))
 
 
-@layer_command("Set passing")
+@layer_command(_("Set tangent"))
 def set_track_passing(
     layer: Layer, handle: int, frames: Collection[int], passing: TangentMode
 ) -> Layer:
@@ -138,30 +139,30 @@ def set_track_passing(
     )
 
 
-@layer_command("Set delay")
+@layer_command(_("Set delay"))
 def set_delay(layer: Layer, handle: int, delay: int) -> Layer:
     return _with(layer, handle, delay=delay)
 
 
-@layer_command("Set reach")
+@layer_command(_("Set reach"))
 def set_reach(layer: Layer, handle: int, reach: float) -> Layer:
     """Set how far a track's displacement spreads around its handles, from 0 to 1."""
     return _with(layer, handle, reach=float(reach))
 
 
-@layer_command("Set turning")
+@layer_command(_("Set rotation"))
 def set_turning(layer: Layer, handle: int, *, turns: bool) -> Layer:
     """Set whether a track rotates the shape at its handles."""
     return _with(layer, handle, keys_rotation=turns)
 
 
-@layer_command("Switch track on or off")
+@layer_command(_("Switch track on or off"))
 def enable_track(layer: Layer, handle: int, *, enabled: bool) -> Layer:
     """Turn a track on or off; its keys stay."""
     return _with(layer, handle, enabled=enabled)
 
 
-@layer_command("Plant track")
+@layer_command(_("Plant track"))
 def plant_track(
     layer: Layer,
     handle: int,
@@ -178,7 +179,11 @@ def plant_track(
     track = _track(layer, handle)
     velocities = velocities or [None] * len(places)
     if not len(places) == len(velocities) == len(track.keys):
-        raise LissomError(f"The track has {len(track.keys)} keys, not {len(places)}.")
+        raise LissomError(
+            _("The track has {count} keys, not {given}.").format(
+                count=len(track.keys), given=len(places)
+            )
+        )
     keys = tuple(
         replace(key, place=place, velocity=velocity)
         for key, place, velocity in zip(track.keys, places, velocities, strict=True)
@@ -186,19 +191,19 @@ def plant_track(
     return _with(layer, handle, is_scene_space=planted, keys=keys)
 
 
-@layer_command("Set handles of track")
+@layer_command(_("Set handles of track"))
 def set_track_handles(layer: Layer, handle: int, handles: Sequence[int]) -> Layer:
     """Set the handles of a track; its keys belong to the first."""
     track = _track(layer, handle)
     return _with_track(layer, track_for_handles(layer, track, tuple(handles)), instead=track)
 
 
-@layer_command("Copy track")
+@layer_command(_("Copy track"))
 def copy_track(layer: Layer, handle: int, to: int) -> Layer:
     return _with_track(layer, track_for_handles(layer, _track(layer, handle), (to,)))
 
 
-@layer_command("Copy track mirrored")
+@layer_command(_("Copy track mirrored"))
 def mirror_track(layer: Layer, handle: int, pairs: SidePairs = PAIRS) -> Layer:
     """Copy a handle's track, mirrored, to the handles on the other side.
 
@@ -207,7 +212,7 @@ def mirror_track(layer: Layer, handle: int, pairs: SidePairs = PAIRS) -> Layer:
     return _with_track(layer, mirrored_track(layer, _track(layer, handle), pairs))
 
 
-@layer_command("Set spring")
+@layer_command(_("Set spring"))
 def put_spring(layer: Layer, spring: Spring) -> Layer:
     if layer.spring_of(spring.handle) == spring:
         return layer
@@ -215,7 +220,7 @@ def put_spring(layer: Layer, spring: Spring) -> Layer:
     return replace(layer, springs=(*others, spring))
 
 
-@layer_command("Delete spring")
+@layer_command(_("Delete spring"))
 def remove_springs(layer: Layer, handles: Collection[int]) -> Layer:
     springs = tuple(spring for spring in layer.springs if spring.handle not in handles)
     return layer if springs == layer.springs else replace(layer, springs=springs)
@@ -224,7 +229,9 @@ def remove_springs(layer: Layer, handles: Collection[int]) -> Layer:
 def _track(layer: Layer, handle: int) -> Track:
     track = layer.track_of(handle)
     if track is None:
-        raise LissomError(f"The handle {layer.handle(handle).name!r} has no track.")
+        raise LissomError(
+            _("The handle {handle!r} has no track.").format(handle=layer.handle(handle).name)
+        )
     return track
 
 

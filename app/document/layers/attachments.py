@@ -17,6 +17,7 @@ from app.document.checks import (
     require_point,
 )
 from app.document.timing.cycles import Cycle, count_changes_within
+from app.texts import N_, _
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,17 +49,23 @@ class Attachment:
 
     def __post_init__(self) -> None:
         if self.parent is not None:
-            require_id(self.parent, "a layer")
-        require_point(self.parent_point, "A joint")
-        require_point(self.offset, "What hangs on a joint")
+            require_id(self.parent, _("A layer"))
+        require_point(self.parent_point, _("A joint"))
+        require_point(self.offset, _("The offset of a joint"))
         require(
-            math.isfinite(self.rest_rotation), f"A turn must be finite, not {self.rest_rotation}."
+            math.isfinite(self.rest_rotation),
+            N_("A turn must be finite, not {rest_rotation}."),
+            rest_rotation=self.rest_rotation,
         )
-        require_frame(self.frame, "A joint")
+        require_frame(self.frame, _("A joint"))
         require(
             self.kept_since is None or 0 <= self.kept_since <= self.frame,
-            f"What a joint keeps from frame {self.frame} on was so at that frame or before, not at "
-            f"frame {self.kept_since}.",
+            N_(
+                "The place that a joint keeps from frame {frame} on is of that frame or an earlier "
+                "one, not of frame {kept_since}."
+            ),
+            frame=self.frame,
+            kept_since=self.kept_since,
         )
 
     @property
@@ -76,7 +83,9 @@ def require_attachments(joints: tuple[Attachment, ...]) -> None:
     for before, after in pairwise(joints):
         require(
             before.frame < after.frame,
-            f"The layer is attached anew at frame {after.frame} after frame {before.frame}.",
+            N_("The attachments at frames {before} and {after} are mixed up."),
+            before=before.frame,
+            after=after.frame,
         )
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 from app.document.checks import NOTHING, Unknown, require
+from app.texts import N_
 
 # How the colours of a layer are blended with the colours behind it ("Compositing and Blending Level
 # 1" of the W3C, Section 10).
@@ -33,10 +34,16 @@ class Group:
 
     def __post_init__(self) -> None:
         require_path(self.name)
-        require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            0 <= self.opacity <= 1,
+            N_("Opacity is between 0 and 1, not {opacity:g}."),
+            opacity=self.opacity,
+        )
         require(
             self.blend in GROUP_BLENDS,
-            f"A group's blend is one of {', '.join(GROUP_BLENDS)}, not {self.blend!r}.",
+            N_("A group's blend is one of {blends}, not {blend!r}."),
+            blends=", ".join(GROUP_BLENDS),
+            blend=self.blend,
         )
 
 
@@ -45,10 +52,13 @@ def require_path(path: str) -> None:
     names = path.split("/")
     require(
         all(name and name == name.strip() for name in names),
-        f"A group needs a name, and groups in groups names divided by slashes, unlike {path!r}.",
+        N_("A group needs a name, and groups in groups names divided by slashes, unlike {path!r}."),
+        path=path,
     )
     require(
-        len(names) <= MAX_GROUP_DEPTH, f"Groups lie at most {MAX_GROUP_DEPTH} deep in each other."
+        len(names) <= MAX_GROUP_DEPTH,
+        N_("Groups lie at most {most} deep in each other."),
+        most=MAX_GROUP_DEPTH,
     )
 
 

@@ -11,6 +11,7 @@ from app.document.timing.base_key import BaseKey
 from app.document.timing.tangent_mode import TangentMode
 from app.document.timing.tracks import MAX_TRACK_ROTATION
 from app.errors import LissomError
+from app.texts import N_, _
 
 MAX_ZOOM: Final = 1000.0  # largest zoom; its inverse is the smallest
 
@@ -25,10 +26,13 @@ class CameraKey(BaseKey):
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
-        require_point(self.centre, "The camera's centre")
+        require_point(self.centre, _("The camera's centre"))
         require(
             1 / MAX_ZOOM <= self.zoom <= MAX_ZOOM,
-            f"A zoom is above 0, from {1 / MAX_ZOOM:g} to {MAX_ZOOM:g}, not {self.zoom:g}.",
+            N_("A zoom is above 0, from {smallest:g} to {largest:g}, not {zoom:g}."),
+            smallest=1 / MAX_ZOOM,
+            largest=MAX_ZOOM,
+            zoom=self.zoom,
         )
         _require_rotation(self.turn)
 
@@ -42,7 +46,7 @@ class TransformKey(BaseKey):
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
-        require_point(self.shift, "A layer's movement")
+        require_point(self.shift, _("A layer's movement"))
         _require_rotation(self.turn)
 
 
@@ -55,7 +59,11 @@ class OpacityKey(BaseKey):
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
-        require(0 <= self.opacity <= 1, f"Opacity is between 0 and 1, not {self.opacity:g}.")
+        require(
+            0 <= self.opacity <= 1,
+            N_("Opacity is between 0 and 1, not {opacity:g}."),
+            opacity=self.opacity,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,17 +75,26 @@ class DrawOrderKey:
     in_front: bool = True
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, "A place in the draw order")
+        require_frame(self.frame, _("A place in the draw order"))
 
 
-def require_ascending_keys(keys: Sequence[BaseKey] | Sequence[DrawOrderKey], what: str) -> None:
+def require_ascending_keys(
+    keys: Sequence[BaseKey] | Sequence[DrawOrderKey], what: str, layer: str = ""
+) -> None:
+    """Refuse keys out of order; `what` is a marked text, with the name of the layer in it."""
     for before, after in pairwise(key.frame for key in keys):
         if before >= after:
-            raise LissomError(f"{what} has a key at frame {after} after that at frame {before}.")
+            raise LissomError(
+                _("{what} has a key at frame {after} after that at frame {before}.").format(
+                    what=_(what).format(layer=layer), after=after, before=before
+                )
+            )
 
 
 def _require_rotation(turn: float) -> None:
     require(
         abs(turn) <= MAX_TRACK_ROTATION,
-        f"A turn is at most {MAX_TRACK_ROTATION / tau:g} whole turns, not {turn / tau:g}.",
+        N_("A turn is at most {largest:g} whole turns, not {turn:g}."),
+        largest=MAX_TRACK_ROTATION / tau,
+        turn=turn / tau,
     )

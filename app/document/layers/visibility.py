@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_frame
 from app.errors import LissomError
+from app.texts import N_, _
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,14 +19,16 @@ class VisibilityKey:
     visible: bool
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, "A visibility key")
+        require_frame(self.frame, _("A visibility key"))
 
 
 def require_ascending_visibility_keys(switches: tuple[VisibilityKey, ...]) -> None:
     for before, after in pairwise(switches):
         require(
             before.frame < after.frame,
-            f"The layer is shown or hidden at frame {after.frame} after frame {before.frame}.",
+            N_("The visibility keys at frames {before} and {after} are mixed up."),
+            before=before.frame,
+            after=after.frame,
         )
 
 
@@ -51,21 +54,28 @@ class SwitchGroup:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(bool(self.name.strip()), "A choice needs a name.")
-        require(len(self.layers) > 1, f"The choice {self.name!r} is between two layers or more.")
-        require_distinct(self.layers, "A choice has the layer {!r} twice.")
+        require(bool(self.name.strip()), N_("A switch needs a name."))
+        require(
+            len(self.layers) > 1,
+            N_("The switch {name!r} needs two layers or more."),
+            name=self.name,
+        )
+        require_distinct(self.layers, N_("A switch has the layer {value!r} twice."))
         known = set(self.layers)
         for turn in self.keys:
-            require_frame(turn.frame, "What a choice shows")
+            require_frame(turn.frame, _("A switch key"))
             if turn.layer not in known:
                 raise LissomError(
-                    f"The choice {self.name!r} shows a layer at frame {turn.frame} that it has not."
+                    _(
+                        "At frame {frame} the switch {name!r} shows a layer that is not in it."
+                    ).format(name=self.name, frame=turn.frame)
                 )
         for before, after in pairwise(self.keys):
             if before.frame >= after.frame:
                 raise LissomError(
-                    f"The choice {self.name!r} is made at frame {after.frame} after frame "
-                    f"{before.frame}."
+                    _(
+                        "The switch keys of {name!r} at frames {before} and {after} are mixed up."
+                    ).format(name=self.name, before=before.frame, after=after.frame)
                 )
 
     def layer_at(self, frame: float) -> int:

@@ -6,6 +6,7 @@ from app.document.keyframe import Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
 from app.document.rig.applied_motion import AppliedMotion
+from app.texts import ngettext
 
 
 def digest_keys(layer: Layer, first: int, last: int) -> str:
@@ -35,10 +36,14 @@ def motion_notices(document: Document) -> tuple[str, ...]:
     for layer in document.layers:
         unread = layer.unread_motions
         if unread:
-            count = f"{len(unread)} motions" if len(unread) > 1 else "a motion"
             notices.append(
-                f"{layer.name!r} has {count} that this version cannot show, and the file keeps: "
-                f"{unread[0].reason}"
+                ngettext(
+                    "{layer!r} has a motion that this version cannot show, and the file keeps: "
+                    "{reason}",
+                    "{layer!r} has {count} motions that this version cannot show, and the file "
+                    "keeps: {reason}",
+                    len(unread),
+                ).format(layer=layer.name, count=len(unread), reason=unread[0].reason)
             )
     return tuple(notices)
 

@@ -116,15 +116,15 @@ def _segments(
 
 def _velocity_sources(clip: Clip, number: int) -> tuple[object, ...]:
     """Return the values that determine the velocities of a segment, besides its poses."""
-    transit, span = pose_segments(clip)[number], clip_segments(clip)[number]
-    maps = tuple((id(key.pose.phi), id(key.pose.psi)) for key in transit.keys)
+    segment, span = pose_segments(clip)[number], clip_segments(clip)[number]
+    maps = tuple((id(key.pose.phi), id(key.pose.psi)) for key in segment.keys)
     easing = clip.keys[span.first].easing
     return (
         maps,
-        transit.revolutions,
-        transit.start,
-        transit.end,
-        transit.apart,
+        segment.revolutions,
+        segment.start,
+        segment.end,
+        segment.apart,
         span.frames,
         easing,
     )

@@ -85,14 +85,14 @@ def clip_of(document: Document, layer: int) -> Clip:
     feels = [each.enabled for each in own.springs]
     feels += [each.enabled and each.is_scene_space for each in own.tracks]
 
-    def clip(each: Layer, carriers: tuple[Clip, ...] = ()) -> Clip:
+    def clip(each: Layer, parents: tuple[Clip, ...] = ()) -> Clip:
         return Clip(
             layer=each,
             frames=document.frames,
             loop=document.loop,
             fps=document.fps,
-            parents=carriers,
+            parents=parents,
         )
 
-    carriers = document.all_ancestors(layer) if any(feels) else ()
-    return clip(own, tuple(map(clip, carriers)))
+    parents = document.all_ancestors(layer) if any(feels) else ()
+    return clip(own, tuple(map(clip, parents)))

@@ -151,37 +151,37 @@ def stop_factor(pace: float) -> float:
 
 
 def sample_segment(
-    passages: KeySequence[Key], leg: TangentSegment, time: float, moved: KeyedProperty[Key, Value]
+    sequence: KeySequence[Key], leg: TangentSegment, time: float, moved: KeyedProperty[Key, Value]
 ) -> Value:
     """Return the value at a share of a segment, 0 to 1; exact at both keys.
 
     A smooth key has its own velocity, or the slope of the parabola through it and its neighbours.
     Next to an equal neighbour it is a stop.
     """
-    one, other = passages.keys[leg.first], passages.keys[leg.last]
+    one, other = sequence.keys[leg.first], sequence.keys[leg.last]
     share = one.easing(time)
     if share in (0.0, 1.0):
         return moved.value_of(other if share else one)
     change, rest = moved.value_of(other) - moved.value_of(one), 1.0 - share
-    leaving, reaching = segment_slopes(passages, leg, moved)
+    leaving, reaching = segment_slopes(sequence, leg, moved)
     return moved.value_of(one) + share * (
         share * (3.0 - 2.0 * share) * change + rest * (rest * leaving - share * reaching)
     )
 
 
 def segment_slopes(
-    passages: KeySequence[Key], leg: TangentSegment, moved: KeyedProperty[Key, Value]
+    sequence: KeySequence[Key], leg: TangentSegment, moved: KeyedProperty[Key, Value]
 ) -> tuple[Value, Value]:
     """Return the slopes over the eased time at both ends of a segment."""
-    change = moved.value_of(passages.keys[leg.last]) - moved.value_of(passages.keys[leg.first])
+    change = moved.value_of(sequence.keys[leg.last]) - moved.value_of(sequence.keys[leg.first])
     return (
-        _slope(passages, leg.first, moved, change, side=1),
-        _slope(passages, leg.last, moved, change, side=0),
+        _slope(sequence, leg.first, moved, change, side=1),
+        _slope(sequence, leg.last, moved, change, side=0),
     )
 
 
 def _slope(
-    passages: KeySequence[Key],
+    sequence: KeySequence[Key],
     index: int,
     moved: KeyedProperty[Key, Value],
     change: Value,
@@ -192,12 +192,12 @@ def _slope(
 
     `change` is the difference of the segment's two keys.
     """
-    keys = passages.keys
-    before, after = passages.segment_before(index), passages.segment_after(index)
-    velocity, arms = _own_velocity(passages, index, moved)
+    keys = sequence.keys
+    before, after = sequence.segment_before(index), sequence.segment_after(index)
+    velocity, arms = _own_velocity(sequence, index, moved)
     if velocity is not None:
         return arms[side] * velocity
-    end = passages.tangents(index)[side]
+    end = sequence.tangents(index)[side]
     if not isinstance(end, InteriorKnot):
         return end * change
     window = (before.first if before else index, index, after.last if after else index)
@@ -210,15 +210,15 @@ def _slope(
 
 
 def _own_velocity(
-    passages: KeySequence[Key], index: int, moved: KeyedProperty[Key, Value]
+    sequence: KeySequence[Key], index: int, moved: KeyedProperty[Key, Value]
 ) -> tuple[Value | None, tuple[float, float]]:
     """Return a key's own velocity, and the lengths in frames of a linear blend at its speeds.
 
     The lengths are of the segments before and after the key. The velocity is None unless the key is
     smooth and both easings have finite positive speeds there.
     """
-    keys = passages.keys
-    before, after = passages.segment_before(index), passages.segment_after(index)
+    keys = sequence.keys
+    before, after = sequence.segment_before(index), sequence.segment_after(index)
     reached, left = keys[before.last if before else index], keys[after.first if after else index]
     end_pace = keys[before.first].easing.end_speeds[1] if before else 1.0
     start_pace = left.easing.end_speeds[0] if after else 1.0

@@ -9,6 +9,7 @@ from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.boundary_stiffness import uses_local_limits
 from app.document.queries.memo import memoized_on
+from app.texts import N_, _
 from engine.arrays import Complexes
 from engine.geometry import diameter
 from engine.maps import Bounds, distortion
@@ -19,7 +20,7 @@ LEAST_TARGET_ERROR = 0.005
 AT_LIMIT = 0.97  # share of a limit from which a pose cannot go on
 LIMIT_NAMES = {"k": "shear", "σa": "stretch", "σb": "squeeze"}
 TINY = 1e-300  # in place of a squeeze that is not proven to be above 0
-HELD_BY_LIMITS = "held back by the limits"
+HELD_BY_LIMITS = N_("held back by the limits")
 
 
 class LimitUse(NamedTuple):
@@ -110,8 +111,8 @@ class TargetErrors:
     def reason(self) -> str:
         """The cause in words."""
         if self.at_limits:
-            return HELD_BY_LIMITS
-        return "held back by the other handles and the shape's stiffness"
+            return _(HELD_BY_LIMITS)
+        return _("held back by the other handles and the shape's stiffness")
 
 
 def misses_target(layer: Layer, lag: float) -> bool:

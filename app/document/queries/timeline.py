@@ -15,6 +15,7 @@ from app.document.queries.pose_tangents import pose_segments
 from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange, require_fps
 from app.errors import LissomError
+from app.texts import _
 from engine.geometry import RigidMotion, Similarity
 
 # Pixels: tolerance for rounding.
@@ -211,11 +212,13 @@ def frame_times(document: Document, frames: FrameRange, fps: float | None = None
     """
     if fps is None:
         return [float(frame) for frame in range(frames.first, frames.last + 1)]
-    require_fps(fps, "The export's speed")
+    require_fps(fps, _("The export's speed"))
     if fps > 100 * document.fps:
         raise LissomError(
-            f"The export's frames per second must be at most {100 * document.fps:g}, a hundred "
-            f"times the document's own, not {fps:g}."
+            _(
+                "The export's frames per second must be at most {largest:g}, a hundred times the "
+                "document's own, not {fps:g}."
+            ).format(largest=100 * document.fps, fps=fps)
         )
     # Exact arithmetic, so that rounding neither drops the last picture nor adds one.
     step = Fraction(document.fps) / Fraction(fps)

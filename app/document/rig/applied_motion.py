@@ -8,6 +8,7 @@ from typing import Self
 
 from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
 from app.rigging import Parameters, find_kind, find_motion
+from app.texts import N_
 
 MAX_REPEATS = 1000
 
@@ -37,19 +38,29 @@ class AppliedMotion:
     def __post_init__(self) -> None:
         require(
             0 <= self.first <= self.start < self.last <= LAST_FRAME,
-            f"A motion goes from a frame to a later one, from 0 to {LAST_FRAME:,}, not from "
-            f"{self.first} by {self.start} to {self.last}.",
+            N_(
+                "A motion goes from a frame to a later one, from 0 to {largest:,}, not from "
+                "{first} by {start} to {last}."
+            ),
+            largest=LAST_FRAME,
+            first=self.first,
+            start=self.start,
+            last=self.last,
         )
         find_motion(self.motion).template_for(self.kind)
         kind = find_kind(self.kind)
         if kind.parents:
             kind.require_joints(self.joints)
         require(
-            self.facing in (1, -1), f"A drawing looks to the right, 1, or left, -1: {self.facing}."
+            self.facing in (1, -1),
+            N_("A drawing looks to the right, 1, or left, -1: {facing}."),
+            facing=self.facing,
         )
         require(
             1 <= self.repeat_count <= MAX_REPEATS,
-            f"A motion is there once to {MAX_REPEATS:,} times, not {self.repeat_count:,} times.",
+            N_("A motion is there once to {most:,} times, not {count:,} times."),
+            most=MAX_REPEATS,
+            count=self.repeat_count,
         )
         object.__setattr__(self, "joints", MappingProxyType(dict(self.joints)))
 
@@ -77,12 +88,18 @@ def require_motions(motions: Sequence[AppliedMotion], handles: Collection[int]) 
     for before, after in pairwise(motions):
         require(
             before.last <= after.first,
-            f"A motion from frame {after.first} on begins before the one from frame {before.first} "
-            "on has ended.",
+            N_(
+                "A motion from frame {first} on begins before the one from frame "
+                "{before_first} on has ended."
+            ),
+            first=after.first,
+            before_first=before.first,
         )
     for motion in motions:
         for joint, identity in motion.joints.items():
             require(
                 identity in handles,
-                f"The joint {joint!r} of a motion is the handle {identity}, which is not there.",
+                N_("The joint {joint!r} of a motion is the handle {identity}, which is not there."),
+                joint=joint,
+                identity=identity,
             )

@@ -8,6 +8,7 @@ import numpy as np
 from app.document.checks import require, require_distinct
 from app.document.keyframe import Handle
 from app.errors import LissomError
+from app.texts import N_, _
 from engine.arrays import Complexes
 from engine.geometry import diameter
 
@@ -18,9 +19,9 @@ SidePairs = tuple[tuple[str, str], ...]
 SIDES: SidePairs = (("L", "R"), ("left", "right"))
 MAX_PAIRS = 1_000  # each name is compared with all pairs
 PAIRS: SidePairs = (*SIDES, ("near", "far"))
-NO_PAIR = (
-    "“{words}” is no pair: write two words, or two whole names, with a slash between, as in "
-    "near/far, and commas between pairs."
+NO_PAIR = N_(
+    "“{words}” is no pair: write two words, or two whole names, with a slash between, "
+    "as in near/far, and commas between pairs."
 )
 
 
@@ -74,10 +75,17 @@ def _places(name: str, form: str) -> Iterator[int]:
 
 def require_pairs(pairs: SidePairs) -> None:
     """Refuse empty words and words that occur twice."""
-    require(len(pairs) <= MAX_PAIRS, f"There are at most {MAX_PAIRS:,} pairs, not {len(pairs):,}.")
+    require(
+        len(pairs) <= MAX_PAIRS,
+        N_("There are at most {most:,} pairs, not {count:,}."),
+        most=MAX_PAIRS,
+        count=len(pairs),
+    )
     words = [word.casefold() for pair in pairs for word in pair]
-    require(all(word.strip() for word in words), "A pair is of two words, such as near and far.")
-    require_distinct(words, "“{}” is twice among the pairs; it has one partner only.")
+    require(
+        all(word.strip() for word in words), N_("A pair is of two words, such as near and far.")
+    )
+    require_distinct(words, N_("“{value}” is twice among the pairs; it has one partner only."))
 
 
 def parse_pairs(text: str) -> SidePairs:
@@ -89,7 +97,7 @@ def parse_pairs(text: str) -> SidePairs:
     for part in filter(str.strip, text.split(",")):
         words = tuple(word.strip() for word in part.split("/"))
         if len(words) != 2:
-            raise LissomError(NO_PAIR.format(words=part.strip()))
+            raise LissomError(_(NO_PAIR).format(words=part.strip()))
         pairs.append((words[0], words[1]))
     require_pairs(tuple(pairs))
     return tuple(pairs)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.document.checks import NOTHING, Unknown, require
+from app.texts import N_
 from engine.arrays import Floats, freeze
 from engine.domain import MeshedDomain
 from engine.domain.material.transfer import copy_nearest_stiffness
@@ -25,7 +26,7 @@ class Bone:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(self.ends[0] != self.ends[1], "A bone leads from one handle to another one.")
+        require(self.ends[0] != self.ends[1], N_("A bone leads from one handle to another one."))
         require_stiffness_amount(self.stiffness)
 
     def is_between(self, ends: Sequence[int]) -> bool:
@@ -37,7 +38,9 @@ def require_stiffness_amount(amount: float) -> None:
     """Raise a `LissomError` unless the stiffness is in the allowed range."""
     require(
         SOFTEST * (1 - STIFFNESS_TOLERANCE) <= amount <= STIFFEST,
-        f"A stiffness is from 1/30 to {STIFFEST:g}, not {amount:g}; 1 is the usual one.",
+        N_("A stiffness is from 1/30 to {largest:g}, not {amount:g}; 1 is the usual one."),
+        largest=STIFFEST,
+        amount=amount,
     )
 
 

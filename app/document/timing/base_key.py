@@ -6,6 +6,7 @@ from typing import Self
 from app.document.checks import NOTHING, Unknown, require_frame
 from app.document.timing.easing import HOLD, LINEAR, Easing
 from app.document.timing.tangent_mode import TangentMode, require_tangent_mode
+from app.texts import _
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,7 +19,7 @@ class BaseKey:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, "A key")
+        require_frame(self.frame, _("A key"))
         require_tangent_mode(self.tangent_mode)
         object.__setattr__(self, "tangent_mode", TangentMode(self.tangent_mode))
 

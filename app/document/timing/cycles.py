@@ -9,6 +9,7 @@ from typing import Self
 from app.document.checks import NOTHING, Unknown, require, require_frame
 from app.document.timing.base_key import BaseKey
 from app.errors import LissomError
+from app.texts import N_, _
 
 MAX_CYCLES = 1_000  # per layer
 
@@ -24,16 +25,22 @@ class Cycle:
 
     def __post_init__(self) -> None:
         for frame in filter(None, (self.first, self.last, self.until)):
-            require_frame(frame, "An end of what repeats")
+            require_frame(frame, _("An end of a cycle"))
         require(
             self.first < self.last,
-            f"What repeats ends after the frame at which it begins, {self.first}, not at "
-            f"{self.last}.",
+            N_("A cycle ends after the frame {first}, at which it begins, not at {last}."),
+            first=self.first,
+            last=self.last,
         )
         require(
             self.until is None or self.until >= self.last,
-            f"Frames {self.first} to {self.last} cannot repeat until frame {self.until}, which is "
-            "before their end.",
+            N_(
+                "Frames {first} to {last} cannot repeat until frame {until}, which is before "
+                "their end."
+            ),
+            first=self.first,
+            last=self.last,
+            until=self.until,
         )
 
     @property
@@ -44,7 +51,7 @@ class Cycle:
     @property
     def description(self) -> str:
         """The range in words."""
-        return f"frames {self.first} to {self.last}"
+        return _("frames {first} to {last}").format(first=self.first, last=self.last)
 
     def contains(self, frame: float) -> bool:
         """Return whether a frame is in the cycle's own range, its last frame excluded."""
@@ -90,14 +97,20 @@ def require_no_overlap(cycles: Sequence[Cycle]) -> None:
     """Raise a `LissomError` unless each cycle's repeats end before the next cycle begins."""
     require(
         len(cycles) <= MAX_CYCLES,
-        f"A layer has at most {MAX_CYCLES:,} stretches that repeat, not {len(cycles):,}.",
+        N_("A layer has at most {most:,} cycles, not {count:,}."),
+        most=MAX_CYCLES,
+        count=len(cycles),
     )
     for before, after in pairwise(cycles):
         require(
             before.until is not None and before.until <= after.first,
-            f"The repeats of {before.description} and of {after.description} overlap; end the "
-            "former at frame "
-            f"{after.first} at the latest.",
+            N_(
+                "The repeats of {cycle} and of {next_cycle} overlap; end the "
+                "former at frame {first} at the latest."
+            ),
+            cycle=before.description,
+            next_cycle=after.description,
+            first=after.first,
         )
 
 
@@ -110,27 +123,36 @@ def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
     own, has_before, after = keys[begin:end], begin > 0, keys[end : end + 1]
     if after and (cycle.until is None or after[0] < cycle.until):
         raise LissomError(
-            f"The key at frame {after[0]} is where {cycle.description} repeat; pose it in "
-            f"{cycle.description}, "
-            "let the repeats end there, or make them into keys first."
+            _(
+                "The key at frame {after} is where {cycle} repeat; pose it in "
+                "{cycle}, let the repeats end there, or make them into keys first."
+            ).format(after=after[0], cycle=cycle.description)
         )
     require(
         bool(own) or not (has_before and after),
-        f"There is no key in {cycle.description} that could repeat; insert one there first.",
+        N_("There is no key in {cycle} that could repeat; insert one there first."),
+        cycle=cycle.description,
     )
     require(
         not (has_before and own) or own[0] == cycle.first,
-        f"Frame {cycle.first} needs a key, to which the keys before lead: it is where what repeats "
-        "begins.",
+        N_("The cycle starts at frame {first}. Set a key there."),
+        first=cycle.first,
     )
     until = cycle.until
     if until is None or len(own) < 2 or not after or after[0] == until:
         return
     if all((until - frame) % cycle.period for frame in own):
         raise LissomError(
-            f"At frame {until} the repeats of {cycle.description} are between two keys, from where "
-            f"nothing leads to the key at frame {after[0]}; let them end at frame "
-            f"{_nearest_end(cycle, own, after[0])} instead."
+            _(
+                "The repeats of {cycle} end at frame {until}, between two keys, so that no "
+                "motion leads to the key at frame {after}; let them end at frame {nearest_end} "
+                "instead."
+            ).format(
+                until=until,
+                cycle=cycle.description,
+                after=after[0],
+                nearest_end=_nearest_end(cycle, own, after[0]),
+            )
         )
 
 

@@ -7,6 +7,7 @@ from reprlib import repr as shortened
 from typing import Self
 
 from app.errors import LissomError
+from app.texts import _
 
 # Halvings of [0, 1] until neighbouring doubles meet.
 HALVINGS = 54
@@ -29,8 +30,10 @@ class Easing:
             return
         if not (len(self.curve) == 4 and all(0.0 <= value <= 1.0 for value in self.curve)):
             raise LissomError(
-                f"An easing curve is four numbers from 0 to 1, not {shortened(self.curve)}: "
-                "outside them the in-betweens could leave their bounds."
+                _(
+                    "An easing curve is four numbers from 0 to 1, not {curve}: outside them "
+                    "the in-betweens could leave their bounds."
+                ).format(curve=shortened(self.curve))
             )
         # After the check, because an integer may be too large for a float.
         object.__setattr__(self, "curve", tuple(float(value) for value in self.curve))
@@ -49,7 +52,7 @@ class Easing:
         # Bisection needs no slope (which may be 0 or infinite) and is exactly monotone in s despite
         # rounding of x.
         low, high = 0.0, 1.0
-        for _ in range(HALVINGS):
+        for _step in range(HALVINGS):
             middle = (low + high) / 2
             if _bezier(x1, x2, middle) < s:
                 low = middle
@@ -88,15 +91,19 @@ class Easing:
         if isinstance(value, str):
             if value not in PRESETS:
                 raise LissomError(
-                    f"There is no easing {shortened(value)}; take one of {', '.join(PRESETS)}, or "
-                    "four numbers from 0 to 1."
+                    _(
+                        "There is no easing {value}; take one of {presets}, or four numbers "
+                        "from 0 to 1."
+                    ).format(value=shortened(value), presets=", ".join(PRESETS))
                 )
             return PRESETS[value]
         if not isinstance(value, Sequence) or not all(
             isinstance(number, (int, float)) and not isinstance(number, bool) for number in value
         ):
             raise LissomError(
-                f"An easing is a name or four numbers from 0 to 1, not {shortened(value)}."
+                _("An easing is a name or four numbers from 0 to 1, not {value}.").format(
+                    value=shortened(value)
+                )
             )
         return cls(tuple(value))
 

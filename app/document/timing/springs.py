@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from app.document.checks import NOTHING, Unknown, require
+from app.texts import N_
 
 MAX_SPRING_FREQUENCY = 1000.0  # Hz
 MAX_DAMPING = 100.0  # 1 is critical damping
@@ -31,26 +32,37 @@ class Spring:
     def __post_init__(self) -> None:
         require(
             0 < self.frequency <= MAX_SPRING_FREQUENCY,
-            f"The frequency of a spring is above 0 and at most {MAX_SPRING_FREQUENCY:,.0f} Hz, not "
-            f"{self.frequency:g}.",
+            N_(
+                "The frequency of a spring is above 0 and at most {largest:,.0f} "
+                "Hz, not {frequency:g}."
+            ),
+            largest=MAX_SPRING_FREQUENCY,
+            frequency=self.frequency,
         )
         require(
             0 <= self.damping <= MAX_DAMPING,
-            f"The damping of a spring is from 0 to {MAX_DAMPING:g}, not {self.damping:g}.",
+            N_("The damping of a spring is from 0 to {largest:g}, not {damping:g}."),
+            largest=MAX_DAMPING,
+            damping=self.damping,
         )
         require(
             0 <= self.lag <= MAX_LAG,
-            f"The lag of a spring is from 0 to {MAX_LAG:,.0f} frames, not {self.lag:g}.",
+            N_("The lag of a spring is from 0 to {largest:,.0f} frames, not {lag:g}."),
+            largest=MAX_LAG,
+            lag=self.lag,
         )
         require(
             0 <= self.strength <= MAX_STRENGTH,
-            f"The strength of a spring is from 0 to {MAX_STRENGTH:g}, not {self.strength:g}.",
+            N_("The strength of a spring is from 0 to {largest:g}, not {strength:g}."),
+            largest=MAX_STRENGTH,
+            strength=self.strength,
         )
         require(
             0 <= self.stretch <= 1,
-            f"The stretch of a spring is between 0 and 1, not {self.stretch:g}.",
+            N_("The stretch of a spring is between 0 and 1, not {stretch:g}."),
+            stretch=self.stretch,
         )
-        require(self.root != self.handle, "A spring swings about another handle than its own.")
+        require(self.root != self.handle, N_("A spring swings about another handle than its own."))
 
 
 # Frequency and damping by name. "tail" and "ear" are measured on the samples, the others are chosen

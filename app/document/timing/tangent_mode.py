@@ -3,6 +3,7 @@
 from enum import StrEnum
 
 from app.document.checks import require
+from app.texts import N_
 
 
 class TangentMode(StrEnum):
@@ -22,6 +23,6 @@ def require_tangent_mode(passing: str) -> None:
     """Refuse unknown tangent modes, and HOLD, which is stored as an easing."""
     require(
         passing in (TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP),
-        "A key is passed through, in a corner or with a stop, not "
-        f"{str(passing)!r}; to hold is an easing.",
+        N_("The tangent of a key is through, corner or stop, not {tangent!r}; hold is an easing."),
+        tangent=str(passing),
     )

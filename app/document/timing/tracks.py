@@ -15,6 +15,7 @@ from app.document.checks import (
     require_point,
 )
 from app.document.timing.base_key import BaseKey
+from app.texts import N_, _
 
 MAX_TRACK_ROTATION = 20 * math.tau  # radians, either direction
 
@@ -35,16 +36,21 @@ class TrackKey(BaseKey):
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
-        require_point(self.place, "A track's key")
+        require_point(self.place, _("A track's key"))
         require(
             abs(self.turn) <= MAX_TRACK_ROTATION,
-            f"A track turns by at most {MAX_TRACK_ROTATION / math.tau:g} whole turns, not by "
-            f"{self.turn / math.tau:g}.",
+            N_("A track turns by at most {largest:g} whole turns, not by {turn:g}."),
+            largest=MAX_TRACK_ROTATION / math.tau,
+            turn=self.turn / math.tau,
         )
         require(
             self.velocity is None or abs(self.velocity) <= MAX_COORDINATE,
-            f"A track passes a key at no more than {MAX_COORDINATE:,.0f} pixels a frame, not at "
-            f"{self.velocity}.",
+            N_(
+                "The velocity of a track's key is at most {largest:,.0f} pixels a frame, "
+                "not {velocity}."
+            ),
+            largest=MAX_COORDINATE,
+            velocity=self.velocity,
         )
 
     def retimed(self, frame: int, pace: float) -> Self:
@@ -76,18 +82,27 @@ class Track:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(len(self.handles) > 0, "A track is of at least one handle.")
-        require_distinct(self.handles, "A track has the handle {!r} twice.")
-        require(len(self.keys) > 0, "A track has at least one key; remove the track instead.")
+        require(len(self.handles) > 0, N_("A track is of at least one handle."))
+        require_distinct(self.handles, N_("A track has the handle {value!r} twice."))
+        require(len(self.keys) > 0, N_("A track has at least one key; remove the track instead."))
         for before, after in pairwise(key.frame for key in self.keys):
-            require(after != before, f"A track has two keys at frame {before}.")
-            require(after > before, f"A track's keys at frames {before} and {after} are mixed up.")
+            require(after != before, N_("A track has two keys at frame {before}."), before=before)
+            require(
+                after > before,
+                N_("A track's keys at frames {before} and {after} are mixed up."),
+                before=before,
+                after=after,
+            )
         require(
             0 <= self.delay <= LAST_FRAME,
-            f"The delay of a track is from 0 to {LAST_FRAME:,} frames, not {self.delay:,}.",
+            N_("The delay of a track is from 0 to {largest:,} frames, not {delay:,}."),
+            largest=LAST_FRAME,
+            delay=self.delay,
         )
         require(
-            0 <= self.reach <= 1, f"The reach of a track is between 0 and 1, not {self.reach:g}."
+            0 <= self.reach <= 1,
+            N_("The reach of a track is between 0 and 1, not {reach:g}."),
+            reach=self.reach,
         )
 
     @property

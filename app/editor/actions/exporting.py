@@ -34,7 +34,7 @@ from app.export import (
     with_suffix_for,
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT
-from app.motion import Animation, BoundingBox, PoseSampler, extent_key, hung_animations
+from app.motion import Animation, BoundingBox, PoseSampler, extent_key, placed_animations
 from app.storage import Cancellation, make_settings_folder, temporary_picture
 
 UNDER_WAY = "An export is under way. The next one can begin when it is done."
@@ -224,7 +224,7 @@ def _prepare(
         alone = [
             _animation(clip_of(exported, layer.id), samplers[layer.id]) for layer in exported.layers
         ]
-        hung = hung_animations(alone, exported)
+        hung = placed_animations(alone, exported)
         poses = {
             layer: CachedVertices(animation, cancellation) for layer, animation in hung.items()
         }

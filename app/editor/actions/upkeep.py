@@ -34,9 +34,9 @@ from app.motion import (
     SeriesBuild,
     extent_key,
     find_parent_motion,
-    hang_shown,
     measure_extent,
     parenting_key,
+    place_displayed_frames,
     reuse_corrections,
     show,
     trace_paths,
@@ -506,12 +506,12 @@ def _show(session: Session, project: Project) -> None:
             # An unkeyed pose is the same in both methods.
             twins[layer] = show(other, frame, pose, [puppet.store], earlier)
     known = project.parent_transforms.value
-    for layer, hung in hang_shown(
+    for layer, hung in place_displayed_frames(
         document, shown, project.current_parent_transforms, poses, known
     ).items():
         project.layer_runtimes[layer].shown = hung
     # This uses the meshes alone, since the exact joints belong to the layers' own methods.
-    for layer, hung in hang_shown(document, twins, None, {}, known).items():
+    for layer, hung in place_displayed_frames(document, twins, None, {}, known).items():
         if (twin := project.layer_runtimes[layer].comparison) is not None:
             twin.shown = hung
 

@@ -77,7 +77,7 @@ def _packed(shape: MorphMesh) -> dict[str, Any]:
         "times": len(motion.times),
         "triangles": len(shape.triangle_orders[0][1]),
         "orders": [seconds for seconds, _ in shape.triangle_orders],
-        "sights": shape.visibility_changes,
+        "visibility": shape.visibility_changes,
     }
 
 

@@ -16,6 +16,7 @@ from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter, frame_duration
 from app.export.writers.png import save_png
 from app.storage import strict_json
+from app.texts import _
 from engine.arrays import Bytes
 
 LARGEST: Final = 16_384  # pixels each way: limit of graphics cards; at most a gigabyte
@@ -102,8 +103,10 @@ def sheet_grid(plan: ExportPlan) -> tuple[int, int]:
 def _too_large(plan: ExportPlan) -> LissomError:
     width, height = plan.view.size
     return LissomError(
-        f"{len(plan.times)} frames of {width} × {height} pixels do not fit on a sheet of "
-        f"{LARGEST:,} × {LARGEST:,}; choose fewer frames or a smaller size"
+        _(
+            "{count} frames of {width} × {height} pixels do not fit on a sheet of {largest:,} "
+            "× {largest:,}; choose fewer frames or a smaller size"
+        ).format(count=len(plan.times), width=width, height=height, largest=LARGEST)
     )
 
 

@@ -14,6 +14,7 @@ from app.export.alpha_bleed import bleed_edges
 from app.export.plan import ExportPlan
 from app.export.writers.frame_writer import FrameWriter
 from app.export_formats import EXPORT_FORMATS
+from app.texts import _
 from engine.arrays import Bytes
 
 _BT709: Final = 1  # FFmpeg's number of the colour space, primaries and transfer curve
@@ -122,7 +123,9 @@ class VideoWriter(FrameWriter):
             self._container.start_encoding()
         except (av.FFmpegError, ValueError) as error:
             raise LissomError(
-                f"cannot write {self._size[0]} × {self._size[1]} pixels as {plan.format}: {error}"
+                _("cannot write {width} × {height} pixels as {format}: {error}").format(
+                    width=self._size[0], height=self._size[1], format=plan.format, error=error
+                )
             ) from error
 
     def encode(self, frame: Bytes) -> Bytes:

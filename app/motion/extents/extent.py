@@ -18,6 +18,7 @@ from app.motion.corrected_frames import CorrectedFrames
 from app.motion.extents.long_extent import farthest_reach
 from app.motion.inbetween_cache import InbetweenCache
 from app.motion.parenting.parent_transforms import ParentTransforms
+from app.texts import _
 from engine.arrays import Complexes, Floats
 
 
@@ -105,7 +106,11 @@ def motion_bounding_box(
         lower, upper = np.array(boxes).T
         found = np.column_stack([-lower.real, -lower.imag, upper.real, upper.imag])
         if not np.isfinite(found).all():
-            raise LissomError(f"frame {frame} cannot be drawn: its points are not all finite")
+            raise LissomError(
+                _("frame {frame} cannot be drawn: its points are not all finite").format(
+                    frame=frame
+                )
+            )
         return found
 
     try:

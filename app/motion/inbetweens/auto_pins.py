@@ -58,8 +58,8 @@ class AutoPins:
 
     def frame(self, number: int, sampler: PoseSampler, time: float) -> Frame:
         """Return a single in-between, for a variant that makes single frames."""
-        transit, bounds = pose_segments(self.clip)[number], self.clip.layer.bounds
-        return sampler.frame_of(transit, bounds, self._variant, time, self.series(number))
+        segment, bounds = pose_segments(self.clip)[number], self.clip.layer.bounds
+        return sampler.frame_of(segment, bounds, self._variant, time, self.series(number))
 
     def series(self, number: int) -> CorrectionSeries | None:
         """Return the corrections of a segment; None without pins."""
@@ -117,9 +117,9 @@ class AutoPins:
 
     def _pace(self, number: int, side: int) -> float:
         """Return the speed of a segment's in-between time at one end, per frame."""
-        span, transit = clip_segments(self.clip)[number], pose_segments(self.clip)[number]
+        span, segment = clip_segments(self.clip)[number], pose_segments(self.clip)[number]
         easing = self.clip.keys[span.first].easing.end_speeds
-        pace = transit.end_speeds[side] * easing[side] / span.frames
+        pace = segment.end_speeds[side] * easing[side] / span.frames
         return pace if np.isfinite(pace) else 0.0
 
     def _velocity(self, number: int, side: int) -> Complexes:

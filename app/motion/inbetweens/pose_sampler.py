@@ -265,9 +265,9 @@ class PoseSampler:
                 self._basis = SpanBasis.of(sites.boundary.span, sites.paths.nodes)
             return self._basis
 
-    def inbetweens_of(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
+    def inbetweens_of(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> Inbetweens:
         """Return the in-betweens of a segment; motion through smooth keys keeps the limits."""
-        return self._prepared(self._engine_interval(transit, bounds, variant), variant)
+        return self._prepared(self._engine_interval(segment, bounds, variant), variant)
 
     def makes_single_frames(self, variant: Variant) -> bool:
         """Return whether a single in-between takes less time than the whole segment."""
@@ -275,17 +275,17 @@ class PoseSampler:
 
     def frame_of(
         self,
-        transit: PoseSegment,
+        segment: PoseSegment,
         bounds: Bounds,
         variant: Variant,
         weight: float,
         pins: CorrectionSeries | None = None,
     ) -> Frame:
         """Return the in-between at the time `weight`, with pins; needs `makes_single_frames`."""
-        return frame_at(weight, variant, self._engine_interval(transit, bounds, variant), pins)
+        return frame_at(weight, variant, self._engine_interval(segment, bounds, variant), pins)
 
     def velocity_shares(
-        self, transit: PoseSegment, bounds: Bounds, variant: Variant
+        self, segment: PoseSegment, bounds: Bounds, variant: Variant
     ) -> tuple[float, float]:
         """Return the share of its velocity that the limits allow at both keys.
 
@@ -293,16 +293,16 @@ class PoseSampler:
         """
         start, end = (
             end.velocity_share if isinstance(end, Tangent) else 1.0
-            for end in self._ends(transit, bounds, variant)
+            for end in self._ends(segment, bounds, variant)
         )
         return start, end
 
-    def _ends(self, transit: PoseSegment, bounds: Bounds, variant: Variant) -> list[EndCondition]:
+    def _ends(self, segment: PoseSegment, bounds: Bounds, variant: Variant) -> list[EndCondition]:
         return [
-            self._tangent([transit.keys[index].pose for index in window], end, bounds, variant)
+            self._tangent([segment.keys[index].pose for index in window], end, bounds, variant)
             if isinstance(end, InteriorKnot)
             else end
-            for end, window in zip((transit.start, transit.end), transit.windows, strict=True)
+            for end, window in zip((segment.start, segment.end), segment.windows, strict=True)
         ]
 
     def _tangent(
@@ -319,34 +319,36 @@ class PoseSampler:
         return found
 
     def _engine_interval(
-        self, transit: PoseSegment, bounds: Bounds, variant: Variant
+        self, segment: PoseSegment, bounds: Bounds, variant: Variant
     ) -> KeyframeSegment:
-        samples = [self.samples(key.pose) for key in transit.keys]
+        samples = [self.samples(key.pose) for key in segment.keys]
         anchors = np.array([sample.anchor_fz for sample in samples])
-        if not transit.has_smooth_tangent:
-            passage = KeyframeBlend.of(samples, root_sheets(anchors, transit.revolutions))
-            return self._interval(passage, variant, Bounds())
-        course = TimeWeights.between(*self._ends(transit, bounds, variant), apart=transit.apart)
-        count = len(samples) - sum(transit.apart)
-        sheets = [*root_sheets(anchors[:count], transit.revolutions[: count - 1])]
+        if not segment.has_smooth_tangent:
+            keyframe_blend = KeyframeBlend.of(samples, root_sheets(anchors, segment.revolutions))
+            return self._interval(keyframe_blend, variant, Bounds())
+        time_weights = TimeWeights.between(
+            *self._ends(segment, bounds, variant), apart=segment.apart
+        )
+        count = len(samples) - sum(segment.apart)
+        sheets = [*root_sheets(anchors[:count], segment.revolutions[: count - 1])]
         # The outer keys of other cycles are reached from the middle keys of their windows.
         others = iter(
-            zip(range(count, len(samples)), transit.revolutions[count - 1 :], strict=True)
+            zip(range(count, len(samples)), segment.revolutions[count - 1 :], strict=True)
         )
-        for side, (_, middle, _) in enumerate(transit.windows):
-            if transit.apart[side]:
+        for side, (_, middle, _) in enumerate(segment.windows):
+            if segment.apart[side]:
                 other, turns = next(others)
                 pair = [middle, other] if side == 0 else [other, middle]
                 change = int(root_sheets(anchors[pair], (turns,))[1])
                 sheets.append(sheets[middle] + (change if side == 0 else -change))
-        passage = KeyframeBlend.of(samples, freeze(np.array(sheets, np.int32)), course)
-        return self._interval(passage, variant, bounds)
+        keyframe_blend = KeyframeBlend.of(samples, freeze(np.array(sheets, np.int32)), time_weights)
+        return self._interval(keyframe_blend, variant, bounds)
 
     def _prepared(self, interval: KeyframeSegment, variant: Variant) -> Inbetweens:
         """Prepare in-betweens; all samplers of the domain share the solution on the boundary."""
         if not variant.needs_transform:
             return prepare_inbetweens(variant, interval)
-        course, maps = (
+        time_weights, maps = (
             interval.keyframe_blend.time_weights,
             [key.map for key in interval.keyframe_blend.keyframes],
         )
@@ -355,17 +357,17 @@ class PoseSampler:
             *self.domain.cages,
             *(each for f in maps for each in (f.phi, f.psi, f.logs)),
         )
-        key = "residual", content, course.ends, course.one_sided, interval.bounds
+        key = "residual", content, time_weights.ends, time_weights.one_sided, interval.bounds
         solve = partial(BLENDS[variant].on_boundary, interval)
         residual = _SAMPLED.find(key, solve, _nbytes)
         return prepare_inbetweens(variant, interval._replace(residual=residual))
 
     def _interval(
-        self, passage: KeyframeBlend, variant: Variant, bounds: Bounds
+        self, keyframe_blend: KeyframeBlend, variant: Variant, bounds: Bounds
     ) -> KeyframeSegment:
         return KeyframeSegment(
             sampled_domain=self.sites,
-            keyframe_blend=passage,
+            keyframe_blend=keyframe_blend,
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )

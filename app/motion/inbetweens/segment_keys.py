@@ -9,19 +9,19 @@ SegmentKey = tuple[object, ...]
 
 def segment_key(clip: Clip, interval: int, variant: Variant | None = None) -> SegmentKey:
     """Return the cache key of a segment's in-betweens."""
-    transit, layer = pose_segments(clip)[interval], clip.layer
+    segment, layer = pose_segments(clip)[interval], clip.layer
     # As numbers, which hash much faster than the dataclass.
     bounds = (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b)
-    maps = [identity for key in transit.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
+    maps = [identity for key in segment.keys for identity in (id(key.pose.phi), id(key.pose.psi))]
     joined = (
-        (transit.start, transit.end, transit.apart, bounds) if transit.has_smooth_tangent else ()
+        (segment.start, segment.end, segment.apart, bounds) if segment.has_smooth_tangent else ()
     )
     if clip.baseline is None:
         pinned = pinned_segments(clip)[interval]
         pins = () if pinned is None else (pinned.content,)
-        return *maps, *transit.revolutions, *joined, layer.anchor, variant or layer.variant, *pins
+        return *maps, *segment.revolutions, *joined, layer.anchor, variant or layer.variant, *pins
     rest = (bounds, tuple(handle.position for handle in layer.handles), clip.frames)
-    return *maps, *transit.revolutions, *joined, layer.anchor, clip.baseline, *rest
+    return *maps, *segment.revolutions, *joined, layer.anchor, clip.baseline, *rest
 
 
 def segment_poses(clip: Clip, interval: int) -> tuple[Pose, ...]:

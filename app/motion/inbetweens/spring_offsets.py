@@ -69,8 +69,8 @@ class SpringOffsets:
         tracks. `at` returns these positions at any frame.
         """
         piece, time = self._piece(spring, frame, at)
-        hung = self._carried(frame) if self._carried else IDENTITY_MOTION
-        free = complex(piece.free.at(time)) * hung.factor.conjugate()
+        parent_motion = self._carried(frame) if self._carried else IDENTITY_MOTION
+        free = complex(piece.free.at(time)) * parent_motion.factor.conjugate()
         if piece.about is None:
             return free
         arm = places[self._index[spring.handle]] - places[self.roots[spring.handle]]

@@ -6,6 +6,7 @@ from app.document import Attachment, Layer
 from app.errors import LissomError
 from app.motion.parenting.chain import PivotFrame, pivot_frame_at
 from app.motion.parenting.parent_transforms import ParentTransforms
+from app.texts import _
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import contains, deepest_point, diameter
@@ -70,7 +71,7 @@ def reparent_in_place(
     place = here.apply(
         np.array([_pivot_frame(joints, own, anchor_or_default(own), frame).position])
     )[0]
-    at, _ = _point_near(joints, other, there.apply_inverse(complex(place)), frame)
+    at, *_rest = _point_near(joints, other, there.apply_inverse(complex(place)), frame)
     return Attachment(
         parent=parent,
         parent_point=at,
@@ -141,7 +142,7 @@ def _source(joints: ParentTransforms, layer: Layer, place: complex, frame: float
     moved = _moved(joints, layer, middles, frame)
     source = complex(middles[np.argmin(np.abs(moved.positions - place))])
     size = diameter(layer.domain.outline)
-    for _ in range(MAX_STEPS):
+    for _step in range(MAX_STEPS):
         try:
             at = _moved(joints, layer, np.array([source]), frame)
         except EngineError:
@@ -153,6 +154,7 @@ def _source(joints: ParentTransforms, layer: Layer, place: complex, frame: float
         area = abs(fz) ** 2 - abs(fzbar) ** 2
         source += (fz.conjugate() * away - fzbar * away.conjugate()) / area
     raise LissomError(
-        f"There is nothing of {layer.name!r} at ({place.real:.0f}, {place.imag:.0f}); put its "
-        "anchor on it."
+        _("There is nothing of {layer!r} at ({x:.0f}, {y:.0f}); put its anchor on it.").format(
+            layer=layer.name, x=place.real, y=place.imag
+        )
     )

@@ -62,7 +62,7 @@ def compose_chain(
         placement = placement.compose(kept(last, released))
     for (child, joint, _), (parent, _, _) in zip(chain[-2::-1], chain[:0:-1], strict=True):
         if joint is None:
-            raise ValueError("only the last carrier hangs on nothing")
+            raise ValueError("only the last ancestor has no parent")
         at, own = hinge(parent, joint.parent_point), hinge(child, require_anchor(child))
         held = kept(child, joint) if joint.keep_world_transform else _attachment_transform(joint)
         turn = placement.factor * at.rotation if joint.inherits_rotation else 1.0

@@ -244,7 +244,7 @@ def layer_animation(
     return Animation(clip_of(document, identity), sampler=sampler, carried=carried)
 
 
-class HungAnimation:
+class PlacedAnimation:
     """The motion of a layer with its placement in the scene."""
 
     def __init__(self, animation: Animation, joints: ParentTransforms) -> None:
@@ -269,13 +269,13 @@ def parenting_key(document: Document) -> tuple[object, ...]:
     return tuple(clip_of(document, each.id) for each in dict.fromkeys(involved))
 
 
-def hung_animations(
+def placed_animations(
     animations: Iterable[Animation], document: Document
-) -> dict[int, HungAnimation]:
+) -> dict[int, PlacedAnimation]:
     """Return the layers' animations in the scene, by layer id."""
     own = {animation.clip.layer.id: animation for animation in animations}
     joints = ParentTransforms(document, {identity: each.sampler for identity, each in own.items()})
-    return {identity: HungAnimation(each, joints) for identity, each in own.items()}
+    return {identity: PlacedAnimation(each, joints) for identity, each in own.items()}
 
 
 def _points(document: Document) -> dict[int, list[complex]]:

@@ -53,25 +53,31 @@ def load_joints(path: Path) -> JointsFile:
 
 
 def _parsed(content: object) -> JointsFile:
-    told = as_object(content, "the file of joints")
-    for name in told:
+    read = as_object(content, _("the file of joints"))
+    for name in read:
         if name not in FIELDS:
             raise LissomError(
-                f"the file of joints has an unknown field {name!r}; it may have {', '.join(FIELDS)}"
+                _("the file of joints has an unknown field {name!r}; it may have {fields}").format(
+                    name=name, fields=", ".join(FIELDS)
+                )
             )
-    schema = told["schema"]
+    schema = read["schema"]
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(f"schema must be {SCHEMA}, not {repr_for_error(schema)}")
-    kind = None if told.get("kind") is None else as_text(told["kind"], "kind")
+        raise LissomError(
+            _("schema must be {own}, not {content}").format(
+                own=SCHEMA, content=repr_for_error(schema)
+            )
+        )
+    kind = None if read.get("kind") is None else as_text(read["kind"], "kind")
     if kind is not None:
         find_kind(kind)
     joints = {
         name: as_point(place, f"joints.{name}")
-        for name, place in as_object(told.get("joints", {}), "joints").items()
+        for name, place in as_object(read.get("joints", {}), "joints").items()
     }
     feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
     if feet and "head" in joints and min(feet) > joints["head"].imag:
         raise LissomError(
-            "the feet are above the head; places are pixels from the lower left corner, y up"
+            _("the feet are above the head; places are pixels from the lower left corner, y up")
         )
     return JointsFile(kind=kind, joints=joints)

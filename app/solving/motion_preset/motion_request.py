@@ -18,6 +18,7 @@ from app.document import (
 from app.errors import LissomError
 from app.rigging import Body, Motion, Parameters, find_kind, find_motion, guess_facing
 from app.solving.motion_preset.rigid_points import find_rigid_points
+from app.texts import _
 from engine.arrays import Complexes
 from engine.errors import EngineError
 from engine.geometry import diameter
@@ -97,7 +98,9 @@ def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, comple
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
             raise LissomError(
-                f"the joint {name!r} at ({place.real:g}, {place.imag:g}) is not on the drawing"
+                _("the joint {name!r} at ({x:g}, {y:g}) is not on the drawing").format(
+                    name=name, x=place.real, y=place.imag
+                )
             )
     nearest = layer.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))

@@ -27,6 +27,7 @@ from app.solving.motion_preset.motion_request import (
     with_limits,
 )
 from app.solving.motion_preset.splicing import count_blend_frames, splice_motion
+from app.texts import _
 
 # Largest number of steps; a pose that needs more moves slowly along a limit.
 MOST_STEPS = 150
@@ -74,8 +75,10 @@ class MotionSolve:
     def status_text(self) -> str:
         """Description of the next step."""
         if self.is_solved:
-            return "Looking for a size that is within reach"
-        return f"Solving pose {len(self.poses) + 1} of {len(self.key_poses)}"
+            return _("Looking for a reachable size")
+        return _("Solving pose {number} of {count}").format(
+            number=len(self.poses) + 1, count=len(self.key_poses)
+        )
 
     @property
     def reachable_size(self) -> float | None:
@@ -88,14 +91,23 @@ class MotionSolve:
         if not self.target_errors:
             return ()
         worst = sorted(self.target_errors.items(), key=lambda each: -each[1][0])
-        told = ", ".join(
-            f"{name!r} by {lag:.1f} px (frame {frame})" for name, (lag, frame) in worst[:MOST_NAMED]
+        one = _("{joint!r} by {error:.1f} px (frame {frame})")
+        joints = ", ".join(
+            one.format(joint=name, error=error, frame=frame)
+            for name, (error, frame) in worst[:MOST_NAMED]
         )
         if worst[MOST_NAMED:]:
-            told += f" and {len(worst) - MOST_NAMED} more"
+            more = len(worst) - MOST_NAMED
+            joints = _("{names} and {count:,} more").format(names=joints, count=more)
         size = self.reachable_size
-        instead = "" if size is None else f"; at size {size:.2f} all is within reach"
-        return (f"Some joints fall short of the motion: {told}{instead}",)
+        if size is None:
+            return (_("Some joints fall short of the motion: {joints}").format(joints=joints),)
+        return (
+            _(
+                "Some joints fall short of the motion: {joints}; at size {size:.2f} all are "
+                "within reach"
+            ).format(joints=joints, size=size),
+        )
 
     @property
     def posed_layer(self) -> Layer:
@@ -135,7 +147,11 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
     """
     before = document.layer(identity)
     if before.still:
-        raise LissomError(f"{before.name!r} stands still: there is no shape on it to be moved.")
+        raise LissomError(
+            _("{layer!r} stands still: there is no shape on it to be moved.").format(
+                layer=before.name
+            )
+        )
     body = find_rest_body(before, order)
     document, joints = with_handles_at_joints(document, identity, body, order)
     document = with_limits(document, identity, order.limits)

@@ -7,10 +7,11 @@ from typing import Any, TypeVar
 from app.document import HOLD, LAST_FRAME, LINEAR, Easing, TangentMode
 from app.errors import LissomError, join_names
 from app.storage import JsonObject, as_object, repr_for_error
+from app.texts import N_, _
 
 Made = TypeVar("Made")
-NOT_A_FRAME = "{where}.{name} must be a whole number from 0 to {last}, not {content}"
-OUT_OF_ORDER = "{what} out of order: frame {after} after {before}"
+NOT_A_FRAME = N_("{where}.{name} must be a whole number from 0 to {last}, not {content}")
+OUT_OF_ORDER = N_("{where} is out of order: frame {after} after {before}")
 
 
 def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:
@@ -19,7 +20,9 @@ def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObj
     for name in read:
         if name not in fields:
             raise LissomError(
-                f"{where} has an unknown field {name!r}; it may have {', '.join(fields)}"
+                _("{where} has an unknown field {name!r}; it may have {fields}").format(
+                    where=where, name=name, fields=", ".join(fields)
+                )
             )
     return read
 
@@ -28,7 +31,7 @@ def read_frame(key: Mapping[str, object], where: str, name: str = "frame") -> in
     frame = key.get(name)
     if not isinstance(frame, int) or isinstance(frame, bool) or not 0 <= frame <= LAST_FRAME:
         raise LissomError(
-            NOT_A_FRAME.format(
+            _(NOT_A_FRAME).format(
                 where=where, name=name, last=LAST_FRAME, content=repr_for_error(frame)
             )
         )
@@ -45,28 +48,35 @@ def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, Tangen
     word = key.get("passing", default)
     if word not in list(TangentMode):
         raise LissomError(
-            f"{where}.passing must be one of {', '.join(TangentMode)}, not {repr_for_error(word)}"
+            _("{where}.passing must be one of {modes}, not {content}").format(
+                where=where, modes=", ".join(TangentMode), content=repr_for_error(word)
+            )
         )
     if word != TangentMode.HOLD:
         return ease, TangentMode(word)
     if "ease" in key and ease != HOLD:
-        raise LissomError(f"{where} holds its pose, so that it has nothing to ease; leave out ease")
+        raise LissomError(
+            _("{where} holds its pose, so that it has nothing to ease; leave out ease").format(
+                where=where
+            )
+        )
     return HOLD, default
 
 
-def check_frame_order(frames: Sequence[int], what: str) -> None:
+def check_frame_order(frames: Sequence[int], where: str) -> None:
     """Refuse frames that are not in ascending order."""
     for before, after in pairwise(frames):
         if after <= before:
-            raise LissomError(OUT_OF_ORDER.format(what=what, after=after, before=before))
+            raise LissomError(_(OUT_OF_ORDER).format(where=where, after=after, before=before))
 
 
 def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
     """Refuse a handle name that is not in the script."""
     if name not in handles:
         raise LissomError(
-            f"{where} names the handle {name!r}, but the handles are "
-            f"{join_names([*handles]) or 'none'}"
+            _(
+                "{where} names the handle {name!r}, which is not among the handles: {handles}"
+            ).format(where=where, name=name, handles=join_names([*handles]))
         )
 
 

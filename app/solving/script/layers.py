@@ -29,6 +29,7 @@ from app.storage import (
     as_whole,
     repr_for_error,
 )
+from app.texts import N_, _
 
 SWITCH_GROUP_FIELDS = ("name", "layers", "keys")
 ATTACHMENT_FIELDS = ("to", "at", "turn", "frame", "keep")
@@ -39,8 +40,8 @@ TRANSFORM_FIELDS = (*TANGENT_FIELDS, "shift", "turn")
 SIDES = {"in_front_of": True, "behind": False}
 
 Key = TypeVar("Key", CameraKey, TransformKey)
-ZOOM_NOT_POSITIVE = "{where}.zoom must be above 0, not {zoom:g}"
-NO_KEYS = "{where}.keys must be a list of at least one key"
+ZOOM_NOT_POSITIVE = N_("{where}.zoom must be above 0, not {zoom:g}")
+NO_KEYS = N_("{where}.keys must be a list of at least one key")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,7 +69,7 @@ def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ..
     if not isinstance(content, list):
         return (_joint(content, where),)
     joints = tuple(_joint(each, f"{where}[{index}]") for index, each in enumerate(content))
-    check_frame_order([joint.frame for joint in joints], f"{where} is")
+    check_frame_order([joint.frame for joint in joints], where)
     return joints
 
 
@@ -78,7 +79,11 @@ def _joint(content: object, where: str) -> ScriptAttachment:
     if joint["to"] is None:
         for name in ("at", "turn"):
             if name in joint:
-                raise LissomError(f"{where} lets go, so that it has no {name}; leave that out")
+                raise LissomError(
+                    _(
+                        "{where} detaches the layer, so that it has no {name}; leave that out"
+                    ).format(where=where, name=name)
+                )
     to = None if joint["to"] is None else as_text(joint["to"], f"{where}.to")
     at = None if to is None or (keeps and "at" not in joint) else joint["at"]
     return ScriptAttachment(
@@ -93,9 +98,9 @@ def _joint(content: object, where: str) -> ScriptAttachment:
 def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...]:
     switches = [
         (frame, as_flag(visible, at))
-        for at, frame, visible in _from_frames(content, where, "true or false")
+        for at, frame, visible in _from_frames(content, where, _("true or false"))
     ]
-    check_frame_order([frame for frame, _ in switches], f"{where} is")
+    check_frame_order([frame for frame, _visible in switches], where)
     return tuple(switches)
 
 
@@ -107,15 +112,19 @@ def parse_switch_groups(
     choices = [_choice(entry, f"choices[{index}]") for index, entry in enumerate(entries)]
     for name, count in Counter(choice.name for choice in choices).items():
         if count > 1:
-            raise LissomError(f"two choices are called {name!r}")
+            raise LissomError(_("two switches are called {name!r}").format(name=name))
     layers = Counter(layer for choice in choices for layer in choice.layers)
     for layer, count in layers.items():
         if count > 1:
-            raise LissomError(f"the layer {layer!r} is in two choices; leave it out of one")
+            raise LissomError(
+                _("the layer {layer!r} is in two switches; leave it out of one").format(layer=layer)
+            )
         if layer in switched:
             raise LissomError(
-                f"the layer {layer!r} is in a choice, which alone decides when it is seen; leave "
-                "out its visible"
+                _(
+                    "the layer {layer!r} is in a switch, which alone decides its visibility; leave "
+                    "out its visible"
+                ).format(layer=layer)
             )
     return tuple(choices)
 
@@ -126,20 +135,26 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
         as_text(layer, f"{where}.layers") for layer in as_list(fields["layers"], f"{where}.layers")
     )
     if len(layers) < 2:
-        raise LissomError(f"{where}.layers must be two layers or more")
+        raise LissomError(_("{where}.layers must be two layers or more").format(where=where))
     for layer, count in Counter(layers).items():
         if count > 1:
-            raise LissomError(f"{where}.layers has {layer!r} twice")
+            raise LissomError(
+                _("{where}.layers has {layer!r} twice").format(where=where, layer=layer)
+            )
     turns = []
-    for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", "a layer"):
+    for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", _("a layer")):
         turn = frame, as_text(layer, at)
         if turn[1] not in layers:
-            raise LissomError(f"{at} shows {turn[1]!r}, which is not among its layers")
+            raise LissomError(
+                _("{where} shows {layer!r}, which is not among its layers").format(
+                    where=at, layer=turn[1]
+                )
+            )
         turns.append(turn)
-    check_frame_order([frame for frame, _ in turns], f"{where}.keys are")
+    check_frame_order([frame for frame, _layer in turns], f"{where}.keys")
     name = as_text(fields["name"], f"{where}.name").strip()
     if not name:
-        raise LissomError(f"{where}.name is empty, and a choice needs a name")
+        raise LissomError(_("{where}.name is empty, and a switch needs a name").format(where=where))
     return ScriptSwitchGroup(name=name, layers=layers, turns=tuple(turns))
 
 
@@ -156,7 +171,7 @@ def parse_camera(content: object) -> tuple[CameraKey, ...]:
     def key(read: JsonObject, where: str, **way: Any) -> CameraKey:
         zoom = as_number(read.get("zoom", 1.0), f"{where}.zoom")
         if not zoom > 0:
-            raise LissomError(ZOOM_NOT_POSITIVE.format(where=where, zoom=zoom))
+            raise LissomError(_(ZOOM_NOT_POSITIVE).format(where=where, zoom=zoom))
         return build_value(
             CameraKey,
             where,
@@ -188,14 +203,14 @@ def _parse_keys(
 ) -> tuple[Key, ...]:
     entries = as_list(read_fields(content, where, ("keys",))["keys"], f"{where}.keys")
     if not entries:
-        raise LissomError(NO_KEYS.format(where=where))
+        raise LissomError(_(NO_KEYS).format(where=where))
     keys = []
     for index, entry in enumerate(entries):
         at = f"{where}.keys[{index}]"
         read = read_fields(entry, at, fields)
         easing, passing = read_easing_and_tangent(read, at)
         keys.append(make(read, at, frame=read_frame(read, at), easing=easing, tangent_mode=passing))
-    check_frame_order([key.frame for key in keys], f"{where}.keys are")
+    check_frame_order([key.frame for key in keys], f"{where}.keys")
     return tuple(keys)
 
 
@@ -204,37 +219,45 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
     if not isinstance(content, list):
         return build_value(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
     if not content:
-        raise LissomError(f"{where} must be a number, or a list of at least one key")
+        raise LissomError(
+            _("{where} must be a number, or a list of at least one key").format(where=where)
+        )
     keys = tuple(
         build_value(OpacityKey, at, frame=frame, opacity=as_number(opacity, at))
-        for at, frame, opacity in _from_frames(content, where, "a number")
+        for at, frame, opacity in _from_frames(content, where, _("a number"))
     )
-    check_frame_order([key.frame for key in keys], f"{where} is")
+    check_frame_order([key.frame for key in keys], where)
     return keys
 
 
 def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
-    placings = []
-    for at, frame, place in _from_frames(content, where, "where the layer lies, or null"):
+    keys = []
+    for at, frame, place in _from_frames(content, where, _("where the layer lies, or null")):
         if place is None:
-            placings.append(ScriptDrawOrder(frame=frame, beside=None))
+            keys.append(ScriptDrawOrder(frame=frame, beside=None))
             continue
         read = as_object(place, at)
         (side, *others) = read or {"": ""}
         if others or side not in SIDES:
             raise LissomError(
-                f"{at} must have in_front_of or behind, with a layer, not {repr_for_error(place)}"
+                _("{where} must have in_front_of or behind, with a layer, not {content}").format(
+                    where=at, content=repr_for_error(place)
+                )
             )
         beside = as_text(read[side], f"{at}.{side}")
-        placings.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
-    check_frame_order([placing.frame for placing in placings], f"{where} is")
-    return tuple(placings)
+        keys.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
+    check_frame_order([key.frame for key in keys], where)
+    return tuple(keys)
 
 
 def parse_canvas(content: object) -> tuple[int, int]:
     sides = as_list(content, "canvas")
     if len(sides) != 2:
-        raise LissomError(f"canvas must be width and height, not {repr_for_error(content)}")
+        raise LissomError(
+            _("canvas must be width and height, not {content}").format(
+                content=repr_for_error(content)
+            )
+        )
     width, height = (as_whole(side, "canvas") for side in sides)
     return width, height
 
@@ -246,6 +269,10 @@ def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int,
         at = f"{where}[{index}]"
         pair = as_list(entry, at)
         if len(pair) != 2:
-            raise LissomError(f"{at} must be a frame and {what}, not {repr_for_error(pair)}")
+            raise LissomError(
+                _("{where} must be a frame and {what}, not {content}").format(
+                    where=at, what=what, content=repr_for_error(pair)
+                )
+            )
         found.append((at, read_frame({"frame": pair[0]}, at), pair[1]))
     return found

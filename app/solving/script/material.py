@@ -7,6 +7,7 @@ from app.document import Bone
 from app.errors import LissomError
 from app.solving.script.fields import check_handle_name, read_fields
 from app.storage import as_list, as_number, as_object, as_point, as_text
+from app.texts import _
 from engine.maps import SOFTEST, STIFFEST
 
 REGION_FIELDS = ("around", "radius", "amount")
@@ -41,7 +42,9 @@ def _part(content: object, where: str) -> StiffRegion:
     part = read_fields(content, where, REGION_FIELDS)
     radius = as_number(part["radius"], f"{where}.radius")
     if not radius > 0:
-        raise LissomError(f"{where}.radius must be above 0, not {radius:g}")
+        raise LissomError(
+            _("{where}.radius must be above 0, not {radius:g}").format(where=where, radius=radius)
+        )
     around = as_point(part["around"], f"{where}.around")
     return StiffRegion(around=around, radius=radius, amount=_amount(part["amount"], where))
 
@@ -52,7 +55,9 @@ def _bone(content: object, where: str, handles: Sequence[str]) -> Bone:
     for name in names:
         check_handle_name(name, handles, where)
     if names[0] == names[1]:
-        raise LissomError(f"{where} leads from {names[0]!r} to itself")
+        raise LissomError(
+            _("{where} leads from {name!r} to itself").format(where=where, name=names[0])
+        )
     first, second = map(list(handles).index, names)
     return Bone(ends=(first, second), stiffness=_amount(bone["amount"], where))
 
@@ -60,5 +65,9 @@ def _bone(content: object, where: str, handles: Sequence[str]) -> Bone:
 def _amount(content: object, where: str) -> float:
     amount = as_number(content, f"{where}.amount")
     if not SOFTEST * (1 - ROUNDED) <= amount <= STIFFEST:
-        raise LissomError(f"{where}.amount must be from 1/30 to {STIFFEST:g}, not {amount:g}")
+        raise LissomError(
+            _("{where}.amount must be from 1/30 to {largest:g}, not {amount:g}").format(
+                where=where, largest=STIFFEST, amount=amount
+            )
+        )
     return max(amount, SOFTEST)

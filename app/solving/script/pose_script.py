@@ -56,6 +56,7 @@ from app.storage import (
     load_json,
     repr_for_error,
 )
+from app.texts import N_, _
 from engine.maps import Bounds
 
 SCHEMA = 1
@@ -68,8 +69,8 @@ LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "v
 HANDLE_FIELDS = ("at", "front", "extent", "still")
 KEY_FIELDS = ("frame", "targets", "turn", "pull", "ease", "passing", "front")
 BOUND_FIELDS = ("k", "sigma_a", "sigma_b")
-NO_VARIANT = "{where}variant must be one of {variants}, not {content}"
-WRONG_SCHEMA = "schema must be {own}, not {content}"
+NO_VARIANT = N_("{where}variant must be one of {variants}, not {content}")
+WRONG_SCHEMA = N_("schema must be {own}, not {content}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -162,19 +163,21 @@ def parse_pose_script(content: object) -> PoseScript:
     Raises a `LissomError` for unknown, missing or wrong fields, unknown handles, and frames out of
     order.
     """
-    read = as_object(content, "the script")
+    read = as_object(content, _("the script"))
     if "figures" in read and "layers" not in read:
         # The name of the field in earlier scripts.
         content = {("layers" if name == "figures" else name): read[name] for name in read}
-        read = as_object(content, "the script")
+        read = as_object(content, _("the script"))
     own = STAGE_FIELDS if "layers" in read else OWN_FIELDS
     lacking = [name for name in ("choices", "attach", "visible", "order") if name in read]
     if lacking and "layers" not in read:
-        raise LissomError(f'{lacking[0]} needs "layers", which say what each layer does')
-    script = read_fields(content, "the script", (*SCENE_FIELDS, *own))
+        raise LissomError(
+            _('{field} needs "layers", which say what each layer does').format(field=lacking[0])
+        )
+    script = read_fields(content, _("the script"), (*SCENE_FIELDS, *own))
     schema = script.get("schema")
     if schema != SCHEMA or isinstance(schema, bool):
-        raise LissomError(WRONG_SCHEMA.format(own=SCHEMA, content=repr_for_error(schema)))
+        raise LissomError(_(WRONG_SCHEMA).format(own=SCHEMA, content=repr_for_error(schema)))
     usual = _options(script, "")
     layers = [] if "layers" in script else [_layer(script, "", usual)]
     for index, entry in enumerate(as_list(script.get("layers", []), "layers")):
@@ -184,9 +187,9 @@ def parse_pose_script(content: object) -> PoseScript:
     names = [layer.layer for layer in layers]
     for name in names:
         if names.count(name) > 1:
-            raise LissomError(f"two layers are of the layer {name!r}")
+            raise LissomError(_("two layers are of the layer {name!r}").format(name=name))
     if not layers:
-        raise LissomError("layers must be a list of at least one layer")
+        raise LissomError(_("layers must be a list of at least one layer"))
     parsed = PoseScript(
         layers=tuple(layers),
         fps=as_number(script.get("fps", 24.0), "fps"),
@@ -212,9 +215,9 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScr
     }
     keys = script["keys"]
     if not isinstance(keys, list) or not keys:
-        raise LissomError(f"{where}keys must be a list of at least one key")
+        raise LissomError(_("{where}keys must be a list of at least one key").format(where=where))
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
-    check_frame_order([key.frame for key in parsed], f"{where}keys are")
+    check_frame_order([key.frame for key in parsed], f"{where}keys")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
@@ -255,7 +258,7 @@ def _options(script: Mapping[str, Any], where: str) -> dict[str, Any]:
     if "variant" in script:
         if script["variant"] not in VARIANTS:
             raise LissomError(
-                NO_VARIANT.format(
+                _(NO_VARIANT).format(
                     where=where,
                     variants=", ".join(VARIANTS),
                     content=repr_for_error(script["variant"]),
@@ -289,7 +292,9 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         check_handle_name(name, handles, where)
     pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
     if not pull > 0:
-        raise LissomError(f"{where}.pull must be positive, not {pull:g}")
+        raise LissomError(
+            _("{where}.pull must be positive, not {pull:g}").format(where=where, pull=pull)
+        )
     ease, passing = read_easing_and_tangent(key, where)
     return PoseKey(
         frame=read_frame(key, where),

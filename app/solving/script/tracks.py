@@ -24,6 +24,7 @@ from app.solving.script.fields import (
     read_frame,
 )
 from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole, repr_for_error
+from app.texts import N_, _
 
 TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
 TRACK_KEY_FIELDS = ("frame", "offset", "at", "velocity", "turn", "ease", "passing")
@@ -32,13 +33,13 @@ SPRING_FIELDS = ("handle", "preset", "root", *SPRING_NUMBERS)
 CYCLE_FIELDS = ("from", "to", "until")
 # Field of a track key's position, by the space of the track.
 PLACES = {"pose": "offset", "picture": "at"}
-NEEDLESS_VELOCITY = (
-    '{where} has a velocity, which is of keys that are passed through; give it "passing": '
-    '"through", or leave the velocity out'
+NEEDLESS_VELOCITY = N_(
+    "{where} has a velocity, which is of keys that are passed through; give it "
+    '"passing": "through", or leave the velocity out'
 )
-NO_PRESET = "{where} needs a preset, one of {presets}, or a frequency and a damping"
-HANDLE_OR_HANDLES = "{where} must have either a handle or handles, which move together"
-NO_BASIS = "{where}.with must be pose or picture, not {content}"
+NO_PRESET = N_("{where} needs a preset, one of {presets}, or a frequency and a damping")
+HANDLE_OR_HANDLES = N_("{where} must have either a handle or handles, which move together")
+NO_BASIS = N_("{where}.with must be pose or picture, not {content}")
 
 
 def parse_tracks(content: object, where: str, handles: Sequence[str]) -> tuple[Track, ...]:
@@ -87,30 +88,34 @@ def check_loop_periods(
     for index, track in enumerate(tracks):
         if track.delay > period:
             raise LissomError(
-                f"{where}tracks[{index}].delay is {track.delay} frames, longer than the loop, "
-                f"which has {period}"
+                _(
+                    "{where}tracks[{index}].delay is {delay} frames, longer than the loop, "
+                    "which has {period}"
+                ).format(where=where, index=index, delay=track.delay, period=period)
             )
     for index, spring in enumerate(springs):
         if not spring.damping:
             raise LissomError(
-                f"{where}springs[{index}].damping must be above 0 in a loop: without damping it "
-                "never comes round"
+                _(
+                    "{where}springs[{index}].damping must be above 0 in a loop: without "
+                    "damping it never comes round"
+                ).format(where=where, index=index)
             )
 
 
 def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
     track = read_fields(content, where, TRACK_FIELDS)
     if ("handle" in track) == ("handles" in track):
-        raise LissomError(HANDLE_OR_HANDLES.format(where=where))
+        raise LissomError(_(HANDLE_OR_HANDLES).format(where=where))
     goes_with = track.get("with", "pose")
     if goes_with not in list(PLACES):
-        raise LissomError(NO_BASIS.format(where=where, content=repr_for_error(goes_with)))
+        raise LissomError(_(NO_BASIS).format(where=where, content=repr_for_error(goes_with)))
     keys = as_list(track["keys"], f"{where}.keys")
     parsed = tuple(
         _track_key(key, f"{where}.keys[{index}]", PLACES[goes_with])
         for index, key in enumerate(keys)
     )
-    check_frame_order([key.frame for key in parsed], f"{where}.keys are")
+    check_frame_order([key.frame for key in parsed], f"{where}.keys")
     return build_value(
         Track,
         where,
@@ -135,13 +140,19 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
     (other,) = {*PLACES.values()} - {place}
     if other in key:
         raise LissomError(
-            f"{where} has {other!r}, but its track is with the "
-            f"{'pose' if place == 'offset' else 'picture'}, whose keys have {place!r}"
+            _(
+                "{where} has {other!r}, but the keys of a track with {basis!r} have {place!r}"
+            ).format(
+                where=where,
+                other=other,
+                basis="pose" if place == "offset" else "picture",
+                place=place,
+            )
         )
     easing, passing = read_easing_and_tangent(key, where)
     velocity = as_point(key["velocity"], f"{where}.velocity") if "velocity" in key else None
     if velocity is not None and (easing == HOLD or passing is not TangentMode.SMOOTH):
-        raise LissomError(NEEDLESS_VELOCITY.format(where=where))
+        raise LissomError(_(NEEDLESS_VELOCITY).format(where=where))
     return build_value(
         TrackKey,
         where,
@@ -165,11 +176,13 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         preset = as_text(spring["preset"], f"{where}.preset")
         if preset not in SPRING_PRESETS:
             raise LissomError(
-                f"{where}.preset must be one of {', '.join(SPRING_PRESETS)}, not {preset!r}"
+                _("{where}.preset must be one of {presets}, not {preset!r}").format(
+                    where=where, presets=", ".join(SPRING_PRESETS), preset=preset
+                )
             )
         given = dict(zip(("frequency", "damping"), SPRING_PRESETS[preset], strict=True)) | given
     elif not {"frequency", "damping"} <= given.keys():
-        raise LissomError(NO_PRESET.format(where=where, presets=", ".join(SPRING_PRESETS)))
+        raise LissomError(_(NO_PRESET).format(where=where, presets=", ".join(SPRING_PRESETS)))
     handle = _number(spring["handle"], f"{where}.handle", handles)
     root = _number(spring["root"], f"{where}.root", handles) if "root" in spring else None
     return build_value(Spring, where, handle=handle, root=root, **given)
@@ -181,7 +194,9 @@ def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple
     names = as_list(track["handles"], f"{where}.handles")
     for index, name in enumerate(names):
         if name in names[:index]:
-            raise LissomError(f"{where}.handles names {name!r} twice")
+            raise LissomError(
+                _("{where}.handles names {name!r} twice").format(where=where, name=name)
+            )
     return tuple(
         _number(name, f"{where}.handles[{index}]", handles) for index, name in enumerate(names)
     )
@@ -202,7 +217,8 @@ def _require_one_each(
         for number in group:
             if number in seen:
                 raise LissomError(
-                    f"{where}[{seen[number]}] and {where}[{index}] are both of the handle "
-                    f"{handles[number]!r}"
+                    _(
+                        "{where}[{other}] and {where}[{index}] are both of the handle {handle!r}"
+                    ).format(where=where, other=seen[number], index=index, handle=handles[number])
                 )
             seen[number] = index

@@ -13,11 +13,12 @@ import numpy.typing as npt
 from app.errors import LissomError
 from app.storage.files.atomic import write_atomically
 from app.storage.files.reading import DAMAGED_ZIP, MOST_UNPACKED, open_file, open_zip
+from app.texts import N_, _
 
 HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 TEXT = "US"  # NumPy's letters for kinds of arrays
 NUMERIC = "biufc"
-NO_ARRAYS = "is not an NPZ file of numeric arrays, or is damaged"
+NO_ARRAYS = N_("{path} is not an NPZ file of numeric arrays, or is damaged")
 # Further exceptions that NumPy raises on damaged files.
 DAMAGE = (*DAMAGED_ZIP, SyntaxError, TypeError, tokenize.TokenError)
 
@@ -41,9 +42,11 @@ def read_arrays(
             members = _members(archive, path, size, required, optional)
             return {name: _read_array(archive, member) for name, member in members.items()}
     except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+        raise LissomError(
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
+        ) from error
     except DAMAGE as error:
-        raise LissomError(f"{path} {NO_ARRAYS}") from error
+        raise LissomError(_(NO_ARRAYS).format(path=path)) from error
 
 
 def _members(
@@ -57,11 +60,19 @@ def _members(
     members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()}
     missing = [name for name in required if name not in members]
     if missing:
-        raise LissomError(f"{path} lacks the array {missing[0]!r}; it holds {sorted(members)[:50]}")
+        raise LissomError(
+            _("{path} lacks the array {name!r}; it holds {names}").format(
+                path=path, name=missing[0], names=", ".join(sorted(members)[:50])
+            )
+        )
     wanted = {name: members[name] for name in (*required, *optional) if name in members}
     unpacked = sum(member.file_size for member in wanted.values())
     if unpacked > size + MOST_UNPACKED:
-        raise LissomError(f"{path} would unpack to {unpacked:,} bytes, more than any case")
+        raise LissomError(
+            _("{path} would unpack to {unpacked:,} bytes, more than any case").format(
+                path=path, unpacked=unpacked
+            )
+        )
     return wanted
 
 
@@ -71,7 +82,9 @@ def _read_array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArra
         shape, is_fortran, dtype = HEADERS[np.lib.format.read_magic(stream)](stream)
         if dtype.kind in TEXT:
             name = member.filename.removesuffix(".npy")
-            raise LissomError(f"the array {name!r} holds text; it must hold numbers")
+            raise LissomError(
+                _("the array {name!r} holds text; it must hold numbers").format(name=name)
+            )
         if dtype.kind not in NUMERIC or any(side < 0 for side in shape):
             raise ValueError(f"{member.filename} is no numeric array")
         if math.prod(shape) * dtype.itemsize != member.file_size - stream.tell():

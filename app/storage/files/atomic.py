@@ -22,6 +22,7 @@ from app.errors import LissomError
 from app.storage.files.cancellation import Cancellation
 from app.storage.files.locks import lock, open_to_lock
 from app.storage.files.outputs import check_writable
+from app.texts import _
 
 T = TypeVar("T")
 NEW_FILE = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
@@ -40,19 +41,23 @@ class DiskFullError(LissomError):
 
     def __init__(self, path: Path, cause: OSError, needed: int, *, is_whole: bool = False) -> None:
         self.cause = cause
-        more, free = "" if is_whole else " or more", ""
+        size = _size(needed) if is_whole else _("{size} or more").format(size=_size(needed))
         with suppress(OSError):
             room = shutil.disk_usage(os.path.realpath(path.parent)).free
             # Only if the disk is full, and not the person's quota.
-            free = f", and {_size(room)} are free there" if cause.errno == errno.ENOSPC else ""
+            if cause.errno == errno.ENOSPC:
+                size = _("{size}, and {free} are free there").format(size=size, free=_size(room))
         super().__init__(
-            f"cannot write {path}: {cause.strerror}: it takes {_size(needed)}{more}{free}; make "
-            "room or choose another folder"
+            _(
+                "cannot write {path}: {reason}: it takes {size}; make room or choose another folder"
+            ).format(path=path, reason=cause.strerror, size=size)
         )
 
 
 def _size(count: int) -> str:
-    return f"{count / 1e6:,.1f} MB" if count >= 1e6 else f"{count / 1e3:,.1f} KB"
+    if count < 1e6:
+        return _("{count:,.1f} KB").format(count=count / 1e3)
+    return _("{count:,.1f} MB").format(count=count / 1e6)
 
 
 def write_atomically(
@@ -254,5 +259,7 @@ def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
         written = sum(part.stat().st_size for part in parts)
         return DiskFullError(path, error, written)
     if error.errno in NOT_ALLOWED:
-        reason += f": its folder {path.parent} may not be written to; choose another one"
-    return LissomError(f"cannot write {path}: {reason}")
+        reason = _(
+            "{reason}: its folder {folder} may not be written to; choose another one"
+        ).format(reason=reason, folder=path.parent)
+    return LissomError(_("cannot write {path}: {reason}").format(path=path, reason=reason))

@@ -5,6 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.errors import CANCELLED, LissomError
+from app.texts import _
 
 
 class Cancellation:
@@ -43,7 +44,7 @@ class Cancellation:
     def check(self) -> None:
         """Raise `LissomError` if the operation is cancelled."""
         if self._is_cancelled:
-            raise LissomError(CANCELLED)
+            raise LissomError(_(CANCELLED))
 
     def commit(self) -> None:
         """Let the begun files take their places. Later cancellation has no effect.

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from app.errors import LissomError
 from app.storage.files.locks import lock, open_to_lock
+from app.texts import _
 
 TRIES = 100
 LARGEST_LOCK_TEXT = 1000  # bytes in the lock file
@@ -44,10 +45,10 @@ class FileLock:
         number = hashlib.sha256(os.fsencode(target.name)).hexdigest()[:16]
         self._lock_path = target.with_name(f".lissom-{number}.lock")
         self._descriptor = self._acquire()
-        told = json.dumps({"who": _name_holder(), "since": time.time()}).encode()
+        content = json.dumps({"who": _name_holder(), "since": time.time()}).encode()
         with suppress(OSError):  # on a full disk the lock works without a name in it
             os.ftruncate(self._descriptor, 0)
-            os.write(self._descriptor, told)
+            os.write(self._descriptor, content)
 
     def release(self) -> None:
         if sys.platform == "win32":
@@ -59,23 +60,23 @@ class FileLock:
             os.close(self._descriptor)
 
     def _acquire(self) -> int:
-        for _ in range(TRIES):
+        for _try in range(TRIES):
             descriptor = open_to_lock(self._lock_path, os.O_CREAT)
             try:
                 is_ours = lock(descriptor)
                 # The previous holder may have removed the file by now; nobody would see this lock.
                 if is_ours and os.path.samestat(os.fstat(descriptor), self._lock_path.stat()):
                     return descriptor
-                told = os.read(descriptor, LARGEST_LOCK_TEXT) if not is_ours else b""
+                content = os.read(descriptor, LARGEST_LOCK_TEXT) if not is_ours else b""
             except FileNotFoundError:
-                is_ours, told = True, b""
+                is_ours, content = True, b""
             except OSError:
                 os.close(descriptor)
                 raise
             os.close(descriptor)
             if not is_ours:
-                raise FileLockedError(_parse_holder(told))
-        raise OSError("the lock file is removed again and again")
+                raise FileLockedError(_parse_holder(content))
+        raise OSError(_("the lock file is removed again and again"))
 
 
 def _name_holder() -> str:
@@ -86,13 +87,13 @@ def _name_holder() -> str:
     return f"{name} on {platform.node() or 'this machine'}"
 
 
-def _parse_holder(told: bytes) -> str:
+def _parse_holder(content: bytes) -> str:
     """Parse the contents of a lock file. Unreadable contents give only certain facts."""
     try:
-        match json.loads(told):
+        match json.loads(content):
             case {"who": str(who), "since": float(since)} if who.isprintable():
                 at = time.strftime("%Y-%m-%d %H:%M", time.localtime(since))
-                return f"by {who[:100]}, since {at}"
+                return _("by {name}, since {time}").format(name=who[:100], time=at)
     except (ValueError, RecursionError, OverflowError, OSError):
         pass
-    return "in another window"
+    return _("in another window")

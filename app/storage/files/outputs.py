@@ -7,16 +7,17 @@ from contextlib import suppress
 from pathlib import Path
 
 from app.errors import LissomError
+from app.texts import N_, _
 
 # The identity of a file, whatever its names and links. For a file that does not exist yet: its
 # folder and its name.
 Identity = tuple[int, int, str]
 STREAMS = (0, 1, 2)  # descriptors
-NO_FOLDER = "the folder {folder} does not exist"
-SAME_FILE = "it is the same file as"
-NO_PLACE = "cannot make the folder {folder}: {reason}"
-IS_FILE = "{file} is there and is no folder; choose another name"
-IS_FOLDER = "it is a folder; name a file"
+NO_FOLDER = N_("the folder {folder} does not exist")
+SAME_FILE = N_("cannot write {path}: it is the same file as {other}; name another one")
+NO_PLACE = N_("cannot make the folder {folder}: {reason}")
+IS_FILE = N_("{file} is there and is no folder; choose another name")
+IS_FOLDER = N_("it is a folder; name a file")
 
 
 def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
@@ -38,17 +39,19 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
     taken: dict[Identity, str] = {}
     for source in sources:
         with suppress(OSError, ValueError):
-            taken[_identity(source)] = f"{source}, from which it is made"
+            taken[_identity(source)] = _("{path}, from which it is made").format(path=source)
     for out in outs:
         try:
             _check_place(out)
             own = _identity(out)
         except (OSError, ValueError) as error:  # ValueError: no file can have this name
             reason = getattr(error, "strerror", None) or error
-            raise LissomError(f"cannot write {out}: {reason}") from error
+            raise LissomError(
+                _("cannot write {path}: {reason}").format(path=out, reason=reason)
+            ) from error
         if own in taken:
-            raise LissomError(f"cannot write {out}: {SAME_FILE} {taken[own]}; name another one")
-        taken[own] = f"{out}, which is written as well"
+            raise LissomError(_(SAME_FILE).format(path=out, other=taken[own]))
+        taken[own] = _("{path}, which is written as well").format(path=out)
 
 
 def make_folder(folder: Path) -> None:
@@ -58,35 +61,46 @@ def make_folder(folder: Path) -> None:
     except (FileExistsError, NotADirectoryError) as error:
         around = (folder, *folder.parents)
         file = next(each for each in around if os.path.lexists(each))
-        reason = IS_FILE.format(file=file)
-        raise LissomError(NO_PLACE.format(folder=folder, reason=reason)) from error
+        reason = _(IS_FILE).format(file=file)
+        raise LissomError(_(NO_PLACE).format(folder=folder, reason=reason)) from error
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise LissomError(NO_PLACE.format(folder=folder, reason=reason)) from error
+        raise LissomError(_(NO_PLACE).format(folder=folder, reason=reason)) from error
 
 
 def _check_place(path: Path) -> None:
     target = Path(os.path.realpath(path))
     if target.is_symlink():
-        raise LissomError(f"cannot write {path}: it is a link that leads in a circle")
+        raise LissomError(
+            _("cannot write {path}: it is a link that leads in a circle").format(path=path)
+        )
     try:
         status = target.stat()
     except (FileNotFoundError, NotADirectoryError):
         if not target.parent.is_dir():
             folder = target.parent if path.is_symlink() else path.parent
-            raise LissomError(f"cannot write {path}: {NO_FOLDER.format(folder=folder)}") from None
+            raise LissomError(
+                _("cannot write {path}: {reason}").format(
+                    path=path, reason=_(NO_FOLDER).format(folder=folder)
+                )
+            ) from None
         return
     if stat.S_ISDIR(status.st_mode):
-        raise LissomError(f"cannot write {path}: {IS_FOLDER}")
+        raise LissomError(_("cannot write {path}: {reason}").format(path=path, reason=_(IS_FOLDER)))
     if not stat.S_ISREG(status.st_mode) or _is_stream(status):
         raise LissomError(
-            f"cannot write {path}: it is a device, a pipe, a socket or standard output, which "
-            "would be replaced; name a plain file"
+            _(
+                "cannot write {path}: it is a device, a pipe, a socket or standard output, "
+                "which would be replaced; name a plain file"
+            ).format(path=path)
         )
     if not os.access(target, os.W_OK):
         # In a writable folder the system would allow replacing a read-only file.
         raise LissomError(
-            f"cannot write {path}: it may only be read; choose another name, or allow to write it"
+            _(
+                "cannot write {path}: it may only be read; choose another name, or allow to "
+                "write it"
+            ).format(path=path)
         )
 
 

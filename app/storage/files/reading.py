@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 from app.errors import LissomError
+from app.texts import N_, _
 
 MEBIBYTE = 1024 * 1024
 LARGEST_FILE = 1024 * MEBIBYTE
@@ -33,8 +34,8 @@ DAMAGED_ZIP = (
     ValueError,
     OverflowError,
 )
-FOLDER_READ = "cannot read {path}: it is a folder"
-NOT_ORDINARY = "cannot read {path}: it is not an ordinary file; copy it into one"
+FOLDER_READ = N_("cannot read {path}: it is a folder")
+NOT_ORDINARY = N_("cannot read {path}: it is not an ordinary file; copy it into one")
 
 
 class OpenFile(NamedTuple):
@@ -61,8 +62,8 @@ def open_file(path: Path) -> Iterator[OpenFile]:
     if not stat.S_ISREG(status.st_mode):
         os.close(descriptor)
         if stat.S_ISDIR(status.st_mode):
-            raise LissomError(FOLDER_READ.format(path=path))
-        raise LissomError(NOT_ORDINARY.format(path=path))
+            raise LissomError(_(FOLDER_READ).format(path=path))
+        raise LissomError(_(NOT_ORDINARY).format(path=path))
     with os.fdopen(descriptor, "rb") as stream:
         yield OpenFile(stream, status.st_size)
 
@@ -103,9 +104,15 @@ def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
             if size <= largest:
                 return file.read(size)
     except OSError as error:
-        raise LissomError(f"cannot read {path}: {error.strerror or error}") from error
+        raise LissomError(
+            _("cannot read {path}: {reason}").format(path=path, reason=error.strerror or error)
+        ) from error
     except ValueError as error:  # no file can have this name
-        raise LissomError(f"cannot read {path}: {error}") from error
+        raise LissomError(
+            _("cannot read {path}: {reason}").format(path=path, reason=error)
+        ) from error
     raise LissomError(
-        f"cannot read {path}: it has {size:,} bytes, more than the {largest:,} that Lissom reads"
+        _(
+            "cannot read {path}: it has {size:,} bytes, more than the {largest:,} that Lissom reads"
+        ).format(path=path, size=size, largest=largest)
     )

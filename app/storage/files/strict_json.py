@@ -3,8 +3,9 @@
 import json
 
 from app.errors import LissomError
+from app.texts import N_, _
 
-NOT_FINITE = "a number in it is not finite, which JSON cannot say"
+NOT_FINITE = N_("a number in it is not finite, which JSON cannot say")
 
 
 def strict_json(content: object, *, indent: int | None = None) -> str:
@@ -16,4 +17,4 @@ def strict_json(content: object, *, indent: int | None = None) -> str:
     try:
         return json.dumps(content, indent=indent, separators=separators, allow_nan=False)
     except ValueError as error:
-        raise LissomError(NOT_FINITE) from error
+        raise LissomError(_(NOT_FINITE)) from error

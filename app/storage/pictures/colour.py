@@ -5,6 +5,8 @@ import io
 import numpy as np
 from PIL import Image, ImageCms
 
+from app.texts import _
+
 GREYS = {"1", "L", "LA", "La"}
 # By the colour space of a profile: the mode of its pixels, and the modes that become this mode
 # without a profile.
@@ -44,7 +46,7 @@ def to_srgb(image: Image.Image, profile: bytes | None) -> tuple[Image.Image, str
         source = ImageCms.ImageCmsProfile(io.BytesIO(profile))
         mode, fitting = MODES.get(source.profile.xcolor_space.strip(), ("", set()))
         if image.mode not in fitting:
-            return image, "ignored its colour profile, which is of another kind of picture"
+            return image, _("ignored its colour profile, which is of another kind of picture")
         transform = ImageCms.buildTransform(
             source,
             ImageCms.createProfile("sRGB"),
@@ -54,14 +56,16 @@ def to_srgb(image: Image.Image, profile: bytes | None) -> tuple[Image.Image, str
             flags=ImageCms.Flags.BLACKPOINTCOMPENSATION,
         )
     except (OSError, ImageCms.PyCMSError):
-        return image, "ignored its colour profile, which is damaged"
+        return image, _("ignored its colour profile, which is damaged")
     if mode != "CMYK" and _changes_nothing(transform, mode, only_greys=image.mode in GREYS):
         return image, ""
     fit = image if image.mode == mode else image.convert("RGBA").convert(mode)
     converted = transform.apply(fit)
     if image.has_transparency_data:
         converted.putalpha(image.convert("RGBA").getchannel("A"))
-    return converted, f"converted its colours from {_name(source)} to sRGB"
+    return converted, _("converted its colours from {profile} to sRGB").format(
+        profile=_name(source)
+    )
 
 
 def _changes_nothing(transform: ImageCms.ImageCmsTransform, mode: str, *, only_greys: bool) -> bool:
@@ -77,4 +81,4 @@ def _changes_nothing(transform: ImageCms.ImageCmsTransform, mode: str, *, only_g
 
 def _name(profile: ImageCms.ImageCmsProfile) -> str:
     name = " ".join((profile.profile.profile_description or "").split())
-    return name[:LONGEST_NAME] or "its own profile"
+    return name[:LONGEST_NAME] or _("its own profile")

@@ -21,16 +21,17 @@ from app.errors import (
 )
 from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.picture import Picture
+from app.texts import N_, _
 from engine.arrays import readonly
 
 MOST_LAYERS = 200
 MOST_GROUPS = 10_000
 LONGEST_NAME = 1_000  # characters of a layer's or group's name
-EMPTY = "left out, since it is empty"
+EMPTY = N_("left out, since it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
 # pixel takes memory, also on the graphics card.
 CUT_OFF = 0.8
-GROUPS_DEEP = "its groups lie more than {most} deep in each other"
+GROUPS_DEEP = N_("its groups lie more than {most} deep in each other")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -120,10 +121,12 @@ class GroupPaths:
         too long.
         """
         if around.count("/") + bool(around) >= MAX_GROUP_DEPTH:
-            raise LissomError(GROUPS_DEEP.format(most=MAX_GROUP_DEPTH))
+            raise LissomError(_(GROUPS_DEEP).format(most=MAX_GROUP_DEPTH))
         if len(self._found) == MOST_GROUPS:
             raise LissomError(
-                f"it has more than {MOST_GROUPS:,} groups, which Lissom does not take: merge some"
+                _(
+                    "it has more than {most:,} groups, which Lissom does not take: merge some"
+                ).format(most=MOST_GROUPS)
             )
         # A slash separates groups.
         name = display_name(group.name).replace("/", "-").strip() or "group"
@@ -143,7 +146,10 @@ class GroupPaths:
 
 
 def build_layered_picture(
-    size: tuple[int, int], found: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector
+    size: tuple[int, int],
+    found: Sequence[ImportedLayer],
+    groups: GroupPaths,
+    collector: NoticeCollector,
 ) -> LayeredPicture:
     """Return the drawing of the imported layers, each with a unique name.
 
@@ -153,12 +159,12 @@ def build_layered_picture(
         Back to front; blank layers are left out.
     groups : GroupPaths
         All groups of the file.
-    told : NoticeCollector
+    collector : NoticeCollector
         Collects the notices about the layers.
     """
-    kept = _drawn_layers(found, groups, told)
+    kept = _drawn_layers(found, groups, collector)
     if not kept:
-        raise LissomError("it has no layer on which anything is drawn")
+        raise LissomError(_("it has no layer on which anything is drawn"))
     # Layers may share a picture.
     distinct = list({id(layer.picture): layer for layer in kept}.values())
     made = run_parallel(_trimmed, distinct, (layer.picture.size for layer in distinct))
@@ -169,16 +175,19 @@ def build_layered_picture(
     layers = []
     for layer in kept:
         check_name_length(layer.name)
-        has_twin = layer.group and own[layer.name] > 1
-        name = f"{layer.group}/{layer.name}" if has_twin else layer.name
+        is_repeated = layer.group and own[layer.name] > 1
+        name = f"{layer.group}/{layer.name}" if is_repeated else layer.name
         layers.append(replace(layer, name=names.claim(name)))
     return LayeredPicture(
-        size=size, layers=tuple(layers), summary=told.import_log, groups=groups.groups_of(layers)
+        size=size,
+        layers=tuple(layers),
+        summary=collector.import_log,
+        groups=groups.groups_of(layers),
     )
 
 
 def _drawn_layers(
-    layers: Sequence[ImportedLayer], groups: GroupPaths, told: NoticeCollector, depth: int = 0
+    layers: Sequence[ImportedLayer], groups: GroupPaths, collector: NoticeCollector, depth: int = 0
 ) -> list[ImportedLayer]:
     """Return the layers with at least one visible pixel.
 
@@ -191,32 +200,40 @@ def _drawn_layers(
         return (*ancestor_paths(layer.group)[depth : depth + 1], layer)[0]
 
     seen: list[ImportedLayer] = []
-    empty = ""  # the last clipping base, if nothing is drawn on it
+    empty = ""  # a notice about the last clipping base, if nothing is drawn on it
     for found, each in groupby(layers, unit):
         run = list(each)
         path = found if isinstance(found, str) else ""
         is_clipped = groups.is_clipped(path) if path else run[0].clipped
         if is_clipped and empty:
             for layer in run:
-                told.add_note(layer.name, f"left out, since it is clipped by the empty {empty}")
+                collector.add_note(
+                    layer.name,
+                    empty,
+                )
             continue
         drawn = (
-            _drawn_layers(run, groups, told, depth + 1)
+            _drawn_layers(run, groups, collector, depth + 1)
             if path
-            else _layer_unless_blank(run[0], told)
+            else _layer_unless_blank(run[0], collector)
         )
         if not is_clipped:
-            name = f"group {path.rpartition('/')[2]}" if path else f"layer {run[0].name}"
-            empty = "" if drawn else name
+            clipped_by = (
+                _("left out, since it is clipped by the empty group {name}")
+                if path
+                else _("left out, since it is clipped by the empty layer {name}")
+            )
+            name = path.rpartition("/")[2] if path else run[0].name
+            empty = "" if drawn else clipped_by.format(name=name)
         seen += drawn
     return seen
 
 
-def _layer_unless_blank(layer: ImportedLayer, told: NoticeCollector) -> list[ImportedLayer]:
+def _layer_unless_blank(layer: ImportedLayer, collector: NoticeCollector) -> list[ImportedLayer]:
     """Return a layer, or nothing and a notice if it is empty."""
     is_empty = is_blank(layer.picture)
     if is_empty:
-        told.add_note(layer.name, EMPTY)
+        collector.add_note(layer.name, _(EMPTY))
     return [] if is_empty else [layer]
 
 
@@ -267,7 +284,9 @@ def check_layer_count(count: int) -> None:
     """Refuse too many layers before any of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
-            f"it has {count:,} layers; Lissom takes up to {MOST_LAYERS}: merge some of them"
+            _("it has {count:,} layers; Lissom takes up to {most}: merge some of them").format(
+                count=count, most=MOST_LAYERS
+            )
         )
 
 
@@ -275,8 +294,10 @@ def check_name_length(name: str) -> None:
     """Refuse a name that is too long for lists and messages; group paths repeat it."""
     if len(name) > LONGEST_NAME:
         raise LissomError(
-            f"the name {shortened(name)!r} has {len(name):,} characters; Lissom takes up to "
-            f"{LONGEST_NAME:,}: shorten it"
+            _(
+                "the name {name!r} has {count:,} characters; Lissom takes up to "
+                "{longest:,}: shorten it"
+            ).format(name=shortened(name), count=len(name), longest=LONGEST_NAME)
         )
 
 

@@ -25,13 +25,14 @@ from app.storage.pictures.layered import (
     is_blank,
 )
 from app.storage.pictures.picture import decode_pictures, stored_size
+from app.texts import N_, _
 
 MIMETYPE = b"image/openraster"
 LARGEST_XML = 4 * 1024 * 1024
 # Limit of the pictures' total size beyond twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
-DAMAGED_STACK = "its stack.xml is damaged, or in a rare encoding; UTF-8 is usual"
+DAMAGED_STACK = N_("its stack.xml is damaged, or in a rare encoding; UTF-8 is usual")
 MODES: dict[str, BlendMode] = {
     "": "normal",
     "svg:src-over": "normal",
@@ -57,31 +58,35 @@ def read_openraster(data: bytes) -> LayeredPicture:
         with open_zip(io.BytesIO(data)) as archive:
             return _read(archive)
     except DAMAGE as error:
-        raise LissomError("it is not an OpenRaster file, or it is damaged") from error
+        raise LissomError(_("it is not an OpenRaster file, or it is damaged")) from error
 
 
 def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     if _member(archive, "mimetype", 1024).strip() != MIMETYPE:
-        raise LissomError("it is not an OpenRaster file")
+        raise LissomError(_("it is not an OpenRaster file"))
     image = _parse(_member(archive, "stack.xml", LARGEST_XML))
     size = (_whole(image, "w"), _whole(image, "h"))
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
-        raise LissomError("its stack.xml holds no stack of layers")
-    told, groups = NoticeCollector(), GroupPaths()
+        raise LissomError(_("its stack.xml holds no stack of layers"))
+    collector, groups = NoticeCollector(), GroupPaths()
     # The file lists the stack from the front.
-    elements = list(_layers(stack, _Place(), groups, told))[::-1]
+    elements = list(_layers(stack, _Place(), groups, collector))[::-1]
     check_layer_count(len(elements))
     sources = []
-    for element, _ in elements:
+    for element, _place in elements:
         source = element.get("src", "")
         if source not in archive.NameToInfo:
-            raise LissomError(f"it lacks {shortened(source) or 'the picture of a layer'}")
+            raise LissomError(
+                _("it lacks {source}").format(
+                    source=shortened(source) or _("the picture of a layer")
+                )
+            )
         sources.append(source)
     distinct = list(dict.fromkeys(sources))
     packed = sum(member.compress_size for member in archive.infolist())
     if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
-        raise LissomError("its pictures would unpack to more than any drawing")
+        raise LissomError(_("its pictures would unpack to more than any drawing"))
     members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
     check_memory([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
@@ -92,7 +97,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         name = element.get("name", "").strip() or "layer"
         if is_blank(picture):
             # An empty layer is no clipping base: the rest below is.
-            told.add_note(name, EMPTY)
+            collector.add_note(name, _(EMPTY))
             continue
         layer = ImportedLayer(
             name=name,
@@ -101,19 +106,21 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
             corner=corner_from_top(place.x, place.y, picture.size, size[1]),
             visible=_is_visible(element),
             opacity=_opacity(element),
-            blend=_blend(element, told),
+            blend=_blend(element, collector),
             clipped=_is_clipped(element),
             group=place.group,
         )
-        found.append(replace(layer, clipped=layer.clipped and _clips(found, layer, size, told)))
-    return build_layered_picture(size, found, groups, told)
+        found.append(
+            replace(layer, clipped=layer.clipped and _clips(found, layer, size, collector))
+        )
+    return build_layered_picture(size, found, groups, collector)
 
 
 def _clips(
     found: Sequence[ImportedLayer],
     layer: ImportedLayer,
     size: tuple[int, int],
-    told: NoticeCollector,
+    collector: NoticeCollector,
 ) -> bool:
     """Return whether a layer is clipped; in this format all content below in its group clips it."""
     depth = len(ancestor_paths(layer.group))
@@ -128,13 +135,13 @@ def _clips(
             # All layers of a nested group count as one.
             below.add((*ancestor_paths(each.group)[depth : depth + 1], each)[0])
     if len(below) > 1:
-        what = "clipped by what lies right below it, not by all that does in its group"
-        told.add_warning(layer.name, what)
+        what = _("clipped by the layer directly below, not by all layers below in its group")
+        collector.add_warning(layer.name, what)
     return bool(below)
 
 
 def _layers(
-    stack: ET.Element, around: _Place, groups: GroupPaths, told: NoticeCollector
+    stack: ET.Element, around: _Place, groups: GroupPaths, collector: NoticeCollector
 ) -> Iterator[tuple[ET.Element, _Place]]:
     """Yield the layers of a stack and of its groups, from the front."""
     for element in stack:
@@ -147,7 +154,7 @@ def _layers(
         if element.tag == "layer":
             yield element, place
         elif element.tag == "stack":
-            blend = _blend(element, told)
+            blend = _blend(element, collector)
             group = Group(
                 name=name or "group",
                 opacity=_opacity(element),
@@ -156,9 +163,11 @@ def _layers(
                 clipped=_is_clipped(element),
             )
             inner = replace(place, group=groups.add(around.group, group))
-            yield from _layers(element, inner, groups, told)
+            yield from _layers(element, inner, groups, collector)
         else:
-            told.add_warning(name or element.tag, "left out, since Lissom takes drawn layers only")
+            collector.add_warning(
+                name or element.tag, _("left out, since Lissom takes drawn layers only")
+            )
 
 
 def _is_visible(element: ET.Element) -> bool:
@@ -182,13 +191,16 @@ def _is_clipped(element: ET.Element) -> bool:
     return element.get("composite-op") == "svg:src-atop" or element.get("alpha-preserve") == "true"
 
 
-def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
+def _blend(element: ET.Element, collector: NoticeCollector) -> BlendMode:
     """Return the blend mode of an element. An unsupported mode gives a notice."""
     mode = element.get("composite-op", "")
     if mode not in MODES:
         name = element.get("name", "").strip() or element.tag
-        told.add_warning(
-            name, f"drawn normally, not in the mode {shortened(mode.removeprefix('svg:'))!r}"
+        collector.add_warning(
+            name,
+            _("drawn normally, not in the mode {mode!r}").format(
+                mode=shortened(mode.removeprefix("svg:"))
+            ),
         )
     return MODES.get(mode, "normal")
 
@@ -196,9 +208,9 @@ def _blend(element: ET.Element, told: NoticeCollector) -> BlendMode:
 class _Builder(ET.TreeBuilder):
     """Builds the elements of a layer stack, in any encoding."""
 
-    def doctype(self, *_: str | None) -> None:
+    def doctype(self, *_names: str | None) -> None:
         """Refuse a document type: its entities could grow without limit."""
-        raise LissomError("its stack.xml has a document type, which no layer stack has")
+        raise LissomError(_("its stack.xml has a document type, which no layer stack has"))
 
 
 def _parse(content: bytes) -> ET.Element:
@@ -206,13 +218,15 @@ def _parse(content: bytes) -> ET.Element:
         # The builder has refused all entities.
         return ET.fromstring(content, ET.XMLParser(target=_Builder()))  # noqa: S314
     except (ET.ParseError, LookupError, TypeError, ValueError, RecursionError) as error:
-        raise LissomError(DAMAGED_STACK) from error
+        raise LissomError(_(DAMAGED_STACK)) from error
 
 
 def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
     member = archive.getinfo(name)
     if member.file_size > largest:
-        raise LissomError(f"its {name} is too large: {member.file_size:,} bytes")
+        raise LissomError(
+            _("its {name} is too large: {size:,} bytes").format(name=name, size=member.file_size)
+        )
     # Reading with the given size never unpacks more.
     with archive.open(member) as packed:
         return packed.read(member.file_size)
@@ -222,7 +236,9 @@ def _whole(element: ET.Element, name: str) -> int:
     number = _number(element, name, 0.0)
     if not (number == int(number) and 1 <= number <= LARGEST_SIDE):
         raise LissomError(
-            f"its stack.xml gives the canvas a size of {shortened(element.get(name))!r} pixels"
+            _("its stack.xml gives the canvas a size of {size!r} pixels").format(
+                size=shortened(element.get(name))
+            )
         )
     return int(number)
 
@@ -235,6 +251,8 @@ def _number(element: ET.Element, name: str, default: float) -> float:
         number = float("nan")
     if not (isfinite(number) and abs(number) <= 1e7):
         raise LissomError(
-            f"its stack.xml says {name}={shortened(text)!r}, which is not a number of use"
+            _("its stack.xml says {name}={text!r}, which is not a usable number").format(
+                name=name, text=shortened(text)
+            )
         )
     return number

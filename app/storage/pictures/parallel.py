@@ -7,6 +7,7 @@ from typing import TypeVar
 
 from app.errors import LissomError
 from app.storage.preferences import load_preferences, settings_folder
+from app.texts import N_, _
 
 In = TypeVar("In")
 Out = TypeVar("Out")
@@ -19,9 +20,9 @@ PIXEL = 4  # bytes
 # Default share of the machine's memory for pictures. A machine of unknown memory counts as having
 # `USUAL` bytes.
 SHARE, USUAL = 0.25, 8_000_000_000
-MEMORY_OF_PICTURES = (
-    "decoded it takes {needed:,.0f} MB of memory, and pictures may take {budget:,.0f} MB; scale it "
-    'down, or change "memory" in {preferences}'
+MEMORY_OF_PICTURES = N_(
+    "decoded it takes {needed:,.0f} MB of memory, and pictures may take {budget:,.0f} "
+    'MB; scale it down, or change "memory" in {preferences}'
 )
 
 
@@ -30,7 +31,7 @@ def require_memory(sizes: Iterable[tuple[int, int]]) -> None:
     needed, budget = sum(PIXEL * width * height for width, height in sizes), memory_budget()
     if needed > budget:
         raise LissomError(
-            MEMORY_OF_PICTURES.format(
+            _(MEMORY_OF_PICTURES).format(
                 needed=needed / 1e6,
                 budget=budget / 1e6,
                 preferences=settings_folder() / "preferences.json",

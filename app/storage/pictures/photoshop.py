@@ -26,6 +26,7 @@ from app.storage.pictures.layered import (
 )
 from app.storage.pictures.photoshop_masks import MaskedGroup, is_masked, masked_pixels
 from app.storage.pictures.picture import Picture, decode_picture
+from app.texts import N_, _
 from engine.arrays import freeze
 
 MEBIBYTE = 1024 * 1024
@@ -48,7 +49,7 @@ MODES: Final[dict[str, BlendMode]] = {
     "MULTIPLY": "multiply",
     "SCREEN": "screen",
 }
-DAMAGED: Final = "it is not a Photoshop file, or it is damaged"
+DAMAGED: Final = N_("it is not a Photoshop file, or it is damaged")
 DAMAGE = (
     OSError,
     ValueError,
@@ -82,14 +83,14 @@ def read_photoshop(data: bytes) -> LayeredPicture:
     damaged, too large or empty.
     """
     if not data.startswith(SIGNATURE):
-        raise LissomError("it is not a Photoshop file")
+        raise LissomError(_("it is not a Photoshop file"))
     try:
         import psd_tools  # noqa: PLC0415 - it is an extra
     except ImportError as error:
         raise LissomError(
-            f"Photoshop files need psd-tools: {install_hint('psd')}; or save the drawing as "
-            "OpenRaster "
-            "(.ora)"
+            _(
+                "Photoshop files need psd-tools: {remedy}; or save the drawing as OpenRaster (.ora)"
+            ).format(remedy=install_hint("psd"))
         ) from error
     # Its own messages about skipped content go to standard error, which nobody reads.
     logging.getLogger(psd_tools.__name__).setLevel(logging.CRITICAL)
@@ -100,14 +101,14 @@ def read_photoshop(data: bytes) -> LayeredPicture:
             _require_few_records(data)
             return _read(psd_tools.PSDImage.open(io.BytesIO(data), max_alloc_bytes=2048 * MEBIBYTE))
     except DAMAGE as error:
-        raise LissomError(DAMAGED) from error
+        raise LissomError(_(DAMAGED)) from error
 
 
 def _require_few_records(data: bytes) -> None:
     """Refuse a file with too many layer records, before it is read."""
     (version,) = struct.unpack_from(">H", data, len(SIGNATURE))
     at = HEADER
-    for _ in ("the palette", "the resources"):
+    for _section in ("palette", "resources"):
         at += 4 + struct.unpack_from(">I", data, at)[0]
     # Skip the lengths of the layer section and of the layer list.
     at += 2 * 4 * version
@@ -116,22 +117,24 @@ def _require_few_records(data: bytes) -> None:
     count = sum(abs(struct.unpack_from(">h", data, start)[0]) for start in starts)
     if count > MOST_RECORDS:
         raise LissomError(
-            f"it has {count:,} layers and ends of groups; Lissom takes up to "
-            f"{MOST_RECORDS:,}: merge some of them"
+            _(
+                "it has {count:,} layers and ends of groups; Lissom takes up to "
+                "{most:,}: merge some of them"
+            ).format(count=count, most=MOST_RECORDS)
         )
 
 
 def _read(drawing: Any) -> LayeredPicture:
-    told, groups = NoticeCollector(), GroupPaths()
-    found = list(_drawn_layers(drawing, _Place(), groups, told))
-    check_memory([(layer.width, layer.height) for _, layer, _ in found])
+    collector, groups = NoticeCollector(), GroupPaths()
+    found = list(_drawn_layers(drawing, _Place(), groups, collector))
+    check_memory([(layer.width, layer.height) for _place, layer, _clipped in found])
     layers = []
     for place, layer, is_clipped in found:
         name = layer.name.strip() or "layer"
         if not layer.is_group():
             _require_channels(layer, drawing)
         # An empty layer still clips as in the file.
-        image = masked_pixels(layer, place.masks, told) or Image.new("RGBA", (1, 1))
+        image = masked_pixels(layer, place.masks, collector) or Image.new("RGBA", (1, 1))
         picture = Picture(rgba=freeze(np.array(image)))
         read = ImportedLayer(
             name=name,
@@ -140,24 +143,24 @@ def _read(drawing: Any) -> LayeredPicture:
             corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
             visible=layer.visible,
             opacity=layer.opacity / 255 * layer.fill_opacity / 255,
-            blend="normal" if layer.is_group() else _blend(layer, told),
+            blend="normal" if layer.is_group() else _blend(layer, collector),
             clipped=is_clipped,
             group=place.group,
         )
         layers.append(read)
-    if not found and not told.import_log:
+    if not found and not collector.import_log:
         # A file saved without layers holds only the merged picture.
         whole = drawing._record.image_data  # noqa: SLF001 - as of channels
         rows = drawing.height * drawing.channels
         _require_all_rows(whole, rows, drawing.version, padding=PADDING)
         file = encode_png(drawing.topil().convert("RGBA"))
-        flat = decode_picture(file, "the picture")
+        flat = decode_picture(file, _("the picture"))
         layers = [ImportedLayer(name="picture", data=file, picture=flat)]
-    return build_layered_picture((drawing.width, drawing.height), layers, groups, told)
+    return build_layered_picture((drawing.width, drawing.height), layers, groups, collector)
 
 
 def _drawn_layers(
-    around: Any, place: _Place, groups: GroupPaths, told: NoticeCollector
+    around: Any, place: _Place, groups: GroupPaths, collector: NoticeCollector
 ) -> Iterator[tuple[_Place, Any, bool]]:
     """Yield all drawn layers from the back: place, layer, and whether it is clipped.
 
@@ -176,50 +179,58 @@ def _drawn_layers(
                 name=name,
                 opacity=layer.opacity / 255 * layer.fill_opacity / 255,
                 hidden=not layer.visible,
-                blend="pass-through" if passes else _blend(layer, told),
+                blend="pass-through" if passes else _blend(layer, collector),
                 clipped=is_clipped,
             )
-            _warn_left_out(layer, name, told)
-            if is_masked(layer, told):
+            _warn_left_out(layer, name, collector)
+            if is_masked(layer, collector):
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
                 masks = (*masks, MaskedGroup(layer, canvas))
-                told.add_note(
-                    name, "its mask is cut into the layers of the group, as they are drawn"
+                collector.add_note(
+                    name, _("its mask is cut into the layers of the group, as they are drawn")
                 )
             inner = _Place(group=groups.add(place.group, group), masks=masks)
-            drawn = list(_drawn_layers(layer, inner, groups, told))
+            drawn = list(_drawn_layers(layer, inner, groups, collector))
             yield from drawn or [(inner, layer, False)]
         elif layer.kind in DRAWN:
-            _warn_left_out(layer, name, told)
+            _warn_left_out(layer, name, collector)
             if layer.kind == "type":
-                told.add_note(name, "text, drawn as a picture")
+                collector.add_note(name, _("text, drawn as a picture"))
             yield replace(place, masks=masks), layer, is_clipped
         else:
-            kind = "a fill" if layer.kind.endswith("fill") else "an adjustment"
-            told.add_warning(name, f"left out, since it is {kind} layer")
+            left_out = (
+                _("left out, since it is a fill layer")
+                if layer.kind.endswith("fill")
+                else _("left out, since it is an adjustment layer")
+            )
+            collector.add_warning(name, left_out)
             clips = clips and _is_clipping(layer)
             continue
         has_base = has_base or not is_clipped
         clips = clips or not _is_clipping(layer)
 
 
-def _warn_left_out(layer: Any, name: str, told: NoticeCollector) -> None:
+def _warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
     """Add notices about unsupported features that change the look of a layer or group."""
     if layer.has_effects():
         effects = dict.fromkeys(
             _split_camel_case(type(effect).__name__) for effect in layer.effects if effect.enabled
         )
-        told.add_warning(name, f"drawn without effects ({', '.join(effects)})")
+        collector.add_warning(
+            name, _("drawn without effects ({effects})").format(effects=", ".join(effects))
+        )
     if layer.kind == "artboard":
-        told.add_warning(
-            name, "an artboard, of which neither the background nor the edges are drawn"
+        collector.add_warning(
+            name, _("an artboard, of which neither the background nor the edges are drawn")
         )
     ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
     pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
     if any(each not in ALL_LEVELS for pair in pairs for each in pair):
-        told.add_warning(name, "drawn at all brightnesses, whatever its “Blend If” says")
+        collector.add_warning(name, _("drawn at all brightnesses, whatever its “Blend If” says"))
     if layer.tagged_blocks.get_data(KNOCKOUT):
-        told.add_warning(name, "drawn over what is behind, which it knocks out in the file")
+        collector.add_warning(
+            name, _("drawn over the layers behind, which it knocks out in the file")
+        )
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -232,12 +243,14 @@ def _split_camel_case(name: str) -> str:
     return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
-def _blend(layer: Any, told: NoticeCollector) -> BlendMode:
+def _blend(layer: Any, collector: NoticeCollector) -> BlendMode:
     """Return the blend mode of a layer. An unsupported mode gives a notice."""
     mode = layer.blend_mode.name
     if mode not in MODES:
-        what = f"drawn normally, not in the mode {mode.lower().replace('_', ' ')!r}"
-        told.add_warning(layer.name.strip() or "layer", what)
+        what = _("drawn normally, not in the mode {mode!r}").format(
+            mode=mode.lower().replace("_", " ")
+        )
+        collector.add_warning(layer.name.strip() or "layer", what)
     return MODES.get(mode, "normal")
 
 
@@ -247,11 +260,15 @@ def _require_channels(layer: Any, drawing: Any) -> None:
     psd-tools exposes the channels by private names only.
     """
     found = {}
-    for told, channel in zip(layer._record.channel_info, layer._channels, strict=True):  # noqa: SLF001
-        found[int(told.id)] = channel
+    for info, channel in zip(layer._record.channel_info, layer._channels, strict=True):  # noqa: SLF001
+        found[int(info.id)] = channel
     colours = COLOURS.get(drawing.color_mode.name, 0)
     if layer.width and layer.height and not set(range(colours)) <= set(found):
-        raise LissomError(f"the layer {shortened(layer.name)!r} lacks a channel of its colours")
+        raise LissomError(
+            _("the layer {layer!r} lacks a channel of its colours").format(
+                layer=shortened(layer.name)
+            )
+        )
     for number, channel in found.items():
         if number >= TRANSPARENCY:
             _require_all_rows(channel, layer.height, drawing.version)
@@ -264,4 +281,4 @@ def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0
         lengths = np.frombuffer(channel.data[: size * rows], f">u{size}")
         left = len(channel.data) - size * rows - int(lengths.sum())
         if len(lengths) < rows or not 0 <= left <= padding:
-            raise LissomError("the rows of one of its channels are not as long as it says")
+            raise LissomError(_("the rows of one of its channels are not as long as it says"))

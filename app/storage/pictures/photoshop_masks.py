@@ -8,6 +8,7 @@ import numpy as np
 from PIL import Image, ImageChops, ImageFilter
 
 from app.errors import NoticeCollector
+from app.texts import _
 from engine.arrays import Booleans
 
 # Mask levels that leave a layer half transparent.
@@ -26,7 +27,7 @@ class MaskedGroup:
 
 
 def masked_pixels(
-    layer: Any, around: Sequence[MaskedGroup], told: NoticeCollector
+    layer: Any, around: Sequence[MaskedGroup], collector: NoticeCollector
 ) -> Image.Image | None:
     """Return a layer's pixels, cut by its own mask and by those of its groups.
 
@@ -39,26 +40,26 @@ def masked_pixels(
         return None
     pixels: Image.Image = image.convert("RGBA")
     corner = layer.left, layer.top
-    if is_masked(layer, told):
+    if is_masked(layer, collector):
         _cut(pixels, _seen_through(layer.mask, corner, pixels.size))
     for each in around:
         mask = _seen_through(each.group.mask, corner, pixels.size)
         if _shines_through(each, corner, pixels, mask) and not each.has_warned:
             each.has_warned = True
-            what = "half seen through its mask, so that its layers shine through each other"
-            told.add_warning(each.group.name.strip() or "layer", what)
+            what = _("half seen through its mask, so that its layers shine through each other")
+            collector.add_warning(each.group.name.strip() or "layer", what)
         _cut(pixels, mask)
     return pixels
 
 
-def is_masked(layer: Any, told: NoticeCollector) -> bool:
+def is_masked(layer: Any, collector: NoticeCollector) -> bool:
     """Return whether a layer or group has a pixel mask. A vector mask gives a notice."""
     mask = layer.mask
     is_masked = mask is not None and not mask.disabled
     # Programs store the result of a vector mask as a pixel mask, too.
     is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
     if is_by_paths and not layer.vector_mask.disabled:
-        told.add_warning(layer.name.strip() or "layer", "drawn without its vector mask")
+        collector.add_warning(layer.name.strip() or "layer", _("drawn without its vector mask"))
     return is_masked
 
 

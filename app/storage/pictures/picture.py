@@ -17,6 +17,7 @@ from app.cut_out import Mask
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
 from app.storage.pictures.parallel import require_memory, run_parallel
+from app.texts import N_, _, message_of
 from engine.arrays import Booleans, Bytes, Floats, freeze
 
 # PostScript and PDF are excluded on purpose: Pillow would run an interpreter for them.
@@ -32,7 +33,7 @@ FORMATS = {
     "ICO": ".ico",
     "AVIF": ".avif",
 }
-FORMATS_IN_WORDS = "PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO"
+FORMATS_IN_WORDS = N_("PNG, JPEG, GIF, WebP, AVIF, TIFF, BMP, TGA, PPM or ICO")
 # Pillow's decoders raise all of these on damaged files.
 DECODER_ERRORS = (
     RuntimeError,
@@ -52,8 +53,8 @@ EXIF_ORIENTATION = 0x0112
 BAND = 64  # rows of pixels copied at once
 OPAQUE = 255
 HALF = 128  # levels: lighter mask pixels are kept
-NO_PICTURE = "{name} is not a picture that Lissom reads ({formats})"
-DAMAGED_PICTURE = "{name} is damaged or cut short"
+NO_PICTURE = N_("{name} is not a picture that Lissom reads ({formats})")
+DAMAGED_PICTURE = N_("{name} is damaged or cut short")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -101,7 +102,9 @@ def decode_pictures(files: Sequence[tuple[bytes, str]]) -> list[Picture]:
     try:
         require_memory(sizes)
     except LissomError as error:
-        raise LissomError(f"{files[0][1]} is too large: {error}") from error
+        raise LissomError(
+            _("{name} is too large: {reason}").format(name=files[0][1], reason=message_of(error))
+        ) from error
     with _only_size_warnings():
         return run_parallel(lambda file: _decode(*file), files, sizes)
 
@@ -123,7 +126,7 @@ def encode_mask(mask: Mask) -> bytes:
 def stored_size(data: bytes, name: str) -> tuple[int, int]:
     """Return the width and height in pixels from a picture file's header, without decoding it."""
     if not data:
-        raise LissomError(f"{name} is empty")
+        raise LissomError(_("{name} is empty").format(name=name))
     with (
         _only_size_warnings(),
         _naming_errors(name),
@@ -153,12 +156,14 @@ def _naming_errors(name: str) -> Iterator[None]:
         yield
     except (Image.DecompressionBombWarning, Image.DecompressionBombError) as error:
         raise LissomError(
-            f"{name} has more than {Image.MAX_IMAGE_PIXELS or 0:,} pixels; scale it down first"
+            _("{name} has more than {most:,} pixels; scale it down first").format(
+                name=name, most=Image.MAX_IMAGE_PIXELS or 0
+            )
         ) from error
     except UnidentifiedImageError as error:
-        raise LissomError(NO_PICTURE.format(name=name, formats=FORMATS_IN_WORDS)) from error
+        raise LissomError(_(NO_PICTURE).format(name=name, formats=_(FORMATS_IN_WORDS))) from error
     except DECODER_ERRORS as error:
-        raise LissomError(DAMAGED_PICTURE.format(name=name)) from error
+        raise LissomError(_(DAMAGED_PICTURE).format(name=name)) from error
 
 
 def _decode(data: bytes, name: str) -> Picture:
@@ -172,7 +177,7 @@ def _decoded(data: bytes) -> Picture:
     suffix = FORMATS[file.format or ""]
     frames = getattr(file, "n_frames", 1)
     if frames > 1:
-        notices.append(f"used the first of {frames} frames")
+        notices.append(_("used the first of {frames} frames").format(frames=frames))
     is_deep = _is_deep(file)
     rgba = _load(file)
     image: Image.Image = file
@@ -182,9 +187,9 @@ def _decoded(data: bytes) -> Picture:
         notices.append(notice)
     if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
         image = Image.fromarray(_scale_deep_grey(np.asarray(image), is_float=image.mode == "F"))
-        notices.append("reduced its deep greys to 8 bits")
+        notices.append(_("reduced its deep greys to 8 bits"))
     elif is_deep:
-        notices.append("reduced its deep colours to 8 bits per channel")
+        notices.append(_("reduced its deep colours to 8 bits per channel"))
     image, notice = to_srgb(image, profile)
     if notice:
         notices.append(notice)
@@ -207,9 +212,9 @@ def apply_orientation(image: Image.Image) -> tuple[Image.Image, str]:
     try:
         if image.getexif().get(EXIF_ORIENTATION, 1) not in range(2, 9):
             return image, ""
-        return ImageOps.exif_transpose(image), "turned upright as the camera noted"
+        return ImageOps.exif_transpose(image), _("turned upright as the camera noted")
     except DECODER_ERRORS:
-        return image, "ignored the camera's notes, which are damaged"
+        return image, _("ignored the camera's notes, which are damaged")
 
 
 def _pixels(image: Image.Image) -> Bytes:

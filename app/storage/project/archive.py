@@ -12,10 +12,11 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.storage.files.reading import MOST_UNPACKED
+from app.texts import N_, _
 from engine.arrays import Bytes, Complexes, Floats, Integers, readonly
 
 MIMETYPE = b"application/x-lissom"
-NO_PROJECT = "is not a Lissom project"
+NO_PROJECT = N_("it is not a Lissom project")
 MOST_MEMBERS = 65_535
 MEBIBYTE = 1024 * 1024
 # Members to deflate. Pictures are packed already, and the mimetype stays legible.
@@ -24,9 +25,9 @@ PACKED = (".json", ".npy")
 DATE = (1980, 1, 1, 0, 0, 0)
 NPY_MAGIC = b"\x93NUMPY\x01\x00"
 LARGEST_NPY_HEADER = 1024
-NOT_ARRAY = "its {name} is not an array {dtype} (n{shape})"
-MEMBER_CUT_SHORT = "its {name} is cut short"
-MEMBER_TOO_LARGE = "its {name} is too large: {size:,} bytes, more than {most:,}"
+NOT_ARRAY = N_("its {name} is not an array {dtype} (n{shape})")
+MEMBER_CUT_SHORT = N_("its {name} is cut short")
+MEMBER_TOO_LARGE = N_("its {name} is too large: {size:,} bytes, more than {most:,}")
 NOTHING_WRITTEN: Mapping[str, bytes] = MappingProxyType({})
 
 
@@ -80,23 +81,29 @@ class Archive:
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
             raise LissomError(
-                f"it has {len(members):,} members, more than the {MOST_MEMBERS:,} of any project"
+                _("it has {count:,} members, more than the {most:,} of any project").format(
+                    count=len(members), most=MOST_MEMBERS
+                )
             )
         if not members or members[0].filename != "mimetype":
-            raise LissomError(f"it {NO_PROJECT}")
+            raise LissomError(_(NO_PROJECT))
         # Layers were figures in schemas 1 and 2.
         self._members = {
             re.sub("^figures/", "layers/", member.filename): member for member in members
         }
         if len(self._members) < len(members):
-            raise LissomError("it has two members of one name")
+            raise LissomError(_("it has two members of one name"))
         if sum(member.compress_size for member in members) > size:
-            raise LissomError("it is damaged: its members overlap")
+            raise LissomError(_("it is damaged: its members overlap"))
         unpacked = sum(member.file_size for member in members)
         if unpacked > size + MOST_UNPACKED:
-            raise LissomError(f"it would unpack to {unpacked:,} bytes, more than any project")
+            raise LissomError(
+                _("it would unpack to {unpacked:,} bytes, more than any project").format(
+                    unpacked=unpacked
+                )
+            )
         if self.read("mimetype", largest=len(MIMETYPE)) != MIMETYPE:
-            raise LissomError(f"it {NO_PROJECT}")
+            raise LissomError(_(NO_PROJECT))
 
     @property
     def is_written(self) -> bool:
@@ -117,12 +124,12 @@ class Archive:
         Raises `LissomError` if the member is missing or larger; nothing is unpacked then.
         """
         if name not in self._members:
-            raise LissomError(f"it lacks {name}")
+            raise LissomError(_("it lacks {name}").format(name=name))
         self._read.add(name)
         member = self._members[name]
         if largest is not None and member.file_size > largest:
             raise LissomError(
-                MEMBER_TOO_LARGE.format(name=name, size=member.file_size, most=largest)
+                _(MEMBER_TOO_LARGE).format(name=name, size=member.file_size, most=largest)
             )
         if name in self._written and len(self._written[name]) == member.file_size:
             return self._written[name]
@@ -131,7 +138,7 @@ class Archive:
         with self._file.open(member) as packed:
             content = packed.read(member.file_size)
         if len(content) < member.file_size:
-            raise LissomError(MEMBER_CUT_SHORT.format(name=name))
+            raise LissomError(_(MEMBER_CUT_SHORT).format(name=name))
         return content
 
     def points(self, name: str, *, most: int) -> Complexes:
@@ -166,7 +173,7 @@ class Archive:
         pattern = rf"{{'descr': '{kind}', 'fortran_order': False, 'shape': \((\d+){shape}\), }} *\n"
         match = re.fullmatch(pattern.encode(), content[10:start])
         if not content.startswith(NPY_MAGIC) or match is None:
-            raise LissomError(NOT_ARRAY.format(name=name, dtype=dtype.name, shape=shape))
+            raise LissomError(_(NOT_ARRAY).format(name=name, dtype=dtype.name, shape=shape))
         if len(content) - start != int(match[1]) * row:
-            raise LissomError(MEMBER_CUT_SHORT.format(name=name))
+            raise LissomError(_(MEMBER_CUT_SHORT).format(name=name))
         return np.frombuffer(content, dtype, offset=start)

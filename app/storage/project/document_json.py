@@ -71,13 +71,14 @@ from app.storage.json_values import (
 from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
+from app.texts import N_, _, message_of
 from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
 SCHEMA = 3
 NO_LAYERS: Mapping[int, Layer] = MappingProxyType({})
-SIZE = pair(WHOLE, WHOLE, "two whole numbers")
-RANGE = pair(WHOLE, WHOLE, "two whole numbers", make=FrameRange, of=astuple)
+SIZE = pair(WHOLE, WHOLE, N_("two whole numbers"))
+RANGE = pair(WHOLE, WHOLE, N_("two whole numbers"), make=FrameRange, of=astuple)
 MARKER = record(Marker, Field("frame", WHOLE), Field("name", TEXT))
 
 
@@ -137,7 +138,7 @@ HANDLE = record(
     Field("group", TEXT, default=""),
     Field("is_unpinned", FLAG, default=False, legacy_name="free"),
 )
-DEPTH_POINTS = list_of(pair(WHOLE, NUMBER, "a handle and a number"))
+DEPTH_POINTS = list_of(pair(WHOLE, NUMBER, N_("a handle and a number")))
 TARGETS = list_of(
     record(
         lambda handle, **target: (handle, Target(**target)),
@@ -213,7 +214,7 @@ CYCLE = record(
 )
 BONE = record(
     Bone,
-    Field("ends", pair(WHOLE, WHOLE, "two handles")),
+    Field("ends", pair(WHOLE, WHOLE, N_("two handles"))),
     Field("stiffness", NUMBER, legacy_name="amount"),
     Field("is_shown", FLAG, default=True),
 )
@@ -257,7 +258,7 @@ def _read_motions(content: object, handles: Collection[int]) -> dict[str, Any]:
             motion = APPLIED_MOTION.read(each, f"motions[{index}]")
             require_motions([*motions[-1:], motion], handles)
         except EXPECTED_ERRORS as error:
-            unread.append(UnreadMotion(index=index, content=each, reason=str(error)))
+            unread.append(UnreadMotion(index=index, content=each, reason=message_of(error)))
         else:
             motions.append(motion)
     return {"motions": tuple(motions), "unread_motions": tuple(unread)}
@@ -303,7 +304,7 @@ DOMAIN = nested_record(
     Field("parted", FLAG, lambda layer: layer.domain.closed is not None, default=False),
     Field("stale", FLAG, attrgetter("is_stale"), legacy_default=False),
 )
-VISIBILITY_KEY = pair(WHOLE, FLAG, "a frame and true or false", make=VisibilityKey, of=astuple)
+VISIBILITY_KEY = pair(WHOLE, FLAG, N_("a frame and true or false"), make=VisibilityKey, of=astuple)
 ATTACHMENT = record(
     Attachment,
     Field("parent", optional(WHOLE), legacy_name="to"),
@@ -409,7 +410,7 @@ SWITCH_GROUP = record(
     Field("layers", list_of(WHOLE), legacy_name="figures"),
     Field(
         "keys",
-        list_of(pair(WHOLE, WHOLE, "a frame and a layer", make=SwitchKey, of=tuple)),
+        list_of(pair(WHOLE, WHOLE, N_("a frame and a layer"), make=SwitchKey, of=tuple)),
         legacy_name="turns",
     ),
 )
@@ -425,7 +426,7 @@ DOCUMENT = record(
     Field("loop", FLAG),
     Field("export", EXPORT),
     Field("size", optional(SIZE), default=None),
-    Field("pairs", list_of(pair(TEXT, TEXT, "two words")), default=PAIRS),
+    Field("pairs", list_of(pair(TEXT, TEXT, N_("two words"))), default=PAIRS),
     Field("switch_groups", list_of(SWITCH_GROUP), default=(), legacy_name="choices"),
     Field("groups", list_of(GROUP), default=()),
     Field("camera", CAMERA, default=()),
@@ -459,7 +460,7 @@ def read_document(
     layers = fields.pop("layers")
     if len({layer["id"] for layer in layers}) < len(layers):
         # Refused here: later each layer's members would be read twice.
-        raise LissomError("two of its layers have the same id")
+        raise LissomError(_("two of its layers have the same id"))
     shared: dict[str, PictureFile] = {}
     read = tuple(_read_layer(layer, archive, shared) for layer in layers)
     if not archive.is_written:
@@ -499,7 +500,9 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
     def pose(kind: Literal["keys", "poses"], index: int, given: tuple[Any, ...]) -> Pose:
         targets, f = dict(given), members.map(domain, kind, index)
         if len(targets) < len(given):
-            raise LissomError(f"one of its {kind} has two targets for one handle")
+            raise LissomError(
+                _("one of its {kind} has two targets for one handle").format(kind=kind)
+            )
         return Pose.of(f, targets, proven(f))
 
     motions = _read_motions(fields.pop("motions"), {handle.id for handle in fields["handles"]})

@@ -22,6 +22,7 @@ from app.document import Layer, PictureFile
 from app.errors import LissomError
 from app.storage.pictures.picture import stored_size
 from app.storage.project.archive import Archive, array_member
+from app.texts import N_, _
 from engine.arrays import Complexes, Floats, as_points
 from engine.domain import MOST_MESH_TRIANGLES, MeshedDomain, require_domain
 from engine.domain.meshing.mesh import Mesh
@@ -31,7 +32,7 @@ from engine.maps import HarmonicMap
 
 CENTRES, CLOSED = "hole_centres.npy", "closed.npy"
 STIFFNESS = "stiffness.npy"
-OTHER_CHECKSUM = "its picture is not the one that was saved: the checksums differ"
+OTHER_CHECKSUM = N_("its picture is not the one that was saved: the checksums differ")
 
 
 def layer_members(layer: Layer) -> dict[str, bytes]:
@@ -80,12 +81,16 @@ class LayerMembers:
         data = self._archive.read(f"{self._folder}/source{suffix}")
         picture = PictureFile(data=data, suffix=suffix, size=size)
         if picture.sha256 != sha256:
-            raise LissomError(OTHER_CHECKSUM)
+            raise LissomError(_(OTHER_CHECKSUM))
         # The camera's orientation note may have turned the picture by a quarter.
-        width, height = stored_size(picture.data, "its picture")
+        width, height = stored_size(picture.data, _("its picture"))
         if size not in {(width, height), (height, width)}:
             raise LissomError(
-                f"its picture has {width} × {height} pixels, not {size[0]} × {size[1]} as it says"
+                _(
+                    "its picture has {width} × {height} pixels, not {saved_width} × "
+                    "{saved_height} as "
+                    "it says"
+                ).format(width=width, height=height, saved_width=size[0], saved_height=size[1])
             )
         return picture
 
@@ -128,7 +133,11 @@ class LayerMembers:
             return []
         points = self._points(f"{kind}.npy", MOST_STROKE_POINTS)
         if min(counts) < 1 or sum(counts) != len(points):
-            raise LissomError(f"the {kind} of a cut-out do not have as many points as there are")
+            raise LissomError(
+                _("the {kind} of a cut-out do not have as many points as there are").format(
+                    kind=kind
+                )
+            )
         return np.split(points, np.cumsum(counts)[:-1])
 
     def map(self, domain: MeshedDomain, kind: Literal["keys", "poses"], index: int) -> HarmonicMap:

@@ -21,7 +21,7 @@ def draw_method_menu(project: Project) -> list[Action]:
     imgui.separator()
     stays = project.layer.has_auto_pins
     if imgui.menu_item(_("Handles stay between keys"), "", stays)[0]:
-        command = shape_commands.set_auto_pins(project.active, stillness=not stays)
+        command = shape_commands.set_auto_pins(project.active, enabled=not stays)
         actions.append(do(editing.edit_document, command))
     draw_tooltip(_("Handles stay in place between two keys with equal targets"))
     return actions

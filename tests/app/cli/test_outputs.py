@@ -1,11 +1,13 @@
 """Nothing is written over what it is made from, nor over what is no plain file."""
 
 import os
+import re
 import socket
 from pathlib import Path
 
 import pytest
 from animations import moving_document
+from messages import says
 from refusals import refusal
 
 from app.cli.options import NAMED_LIKE_FOLDER, NO_STANDARD_OUTPUT
@@ -76,12 +78,12 @@ def test_the_files_beside_an_output_are_looked_at_too(here, project, capsys):
     given = here / "walk.json"
     given.write_bytes(project)
     words = ["export", given, "--format", "spritesheet", "--out", here / "walk.png"]
-    assert SAME_FILE in refusal(capsys, *words)
+    assert re.search(says(SAME_FILE), refusal(capsys, *words))
     frames = here / "frames"
     frames.mkdir()
     (frames / "frame_0003.png").symlink_to(given)
     words = ["export", given, "--format", "png", "--out", frames]
-    assert SAME_FILE in refusal(capsys, *words)
+    assert re.search(says(SAME_FILE), refusal(capsys, *words))
     assert given.read_bytes() == project
 
 
@@ -93,7 +95,7 @@ def test_two_outputs_are_two_files(here, capsys, is_there):
     (here / "link").symlink_to(out)
     for preview in (out, here / "link"):
         words = ["domain", "other", "--out", out, "--preview", preview]
-        assert SAME_FILE in refusal(capsys, *words)
+        assert re.search(says(SAME_FILE), refusal(capsys, *words))
 
 
 @pytest.mark.parametrize("kind", ["pipe", "socket", "device", "link to a device"])

@@ -214,7 +214,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
-            r"layers\[0\]\.keys\[0\] names the handle 'foot', but the handles are hand",
+            r"layers\[0\]\.keys\[0\] names the handle 'foot', which is not among the handles: hand",
         ),
         (
             {"keys": [{"frame": 0, "front": {"hand": "high"}}]},
@@ -222,13 +222,16 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ),
         (
             {"visible": [[4, True], [2, False]]},
-            says(OUT_OF_ORDER, what="layers[0].visible is", after=2, before=4),
+            says(OUT_OF_ORDER, where="layers[0].visible", after=2, before=4),
         ),
         ({"visible": [[4, 1]]}, r"layers\[0\]\.visible\[0\]"),
         ({"visible": True}, r"layers\[0\]\.visible"),
         (
             {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
-            r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', but the handles are hand",
+            (
+                r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which is not "
+                r"among the handles: hand"
+            ),
         ),
         (
             {"springs": [{"handle": "thumb", "preset": "ear"}]},
@@ -237,18 +240,18 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ({"still": "no"}, says(NOT_TRUE_OR_FALSE, where="layers[0].still")),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"to": "body", "keep": True}]},
-            says(OUT_OF_ORDER, what="layers[0].attach is", after=0, before=0),
+            says(OUT_OF_ORDER, where="layers[0].attach", after=0, before=0),
         ),
         (
             {"attach": [{"frame": -1, "to": None}]},
             r"layers\[0\]\.attach\[0\]\.frame must be a whole",
         ),
-        ({"attach": [{"to": None, "at": [1, 2]}]}, "lets go, so that it has no at"),
+        ({"attach": [{"to": None, "at": [1, 2]}]}, "detaches the layer, so that it has no at"),
         ({"attach": [{"to": "body"}]}, says(LACKS_FIELD, where="layers[0].attach[0]", name="at")),
         ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
         (
             {"attach": [{"to": "body", "at": [95, 120]}, {"frame": 4, "to": "arm", "keep": True}]},
-            "'arm' would hang on itself at frame 4: 'arm' on 'arm'",
+            "'arm' would be attached to itself at frame 4: 'arm' → 'arm'",
         ),
     ],
 )
@@ -332,7 +335,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
     assert main(["pose", *arguments, *FEW]) == 0
     notice = " ".join(capsys.readouterr().err.split())
-    assert "what patch hangs on from frame 30 on is never seen, as the animation ends" in notice
+    assert "the parent of patch from frame 30 on is never seen: the animation ends" in notice
     document = load_project(out)
     patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
     assert [joint.frame for joint in patch.attachments] == [0, 3, 6, 30]
@@ -388,7 +391,7 @@ def test_layer_changes_its_parent_in_every_repeat_of_a_cycle(drawing):
     away = {"to": "body", "at": [95, 120], "keep": True}
     joints[1:] = [{**away, "frame": 3}, {**away, "frame": 12}]
     _, notice = posed({**patch, "attach": joints})
-    assert "what it hangs on changes in the repeats of frames 0 to 12, too, or is another" in notice
+    assert "its attachments do not repeat with frames 0 to 12" in notice
 
 
 MOUTHS = "".join(
@@ -480,7 +483,8 @@ def test_choice_repeats_with_a_cycle_of_all_its_layers(opened):
     assert names == [*["closed", "ah", "oh", "closed"] * 2, "closed", "ah"]
     _, notice = posed_face(opened, layers=[head, *mouths[1:]], choices=[CHOICE])
     assert (
-        "its keys do not repeat, as frames 0 to 12 do not of closed; give all its layers" in notice
+        "its keys do not repeat, since frames 0 to 12 do not repeat in closed; give all its layers"
+        in notice
     )
 
 
@@ -495,7 +499,13 @@ def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("visible", "words"),
     [
-        ({}, 'oh is hidden in the drawing, and so never seen; with "visible": [[0, true]] it is'),
+        (
+            {},
+            (
+                "oh is hidden in the drawing, so that it is never seen; show it with "
+                '"visible": [[0, true]]'
+            ),
+        ),
         ({"visible": [[0, False]]}, "oh is never seen: its visible shows it at no frame"),
         (
             {"visible": [[0, False], [40, True]]},
@@ -512,7 +522,7 @@ def test_layer_is_named_when_its_choice_never_shows_it(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
     never = {**CHOICE, "keys": [[0, "closed"], [4, "ah"]]}
     _, notice = posed_face(opened, layers=[oh], choices=[never])
-    assert "oh is never seen: the choice 'mouth' never shows it" in notice
+    assert "oh is never seen: the switch 'mouth' never shows it" in notice
 
 
 def test_script_shows_layers_of_hidden_groups_and_no_others(tmp_path):
@@ -551,7 +561,7 @@ def test_script_that_names_no_layer_takes_the_front_visible_one(opened):
 def test_choice_is_named_when_its_key_is_after_the_end(opened):
     late = {**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}
     _, notice = posed_face(opened, choices=[late])
-    assert "choice 'mouth': ah from frame 99 on is never seen, as the animation ends" in notice
+    assert "switch 'mouth': ah from frame 99 on is never seen: the animation ends" in notice
 
 
 @pytest.mark.parametrize(
@@ -567,13 +577,13 @@ def test_choice_is_named_when_its_key_is_after_the_end(opened):
             [{**CHOICE, "keys": [[0, "head"]]}],
             r"choices\[0\]\.keys\[0\] shows 'head', which is not",
         ),
-        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], r"choices\[0\]\.keys are out of order"),
+        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], r"choices\[0\]\.keys is out of order"),
         ([{**CHOICE, "keys": [4]}], says(NOT_LIST, where="choices[0].keys[0]")),
-        ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two choices"),
-        ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two choices are called"),
+        ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two switches"),
+        ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two switches are called"),
         ([{"layers": ["ah", "oh"]}], says(LACKS_FIELD, where="choices[0]", name="name")),
         ([{**CHOICE, "shown": 1}], "unknown field 'shown'; it may have name, layers, keys"),
-        ([{**CHOICE, "name": " "}], r"choices\[0\]\.name is empty, and a choice needs a name"),
+        ([{**CHOICE, "name": " "}], r"choices\[0\]\.name is empty, and a switch needs a name"),
         (
             [{**CHOICE, "keys": [[-4, "ah"]]}],
             says(NOT_A_FRAME, where="choices[0].keys[0]", name="frame"),
@@ -588,7 +598,7 @@ def test_choice_is_refused_when_it_cannot_be(opened, stage, words):
 def test_layer_of_a_choice_is_refused_when_it_has_visible(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}], "visible": [[0, True]]}
     notice = refused(opened, face_script(layers=[oh], choices=[CHOICE]))
-    assert "the layer 'oh' is in a choice, which alone decides" in notice
+    assert "the layer 'oh' is in a switch, which alone decides" in notice
 
 
 STAGED = {
@@ -644,9 +654,7 @@ def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
     ):
         _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
         notice = " ".join(notices)
-        assert (
-            "arm hangs on body and goes with it: its own movement is not" in notice
-        ) == is_reported
+        assert ("arm is attached to body and moves with it: its own movement" in notice) == is_told
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):

@@ -118,18 +118,21 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (choices.create_switch_group("eyes", (1, 2)), "'ah' is in two choices, 'mouth' and 'eyes'"),
+        (
+            choices.create_switch_group("eyes", (1, 2)),
+            "'ah' is in two switches, 'mouth' and 'eyes'",
+        ),
         (choices.create_switch_group("mouth", (2, 3)), says(NO_LAYER, identity=3)),
         (choices.create_switch_group("mouth", (2, 2)), "has the layer 2 twice"),
         (choices.create_switch_group(" ", (2, 1)), "needs a name"),
         (choices.create_switch_group("eyes", (2,)), "two layers or more"),
         (
             layer_commands.key_visibility(1, 5, visible=True),
-            "shown and hidden at frames of its own",
+            "has visibility keys and is in the switch",
         ),
-        (choices.choose_at(2, 5), "'oh' takes no turns"),
-        (choices.delete_switch_group("nose"), "no choice 'nose'"),
-        (choices.move_turn("mouth", 7, 9), "changes nothing at frame 7"),
+        (choices.choose_at(2, 5), "'oh' is in no switch"),
+        (choices.delete_switch_group("nose"), "no switch 'nose'"),
+        (choices.move_turn("mouth", 7, 9), "'mouth' has no key at frame 7"),
     ],
 )
 def test_what_cannot_be_chosen_is_refused(mouths, make, words):
@@ -139,9 +142,9 @@ def test_what_cannot_be_chosen_is_refused(mouths, make, words):
 
 
 def test_turns_are_in_order_and_of_the_choice():
-    with pytest.raises(LissomError, match="at frame 4 after frame 8"):
+    with pytest.raises(LissomError, match="at frames 8 and 4 are mixed up"):
         SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 0), SwitchKey(4, 1)))
-    with pytest.raises(LissomError, match="a layer at frame 8 that it has not"):
+    with pytest.raises(LissomError, match="At frame 8 the switch 'mouth' shows a layer"):
         SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 2),))
 
 

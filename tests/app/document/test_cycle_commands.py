@@ -73,7 +73,7 @@ def test_what_stops_repeating_is_there_once_as_it_was():
     assert frames_of(stopped) == frames_of(document)
     layer = stopped.layers[0]
     assert layer.key(44).pose is layer.key(20).pose
-    with pytest.raises(LissomError, match="Nothing of 'layer' repeats from frame 20 on"):
+    with pytest.raises(LissomError, match="No cycle of 'layer' begins at frame 20"):
         cycle_commands.delete_cycle(0, 20)(stopped)
 
 
@@ -185,8 +185,8 @@ def placed(document, frame, *, to):
 
 
 def is_in_front(document, layer, frame):
-    placing = draw_order_key_at(document, layer, frame)
-    return placing is None or placing.in_front
+    key = draw_order_key_at(document, layer, frame)
+    return key is None or key.in_front
 
 
 @pytest.mark.parametrize(
@@ -221,5 +221,5 @@ def test_a_repeat_keeps_a_change_of_its_own_until_it_is_edited():
 def test_cycle_is_refused_in_words_over_another_cycle():
     document = with_keys(0, 10, 15, last=60)
     layer = cycle_commands.set_cycle(0, 10, 20, 40)(document).layers[0]
-    with pytest.raises(LissomError, match="frames 10 to 20 in them repeat already"):
+    with pytest.raises(LissomError, match="they contain a cycle, frames 10 to 20"):
         cycle_commands.end_of_cycle(layer, 0, 15)

@@ -113,7 +113,7 @@ def test_a_group_is_moved_as_a_whole():
     assert inside.group("c/b").opacity == 0.5
     free = groups.move_group_into("a/b", "")(document)
     assert paths(free) == ["sky", "a/one", "b/two", "b/three", "c/four", "c/five"]
-    # Before a group that is told of first, and with all of its own around it left empty.
+    # Before a group that is listed first, and with all of its own around it left empty.
     late = groups.move_group_into("a", "c")(document)
     assert paths(late) == ["sky", "c/four", "c/five", "c/a/one", "c/a/b/two", "c/a/b/three"]
     beside = groups.reorder_group("a/b", 0, in_front=False)(document)

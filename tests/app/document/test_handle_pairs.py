@@ -35,7 +35,7 @@ SIDES = [
 
 
 @pytest.mark.parametrize(("one", "other"), SIDES)
-def test_a_side_is_told_by_a_letter_or_a_word_of_its_own(one, other):
+def test_a_side_is_reported_by_a_letter_or_a_word_of_its_own(one, other):
     assert mirrored_name(one) == other
     assert mirrored_name(other) == one
 
@@ -128,6 +128,6 @@ def test_pairs_are_read_as_they_are_written(text):
         ("/far", "of two words"),
     ],
 )
-def test_what_is_no_pair_is_told(text, words):
+def test_what_is_no_pair_is_reported(text, words):
     with pytest.raises(LissomError, match=words):
         parse_pairs(text)

@@ -1,4 +1,4 @@
-"""Commands on tracks, springs and stillness, and what other commands do to them."""
+"""Commands on tracks, springs and auto-pins, and what other commands do to them."""
 
 from dataclasses import replace
 
@@ -196,7 +196,7 @@ def test_who_sets_a_passing_or_an_easing_sets_the_velocity_free():
 
 @pytest.mark.parametrize("velocity", [complex(np.nan, 0), complex(0, np.inf), 1e8])
 def test_a_velocity_that_is_none_is_refused_in_words(velocity):
-    with pytest.raises(LissomError, match="no more than 10,000,000 pixels a frame, not at"):
+    with pytest.raises(LissomError, match="at most 10,000,000 pixels a frame, not"):
         TrackKey(frame=0, place=0, velocity=velocity)
 
 
@@ -330,16 +330,16 @@ def test_springs_are_set_and_removed():
     assert tracks.put_spring(0, stiff)(document).layers[0].springs == (stiff,)
     assert tracks.remove_springs(0, {2})(document).layers[0].springs == ()
     assert tracks.remove_springs(0, {0})(document) is document
-    with pytest.raises(LissomError, match="spring is of the handle 9, which is not there"):
+    with pytest.raises(LissomError, match=says(NO_HANDLE, identity=9)):
         tracks.put_spring(0, replace(SPRING, handle=9))(document)
 
 
-def test_stillness_is_switched_for_a_layer_and_for_handles():
+def test_auto_pins_is_switched_for_a_layer_and_for_handles():
     document = tracked()
     assert document.layers[0].has_auto_pins
-    loose = shape_commands.set_auto_pins(0, stillness=False)(document)
+    loose = shape_commands.set_auto_pins(0, enabled=False)(document)
     assert not loose.layers[0].has_auto_pins
-    assert shape_commands.set_auto_pins(0, stillness=False)(loose) is loose
+    assert shape_commands.set_auto_pins(0, enabled=False)(loose) is loose
     freed = handle_commands.unpin_handles(0, {0, 2}, free=True)(document)
     assert [handle.is_unpinned for handle in freed.layers[0].handles] == [True, False, True]
 

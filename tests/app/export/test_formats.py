@@ -40,7 +40,7 @@ def test_every_format_of_the_table_has_a_writer():
     assert FOLDER_WRITERS.keys() == EXPORT_FORMATS.keys() - files
 
 
-def test_what_formats_ask_is_told_once_and_has_room_for_what_is_usual():
+def test_what_formats_ask_is_reported_once_and_has_room_for_what_is_usual():
     groups = FormatSettings().options()
     assert {format_.options for format_ in EXPORT_FORMATS.values()} == {"", *groups}
     options = [

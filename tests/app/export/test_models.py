@@ -319,7 +319,7 @@ def still():
     return altered(document, keys=document.layers[0].keys[1:])
 
 
-def test_what_a_model_does_not_composite_is_told(tmp_path):
+def test_what_a_model_does_not_composite_is_reported(tmp_path):
     document = two_layers()
     first, second = document.layers
     document = replace(
@@ -332,12 +332,15 @@ def test_what_a_model_does_not_composite_is_told(tmp_path):
     )
     _, maker = exported(document, tmp_path / "two.glb")
     assert maker.meshes[0].opacity == 0.25
-    told = [notice for notice in maker.notices if "glTF" in notice]
-    assert told == [
-        f"{second.name}: not multiplied in a glTF model, but painted over the rest",
-        "limbs: not screened in a glTF model, but painted over the rest",
-        f"{second.name}: not clipped in a glTF model, but painted over the rest",
-        "limbs: faded layer by layer in a glTF model, so that they shine through each other",
+    notices = [notice for notice in maker.notices if "glTF" in notice]
+    assert notices == [
+        f"{second.name}: not multiplied in the glTF model, but painted over the rest",
+        "limbs: not screened in the glTF model, but painted over the rest",
+        f"{second.name}: not clipped in the glTF model, but painted over the rest",
+        (
+            "limbs: faded layer by layer in the glTF model, so that the layers shine through "
+            "each other"
+        ),
     ]
     _, maker = exported(two_layers(), tmp_path / "plain.glb")
     assert not any("painted over" in notice for notice in maker.notices)
@@ -418,7 +421,7 @@ def test_a_tolerance_of_ones_own_takes_as_many_shapes_as_it_needs(tmp_path, monk
     assert maker.notices == ()
 
 
-def test_where_eight_shapes_do_not_suffice_it_is_told(tmp_path, monkeypatch):
+def test_where_eight_shapes_do_not_suffice_it_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr("app.export.morph_mesh.MOST_TARGETS", 1)
     _, maker = exported(moving_document(), tmp_path / "a.glb")
     (notice,) = maker.notices

@@ -58,7 +58,7 @@ def notices(gl: moderngl.Context, document: Document, poses: FrameVertices, **se
     return painter.notices
 
 
-def test_a_motion_that_leaves_the_frame_is_told_once_it_is_posed(gl, document):
+def test_a_motion_that_leaves_the_frame_is_reported_once_it_is_posed(gl, document):
     assert notices(gl, document, Sliding(document, 0), framing="canvas") == ()
     assert notices(gl, document, Sliding(document, 12), framing="fit") == ()
     (notice,) = notices(gl, document, Sliding(document, 12), framing="canvas")
@@ -224,14 +224,14 @@ def test_a_frame_is_drawn_in_parts_that_the_machine_holds(gl, document, monkeypa
     assert np.abs(still(gl, document, size=(150, 111)).astype(int) - whole).max() <= 2
 
 
-def filmed(document: Document, *keys: CameraKey) -> Document:
+def with_camera(document: Document, *keys: CameraKey) -> Document:
     return replace(document, camera=keys, frames=FrameRange(0, 12))
 
 
 def test_the_camera_at_twice_the_size_shows_a_part_of_a_frame_twice_as_large(gl, document):
     height, width = BLOB.shape[:2]
     centre = complex(width / 2 - 10, height / 2 + 5)
-    frame = still(gl, filmed(document, CameraKey(frame=0, centre=centre, zoom=2.0)))
+    frame = still(gl, with_camera(document, CameraKey(frame=0, centre=centre, zoom=2.0)))
     assert frame.shape == BLOB.shape
     large = still(gl, document, size=(2 * width, 2 * height)).astype(int)
     left, top = round(2 * centre.real - width / 2), round(1.5 * height - 2 * centre.imag)
@@ -241,7 +241,7 @@ def test_the_camera_at_twice_the_size_shows_a_part_of_a_frame_twice_as_large(gl,
 def test_the_camera_turns_what_is_seen_counter_clockwise(gl, document):
     height, width = BLOB.shape[:2]
     key = CameraKey(frame=0, centre=complex(width, height) / 2, turn=np.pi / 2)
-    frame = still(gl, filmed(document, key), background="#20c040")
+    frame = still(gl, with_camera(document, key), background="#20c040")
     upright = still(gl, document, background="#20c040").astype(int)
     left = (width - height) // 2
     turned = np.rot90(upright)[left : left + height]
@@ -260,12 +260,12 @@ def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
     )
     frame = painter.draw(painter.pose(0.0)).astype(int)
     painter.release()
-    assert np.abs(frame - still(gl, filmed(document, key))).max() <= 2
+    assert np.abs(frame - still(gl, with_camera(document, key))).max() <= 2
 
 
 def test_each_frame_is_what_the_camera_shows_then(gl, document):
     first = CameraKey(frame=0, centre=60 + 45j)
-    panned = filmed(document, first, replace(first, frame=12, centre=48 + 51j))
+    panned = with_camera(document, first, replace(first, frame=12, centre=48 + 51j))
     with drawing(gl, panned, Sliding(document, 0)) as draw:
         halfway, end = draw(6.0), draw(12.0)
     assert_array_equal(halfway[3:, 6:][SEEN[:-3, :-6]], BLOB[:-3, :-6][SEEN[:-3, :-6]])
@@ -273,7 +273,7 @@ def test_each_frame_is_what_the_camera_shows_then(gl, document):
 
 
 def test_with_a_camera_every_framing_is_its_frame(gl, document):
-    away = filmed(document, CameraKey(frame=0, centre=500 + 45j, zoom=0.5))
+    away = with_camera(document, CameraKey(frame=0, centre=500 + 45j, zoom=0.5))
     away = replace(away, size=(64, 48))
     for framing in ("fit", "canvas"):
         assert plan_of(away, Sliding(away, 12), framing=framing).view.size == (64, 48)

@@ -122,7 +122,7 @@ def test_the_framing_of_the_canvas_looks_at_no_frame(document, tmp_path):
     plan_of(document, tmp_path / "frames", Unseen(document, 0), framing="canvas")
 
 
-def test_frames_of_another_export_are_told_and_kept(document, tmp_path):
+def test_frames_of_another_export_are_reported_and_kept(document, tmp_path):
     for name in ("frame_0009.png", "frame_0011.png", "frame_00003.png", "frame_12.png", "other"):
         (tmp_path / name).write_bytes(b"kept")
     (notice,) = plan_of(document, tmp_path).notices
@@ -157,7 +157,7 @@ def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(documen
         ("folder", {"format": "gif"}, "is a folder; name a file"),
         ("missing/a.gif", {"format": "gif"}, NO_FOLDER.format(folder=".*missing")),
         ("a.png", {"format": "gif"}, "end in .gif"),
-        ("a.gif", {"format": "apng"}, "end in .apng or .png"),
+        ("a.gif", {"format": "apng"}, "end in .apng, .png"),
         ("a.mp4", {"format": "mp4"}, "background colour"),
         ("frames", {"frames": FrameRange(0, 11)}, "0 to 10"),
         ("frames", {"frames": FrameRange(12, 13)}, "0 to 10"),
@@ -198,7 +198,7 @@ def test_tags_go_from_marker_to_marker(document, tmp_path):
     assert plan_of(marked, tmp_path / "a.png", fps=12.0, **sheet).tags[1] == ("b", 3, 5)
 
 
-def test_odd_sides_are_refused_where_they_are_asked_for_and_told_where_they_came(
+def test_odd_sides_are_refused_where_they_are_asked_for_and_reported_where_they_came(
     document, tmp_path
 ):
     white = {"format": "mp4", "background": "#ffffff"}

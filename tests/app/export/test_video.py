@@ -151,7 +151,7 @@ def test_what_is_opaque_needs_no_alpha(tmp_path):
 
 @pytest.mark.parametrize("format_", ["mp4", "webm", "mov"])
 @pytest.mark.parametrize("room", [0, 3000])
-def test_a_full_disk_is_told_in_words_whatever_pyav_makes_of_it(
+def test_a_full_disk_is_reported_in_words_whatever_pyav_makes_of_it(
     tmp_path, monkeypatch, capfd, format_, room
 ):
     monkeypatch.setattr("app.storage.files.atomic.os.fdopen", FullDisk)

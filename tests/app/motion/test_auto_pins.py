@@ -109,19 +109,20 @@ def test_free_handle_gives_way_beside_a_pinned_one():
     document = posed()
     layer = document.layers[0]
     top = layer.handles[-1]
-    # A twin of the top that is pinned in every segment, at the place to which the poses bring it.
-    twin = replace(top, id=top.id + 1, name="twin", position=top.position + 0.02)
+    # A counterpart of the top, pinned in every segment at the place to which the poses bring it.
+    counterpart = replace(top, id=top.id + 1, name="counterpart", position=top.position + 0.02)
     keys = tuple(
         replace(
             key,
             pose=replace(
-                key.pose, targets={**key.pose.targets, twin.id: Target(position=twin.position)}
+                key.pose,
+                targets={**key.pose.targets, counterpart.id: Target(position=counterpart.position)},
             ),
         )
         for key in layer.keys
     )
     doubled = with_layer(
-        document, handles=(*layer.handles, twin), keys=keys, next_handle=twin.id + 1
+        document, handles=(*layer.handles, counterpart), keys=keys, next_handle=counterpart.id + 1
     )
     assert pinned_handles(clip_of(doubled, 0))[:, -2:].tolist() == [[False, True]] * 3
     animation = animate(doubled)
@@ -219,8 +220,8 @@ def test_attached_layer_is_corrected_about_its_joint_alone():
         own = animation.positions(frame)
         loose = Animation(clip_of(unpinned, 1), points=points)
         assert own[-1] == pytest.approx(loose.positions(frame)[-1], abs=1e-7)
-        hung = joints.placement(1, frame).apply(own)[-1]
-        assert hung == pytest.approx(below.positions(frame)[0], abs=1e-6)
+        attached = joints.placement(1, frame).apply(own)[-1]
+        assert attached == pytest.approx(below.positions(frame)[0], abs=1e-6)
     # In its parent's frame its handles stay.
     ends = [animation.positions(frame)[:3] for frame in (0.0, 10.0)]
     assert_allclose(ends[0], ends[1], atol=0.6)

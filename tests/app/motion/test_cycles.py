@@ -123,7 +123,7 @@ def test_what_ends_right_after_its_stretch_stands_still_there():
         assert_allclose(animation.positions(frame), animation.positions(19), rtol=0, atol=1e-9)
 
 
-def test_it_is_told_where_repeats_may_end_before_a_key():
+def test_it_is_reported_where_repeats_may_end_before_a_key():
     with pytest.raises(LissomError, match="let them end at frame 20 instead"):
         cycling(6, 7, 17, 20, cycle=Cycle(first=0, last=18, until=19))
     with pytest.raises(LissomError, match="let them end at frame 24 instead"):

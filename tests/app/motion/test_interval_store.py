@@ -142,10 +142,10 @@ def test_another_method_of_the_split_view_finds_the_layers_own(document, tmp_pat
     project, store = session.project, session.project.layer_runtime.store
     viewing.compare_with_method(session, Variant.ETA)
     settle(session)
-    twin = project.layer_runtime.comparison
-    other = store.prepared(twin.clip(project.document))
+    comparison = project.layer_runtime.comparison
+    other = store.prepared(comparison.clip(project.document))
     assert other is not None
-    assert twin.shown.is_current
+    assert comparison.shown.is_current
     # The layer takes the method that it was compared with.
     keys.set_inbetween_method(session, "eta")
     assert store.prepared(project.clip) == other
@@ -219,11 +219,11 @@ def test_only_exact_in_betweens_are_shown_as_current(variant):
     frames = (0, 4, 10, 13, 17, 25, 30)
 
     def exact():
-        told = [frame for frame in frames if store.is_exact(clip, frame)]
+        exact = [frame for frame in frames if store.is_exact(clip, frame)]
         shown = [show(clip, frame, None, [store], None) for frame in frames]
-        assert told == [each.frame for each in shown if each.is_current]
-        assert told == [frame for frame in frames if store.positions(clip, frame) is not None]
-        return told
+        assert exact == [each.frame for each in shown if each.is_current]
+        assert exact == [frame for frame in frames if store.positions(clip, frame) is not None]
+        return exact
 
     keys = [0, 10, 30]
     assert exact() == keys
@@ -446,15 +446,15 @@ def test_where_much_is_prepared_layers_that_nobody_edits_come_one_after_the_othe
     layers = tuple(replace(layer, id=number, name=f"{number}") for number in range(3))
     document = replace(document, layers=layers)
     session = session_of(document, tmp_path, prepares_ahead=True)
-    for clip, puppet in zip(
+    for clip, runtime in zip(
         [clip_of(document, number) for number in range(3)],
         session.project.layer_runtimes.values(),
         strict=True,
     ):
-        assert streamed(puppet.store, clip) == [True] * 3
+        assert streamed(runtime.store, clip) == [True] * 3
         # What is edited keeps what it is made from, and all others let go of it.
-        is_edited = puppet is session.project.layer_runtime
-        assert (puppet.store.prepared(clip) is not None) == is_edited
+        is_edited = runtime is session.project.layer_runtime
+        assert (runtime.store.prepared(clip) is not None) == is_edited
 
 
 def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(

@@ -32,13 +32,16 @@ def check_closed(document, frames, earlier=None):
         if joint is None:
             continue
         for frame in frames:
-            own, carrier = joints.placement(layer.id, frame), joints.placement(joint.parent, frame)
+            own, parent_motion = (
+                joints.placement(layer.id, frame),
+                joints.placement(joint.parent, frame),
+            )
             anchor, _ = exactly(document, layer.id, layer.anchor, frame)
             at, fz = exactly(document, joint.parent, joint.parent_point, frame)
-            there = carrier.apply(np.array([at]))[0]
+            there = parent_motion.apply(np.array([at]))[0]
             assert abs(own.apply(np.array([anchor]))[0] - there) < 1e-9 * SIZE
             if joint.inherits_rotation:
-                turned = carrier.factor * fz / abs(fz) * np.exp(-1j * joint.rest_rotation)
+                turned = parent_motion.factor * fz / abs(fz) * np.exp(-1j * joint.rest_rotation)
                 assert abs(own.factor - turned) < 1e-9
     return joints
 
@@ -53,7 +56,7 @@ def test_joint_stays_closed_and_turns_with_its_parent(variant):
     assert_allclose(np.abs(factors), 1, rtol=0, atol=1e-12)
 
 
-def test_what_hangs_on_nothing_is_where_it_is():
+def test_layer_without_a_parent_is_where_it_is():
     joints = ParentTransforms(chain())
     assert joints.placement(0, 17.5) == IDENTITY_MOTION
     places = np.array([1 + 2j])
@@ -92,8 +95,8 @@ def test_attaching_moves_nothing_at_the_present_frame(frame, turns):
     place = complex(before.placement(2, frame).apply(np.array([held]))[0])
     anchor, joint = attach_in_place(before, 2, 0, frame, place=place, turns=turns)
     assert abs(anchor - CENTRE) < 1e-8
-    hung = layers.attach_layer(2, anchor, joint)(loose)
-    assert_allclose(seen(hung, 2, frame), seen(loose, 2, frame, before), rtol=0, atol=1e-8)
+    attached = layers.attach_layer(2, anchor, joint)(loose)
+    assert_allclose(seen(attached, 2, frame), seen(loose, 2, frame, before), rtol=0, atol=1e-8)
     by_anchor = attach_in_place(before, 2, 0, frame, turns=turns)
     assert abs(by_anchor[0] - document.layer(2).anchor) < 1e-12
 
@@ -115,8 +118,8 @@ def test_layers_are_joined_where_they_overlap_without_an_anchor():
     before = ParentTransforms(document)
     anchor, joint = attach_in_place(before, 2, 0, 0, turns=True)
     assert anchor.real < CENTRE.real
-    hung = layers.attach_layer(2, anchor, joint)(document)
-    assert_allclose(seen(hung, 2, 0), seen(document, 2, 0, before), rtol=0, atol=1e-8)
+    attached = layers.attach_layer(2, anchor, joint)(document)
+    assert_allclose(seen(attached, 2, 0), seen(document, 2, 0, before), rtol=0, atol=1e-8)
 
 
 def test_attached_layer_keeps_its_distance_beside_its_parent():
@@ -133,19 +136,19 @@ def test_attached_layer_keeps_its_distance_beside_its_parent():
     )
     before = ParentTransforms(far)
     anchor, joint = attach_in_place(before, 2, 0, 11.5, turns=True)
-    hung = layers.attach_layer(2, anchor, joint)(far)
-    joints = ParentTransforms(hung)
-    assert_allclose(seen(hung, 2, 11.5, joints), seen(far, 2, 11.5, before), rtol=0, atol=1e-8)
+    attached = layers.attach_layer(2, anchor, joint)(far)
+    joints = ParentTransforms(attached)
+    assert_allclose(seen(attached, 2, 11.5, joints), seen(far, 2, 11.5, before), rtol=0, atol=1e-8)
     assert abs(joint.offset) > 200
     lengths = []
     for frame in (0, 11.5, 30.2, 48):
-        own, _ = exactly(hung, 2, anchor, frame)
-        parent, _ = exactly(hung, 0, joint.parent_point, frame)
+        own, _ = exactly(attached, 2, anchor, frame)
+        parent, _ = exactly(attached, 0, joint.parent_point, frame)
         lengths.append(abs(joints.placement(2, frame).apply(own) - parent))
     assert_allclose(lengths, abs(joint.offset), rtol=1e-9)
 
 
-def test_a_joint_must_be_on_what_hangs():
+def test_a_joint_must_be_on_the_attached_layer():
     document = layers.detach_layer(2, 1, 0)(chain())
     with pytest.raises(LissomError, match=r"nothing of '2' at \(5000, 0\)"):
         attach_in_place(ParentTransforms(document), 2, 0, 0, place=5000 + 0j, turns=True)
@@ -183,13 +186,13 @@ def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_attached_layer_is_as_distorted_as_by_itself(variant):
     """Its anchor and its turn are all that a joint decides."""
-    hung = chain(variant, 3 if variant == "nu" else 2)
+    attached = chain(variant, 3 if variant == "nu" else 2)
     rng = np.random.default_rng(9)
     points = np.array([inside(rng) for _ in range(40)])
     points = points[np.abs(points - CENTRE) < 0.8 * 90]
-    for layer in hung.layers[1:]:
-        free = hung.with_layer(replace(layer, attachments=(), anchor=None))
-        both = [Animation(clip_of(each, layer.id), points=points) for each in (hung, free)]
+    for layer in attached.layers[1:]:
+        free = attached.with_layer(replace(layer, attachments=(), anchor=None))
+        both = [Animation(clip_of(each, layer.id), points=points) for each in (attached, free)]
         for frame in rng.uniform(0, 48, 5 if variant == "nu" else 2):
             one, other = (animation.frame(frame) for animation in both)
             for measure in (distortion.k, distortion.sigma_a, distortion.sigma_b):

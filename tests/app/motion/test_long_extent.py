@@ -114,7 +114,7 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
     keys = (replace(layer.keys[0], pose=pose),)
     spring = Spring(handle=0, frequency=2.0, damping=0.1)
     moves = tuple(TransformKey(frame=at) for at in (0, kicked, LAST))
-    carrier = replace(layer, id=1, name="carrier", transform_keys=moves)
+    parent = replace(layer, id=1, name="parent", transform_keys=moves)
     child = replace(
         layer,
         handles=(handle,),
@@ -125,7 +125,7 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
         springs=(spring,),
     )
     (found, *_) = reach(
-        replace(document, layers=(child, carrier)),
+        replace(document, layers=(child, parent)),
         lambda at: 1000.0 if at == kicked + 7 else 10.0,
     )
     assert found >= 1000.0

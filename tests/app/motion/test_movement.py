@@ -1,4 +1,5 @@
-"""Layers moved as a whole: a rigid motion after the map, with all that hangs on them."""
+"""Layers moved as a whole: a rigid motion after the map, with all layers that are "
+"attached to them."""
 
 from dataclasses import replace
 
@@ -8,7 +9,7 @@ from chains import chain, seen
 from numpy.testing import assert_allclose
 
 from app.document import Attachment, TransformKey, clip_of, layer_commands as layers, transform_at
-from app.motion import Animation, ParentTransforms, hung_animations
+from app.motion import Animation, ParentTransforms, placed_animations
 from app.motion.parenting.parent_transforms import find_parent_motion
 
 MOVES = (
@@ -40,9 +41,9 @@ def test_a_layer_is_as_distorted_and_certified_as_without():
     assert np.array_equal(one.fz, other.fz)
     assert np.array_equal(one.fzbar, other.fzbar)
     assert [key.pose for key in still.layer(0).keys] == [key.pose for key in moved.layer(0).keys]
-    hung = hung_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
+    attached = placed_animations([Animation(clip_of(moved, 0), points=points)], moved)[0]
     motion = transform_at(moved, moved.layer(0), 13.0)
-    assert_allclose(hung.positions(13.0), motion.apply(one.positions), rtol=0, atol=1e-9)
+    assert_allclose(attached.positions(13.0), motion.apply(one.positions), rtol=0, atol=1e-9)
 
 
 def test_layer_is_not_moved_by_itself_while_attached():

@@ -62,7 +62,7 @@ def test_a_key_that_changes_has_four_intervals_prepared_again():
     assert prepared(stopped, store)[1] == 0
 
 
-def test_how_much_of_their_velocity_keys_keep_is_told():
+def test_how_much_of_their_velocity_keys_keep_is_reported():
     document = row(4)
     assert prepared(document)[0].velocity_shares(clip_of(document, 0)) == {10: 1.0, 20: 1.0}
     tight = altered(document, bounds=Bounds(k=0.01, sigma_a=1.01, sigma_b=0.99))

@@ -33,8 +33,8 @@ from app.motion import (
     ParentTransforms,
     bounding_box,
     find_parent_motion,
-    hung_animations,
     measure_extent,
+    placed_animations,
     reuse_corrections,
     trace_paths,
 )
@@ -61,9 +61,9 @@ def tracked(*tracks, loop=False, **changes):
     return with_layer(posed(loop=loop), tracks=tracks, **changes)
 
 
-def pulled(wish, variant="nu", **changes):
+def pulled(target, variant="nu", **changes):
     """A short document whose right handle is wanted elsewhere in its frame 3."""
-    away = track(keys=((1, 0), (3, wish), (5, 0)))
+    away = track(keys=((1, 0), (3, target), (5, 0)))
     return with_layer(posed(FEW, drawn=SHORT, variant=variant), tracks=(away,), **changes)
 
 
@@ -106,7 +106,8 @@ def test_a_planted_handle_stays_in_the_picture():
 
 
 def planted_child():
-    """A layer that hangs on a moving one, with a handle that stays in the scene; and where."""
+    """A layer that is attached to a moving one, with a handle that stays in the scene; "
+    "and where."""
     document = posed(FEW, drawn=SHORT)
     place = PLACES["top"] + 2j
     child = replace(
@@ -127,11 +128,11 @@ def test_planted_handle_stays_in_the_scene_when_attached():
     child = scene.layers[1]
     joints = ParentTransforms(scene)
     handles = np.array([handle.position for handle in child.handles])
-    hung = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
-    hung.carried = lambda frame: joints.parent_transform(1, frame)
+    attached = Animation(clip_of(scene, 1), points=np.append(handles, child.anchor))
+    attached.carried = lambda frame: joints.parent_transform(1, frame)
     below = Animation(clip_of(scene, 0), points=np.array([60 + 45j]))
     for frame in (0.0, 2.4, 5.8):
-        placed = joints.placement(1, frame).apply(hung.positions(frame))
+        placed = joints.placement(1, frame).apply(attached.positions(frame))
         assert abs(placed[IDS["top"]] - place) < 0.1
         assert placed[-1] == pytest.approx(below.positions(frame)[0], abs=1e-6)
 
@@ -175,9 +176,9 @@ def test_tracks_come_round_in_a_loop_with_their_delay():
     assert np.abs(animation.positions(39.999) - animation.positions(0.001)).max() < 0.02
 
 
-@pytest.mark.parametrize(("variant", "wish"), [("nu", 300 + 200j), ("scaled-eta", 8j)])
-def test_corrected_frames_are_proven_in_closed_variants(variant, wish):
-    document = pulled(wish)
+@pytest.mark.parametrize(("variant", "target"), [("nu", 300 + 200j), ("scaled-eta", 8j)])
+def test_corrected_frames_are_proven_in_closed_variants(variant, target):
+    document = pulled(target)
     report = certify_clip(clip_of(document, 0), variant)
     corrected = report.corrected
     assert corrected.frames == corrected.proven == 3
@@ -429,12 +430,12 @@ def test_attached_spring_swings_with_its_parent():
     assert_array_equal(alone.positions(5.0), alone.base.frame(5.0).positions)
     joints = ParentTransforms(scene)
     joints.tracked[1].at(5.0)
-    hung = Animation(
+    attached = Animation(
         clip_of(scene, 1), points=points, carried=lambda frame: joints.parent_transform(1, frame)
     )
-    swung = hung.positions(5.0) - hung.base.frame(5.0).positions
+    swung = attached.positions(5.0) - attached.base.frame(5.0).positions
     assert abs(swung[IDS["top"]]) > 0.1
-    # What was found for another motion of what it hangs on does not stay.
+    # What was found for another motion of its parent does not stay.
     moved = with_layer(scene, keys=tuple(reversed_in_time(scene.layers[0].keys)))
     window = reuse_corrections(scene, 1, None)
     assert reuse_corrections(scene, 1, window) is window
@@ -447,7 +448,7 @@ def test_attached_spring_swings_with_its_parent():
     )
     # Paths and reports are of what is shown.
     paths = trace_paths(clip_of(scene, 1), carried=find_parent_motion(scene, 1))
-    assert_allclose(paths.positions[5], hung.positions(5.0), atol=1e-9)
+    assert_allclose(paths.positions[5], attached.positions(5.0), atol=1e-9)
     assert certify_clip(clip_of(scene, 1)).corrected.frames == 0
     assert certify_clip(clip_of(scene, 1), None, find_parent_motion(scene, 1)).corrected.frames > 4
 
@@ -502,9 +503,9 @@ def test_extent_and_exports_are_of_the_shown_frames():
     while (work := frames.missing(document, 0, {0: store.sampler})) is not None:
         frames.take(work())
     animation = Animation(clip)
-    (hung,) = hung_animations([Animation(clip)], document).values()
+    (attached,) = placed_animations([Animation(clip)], document).values()
     places = [animation.positions(float(frame)) for frame in range(9)]
-    assert_allclose(hung.positions(3.0), places[3], rtol=0, atol=1e-9)
+    assert_allclose(attached.positions(3.0), places[3], rtol=0, atol=1e-9)
     found = measure_extent(document, {0: store}, corrected={0: frames})
     # On the screen positions have single precision.
     assert_allclose(found, bounding_box(np.concatenate(places)), rtol=0, atol=1e-2)
@@ -564,7 +565,7 @@ def test_planted_track_is_solved_anew_when_the_parent_changes():
     before = trace_paths(clip_of(scene, 1), carried=find_parent_motion(scene, 1))
     joints = ParentTransforms(scene)
     assert joints.tracked[1].at(6.0) is joints.tracked[1].at(6.0)
-    # The child is the same, but what it hangs on is not.
+    # The child is the same, but its parent is not.
     moved = replace(parent, keys=(parent.keys[0], replace(parent.keys[1], frame=5)))
     changed = replace(scene, layers=(moved, child))
     later = ParentTransforms(changed, earlier=joints)

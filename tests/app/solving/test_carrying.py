@@ -19,15 +19,15 @@ SHIFTS = st.complex_numbers(max_magnitude=1e3)
 
 
 @given(factor=FACTORS, shift=SHIFTS, mirrors=st.booleans())
-def test_a_likeness_is_found_by_its_images_and_mirrors_where_they_do(factor, shift, mirrors):
-    likeness = SimilarityTransform(factor, shift, mirrors)
-    found = SimilarityTransform.fit(PLACES, likeness.apply(PLACES))
+def test_a_similarity_is_found_by_its_images_and_mirrors_where_they_do(factor, shift, mirrors):
+    similarity = SimilarityTransform(factor, shift, mirrors)
+    found = SimilarityTransform.fit(PLACES, similarity.apply(PLACES))
     assert found.mirrors == mirrors
     size = abs(factor) * 100 + abs(shift)
     np.testing.assert_allclose(
-        found.apply(PLACES), likeness.apply(PLACES), rtol=0, atol=1e-9 * size
+        found.apply(PLACES), similarity.apply(PLACES), rtol=0, atol=1e-9 * size
     )
-    back = SimilarityTransform.fit(likeness.apply(PLACES), PLACES)
+    back = SimilarityTransform.fit(similarity.apply(PLACES), PLACES)
     np.testing.assert_allclose(
         back.apply(found.apply(PLACES)), PLACES, rtol=0, atol=1e-9 * (size + 100)
     )
@@ -45,16 +45,18 @@ def test_places_that_are_no_images_are_scaled_by_their_spread_both_ways():
 
 @pytest.mark.parametrize(("mirrors", "factor"), [(None, 1), (False, 1), (True, -1)])
 def test_one_place_is_only_moved_or_mirrored_upright(mirrors, factor):
-    likeness = SimilarityTransform.fit(np.array([3 + 4j]), np.array([10 + 1j]), mirrors=mirrors)
-    assert likeness.factor == factor
-    assert likeness.apply_to_point(3 + 4j) == 10 + 1j
+    similarity = SimilarityTransform.fit(np.array([3 + 4j]), np.array([10 + 1j]), mirrors=mirrors)
+    assert similarity.factor == factor
+    assert similarity.apply_to_point(3 + 4j) == 10 + 1j
 
 
 def test_a_straight_limb_is_mirrored_only_where_that_is_asked():
     straight = np.array([10 + 90j, 10 + 50j, 10 + 5j])
     for mirrors in (None, True):
-        likeness = SimilarityTransform.fit(straight, straight + 30, mirrors=mirrors)
-        assert likeness.apply_to_point(15 + 50j) == pytest.approx(35 + 50j if mirrors else 45 + 50j)
+        similarity = SimilarityTransform.fit(straight, straight + 30, mirrors=mirrors)
+        assert similarity.apply_to_point(15 + 50j) == pytest.approx(
+            35 + 50j if mirrors else 45 + 50j
+        )
 
 
 def by_names(layer, source):
@@ -66,8 +68,8 @@ def carriage(source, layer, mirrors=None):
     pairs = by_names(layer, source)
     places = np.array([source.handle(other).position for other in pairs.values()])
     images = np.array([layer.handle(one).position for one in pairs])
-    likeness = SimilarityTransform.fit(places, images, mirrors=mirrors)
-    return PoseTransfer(source=source, pairs=pairs, similarity=likeness)
+    similarity = SimilarityTransform.fit(places, images, mirrors=mirrors)
+    return PoseTransfer(source=source, pairs=pairs, similarity=similarity)
 
 
 def raised(layer):
@@ -99,8 +101,8 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     check_pose(layer, carried)
     assert carried.certificate.is_certified
     for handle in layer.handles:
-        wished = pose.targets[way.pairs[handle.id]].position
-        image = 2 * AXIS - wished.conjugate() if mirrored else wished + by
+        target = pose.targets[way.pairs[handle.id]].position
+        image = 2 * AXIS - target.conjugate() if mirrored else target + by
         image = 1j * image + SIZE[1] if turned else image
         assert carried.targets[handle.id].position == pytest.approx(image, abs=1e-9)
     # Not its handles alone: all of it is the image, as near as two cages have it.
@@ -111,7 +113,7 @@ def test_carried_pose_is_the_same_on_a_leg_drawn_elsewhere(near, drawn):
     assert np.abs(apart[inside]).max() < 0.05 * np.abs(source.map_of(pose)(points) - points).max()
 
 
-def test_there_and_back_wishes_are_what_they_were(near):
+def test_there_and_back_targets_are_what_they_were(near):
     source, pose = near
     layer = leg("far leg", 1, FAR.shift)
     carried = carriage(source, layer).transfer_pose(Rig.of(layer), pose)
@@ -174,8 +176,8 @@ def test_handles_that_take_nothing_over_stay_where_they_are(near):
     shin = next(each.id for each in added.handles if each.name == "shin")
     assert carried.targets[shin].position == present.targets[shin].position
     foot = next(each for each in added.handles if each.name == "foot")
-    wished = carriage(source, layer).transfer_targets(layer, pose)
-    named = {layer.handle(i).name: target for i, target in wished.items()}
+    targets = carriage(source, layer).transfer_targets(layer, pose)
+    named = {layer.handle(i).name: target for i, target in targets.items()}
     assert carried.targets[foot.id].position == pytest.approx(named["foot"].position)
     check_pose(added, carried)
 
@@ -205,24 +207,24 @@ def with_one_handle(layer):
 def test_the_solver_begins_with_the_image_of_the_whole_map(near, mirrored):
     source, pose = near
     layer = leg("far leg", 1, mirrored=mirrored, turned=True)
-    likeness = carriage(source, layer).similarity
-    begin, _ = find_initial_map(Rig.of(layer), source, pose, likeness, {})
+    similarity = carriage(source, layer).similarity
+    begin, _ = find_initial_map(Rig.of(layer), source, pose, similarity, {})
     points = source.domain.mesh.vertices
-    images, shape = likeness.apply(points), source.map_of(pose)
+    images, shape = similarity.apply(points), source.map_of(pose)
     inside = layer.covers(images)
-    wanted = likeness.apply(shape(points))[inside]
+    wanted = similarity.apply(shape(points))[inside]
     moved = np.abs(shape(points) - points).max()
     assert np.abs(begin(images[inside]) - wanted).max() < 0.02 * moved
 
 
 @pytest.mark.parametrize("by", [FAR.shift, FAR.shift - 9j])
-def test_what_hangs_is_held_at_its_joint_as_the_source_is_at_its_own(near, by):
+def test_attached_layer_is_held_at_its_joint_as_the_source_is_at_its_own(near, by):
     """The joint is beside the source's: it goes along as a rigid body would."""
-    hung = Attachment(parent=9, parent_point=0j)
-    source = replace(near[0], anchor=62 + 162j, attachments=(hung,))
+    attachment = Attachment(parent=9, parent_point=0j)
+    source = replace(near[0], anchor=62 + 162j, attachments=(attachment,))
     pose = raised(source)
     assert abs(source.map_of(pose)(np.array([source.anchor]))[0] - source.anchor) < 3
-    layer = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, attachments=(hung,))
+    layer = replace(leg("far leg", 1, FAR.shift), anchor=62 + 162j + by, attachments=(attachment,))
     rig = Rig.of(layer)
     assert len(rig.pins) == 1
     carried = carriage(source, layer).transfer_pose(rig, pose)

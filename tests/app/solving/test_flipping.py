@@ -27,7 +27,7 @@ def layer_of(places, *, symmetric=True):
 
 
 def posed(layer, **moves):
-    """Pull handles, by name, as far as is told."""
+    """Pull handles, by name, by these distances."""
     rig = Rig.of(layer)
     pose = layer.keys[0].pose
     names = {handle.name: handle.id for handle in layer.handles}
@@ -53,13 +53,13 @@ def test_a_symmetric_drawing_is_posed_as_its_mirror_image(raised):
     assert flipped.certificate.is_certified
     points = layer.domain.mesh.vertices
     mirrored = 2 * MIDDLE - layer.map_of(pose)(2 * MIDDLE - points.conj()).conj()
-    # The cage is not symmetric, so that the same wishes lead to slightly other maps.
+    # The cage is not symmetric, so that the same targets lead to slightly other maps.
     apart = np.abs(layer.map_of(flipped)(points) - mirrored)
     moved = np.abs(layer.map_of(pose)(points) - points)
     assert apart.max() < 0.1 * moved.max()
 
 
-def test_pairs_exchange_their_wishes_and_twice_is_nothing(raised):
+def test_pairs_exchange_their_targets_and_twice_is_nothing(raised):
     layer, rig, pose = raised
     left, right, hip = (handle.id for handle in layer.handles)
     targets = flip_targets(layer, pose, layer.axis)

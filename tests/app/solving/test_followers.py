@@ -108,11 +108,11 @@ def test_what_sits_on_a_joint_is_held_by_it(bar):
     document = layer_commands.duplicate_layer(0)(bar)
     (body, _) = document.layers
     at = body.handle(MIDDLE).position
-    hung = layer_commands.attach_layer(0, at, Attachment(parent=1, parent_point=at))(
+    attached = layer_commands.attach_layer(0, at, Attachment(parent=1, parent_point=at))(
         document
     ).layers[0]
-    assert (body.sprung_handles, hung.sprung_handles) == ({MIDDLE}, frozenset())
-    assert Rig.of(hung).pins == ()
+    assert (body.sprung_handles, attached.sprung_handles) == ({MIDDLE}, frozenset())
+    assert Rig.of(attached).pins == ()
     elsewhere = layer_commands.attach_layer(0, at + 20, Attachment(parent=1, parent_point=at))(
         document
     ).layers[0]
@@ -132,10 +132,10 @@ def test_poses_that_are_solved_again_are_not_held_by_it_either(bar):
     # Where it was wanted when it did not follow yet does not count.
     stale = replace(pose, targets={**pose.targets, MIDDLE: Target(position=120 + 40j)})
     posed = layer.with_poses([stale])
-    renewal = KeyResolver(before=posed, bounds=Bounds(k=0.45, sigma_a=1.9, sigma_b=0.55))
-    while not renewal.is_over:
-        renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
-    (again,) = renewal.poses
+    resolver = KeyResolver(before=posed, bounds=Bounds(k=0.45, sigma_a=1.9, sigma_b=0.55))
+    while not resolver.is_over:
+        resolver = step_resolver(resolver, np.zeros((1, 1, 4), np.uint8))
+    (again,) = resolver.poses
     (flipped,) = flip_poses(Rig.of(posed), [stale], 120.0)
     for solved in (again, flipped):
         place = places(layer, solved)[MIDDLE]
@@ -168,7 +168,7 @@ def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
         )
     assert abs(second.pose.targets[MIDDLE].position - 120 - 40j) > 10
     (notice,) = notices
-    assert notice.startswith("frame 8: 'middle' follows by its spring, and goes where the body")
+    assert notice.startswith("frame 8: 'middle' has a spring and follows the body")
     # Where it is carried to on the way back does not keep a loop from closing.
     assert last.pose is first.pose
 

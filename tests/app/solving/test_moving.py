@@ -128,7 +128,7 @@ def test_it_survives_saving(wagging, tmp_path):
     assert is_motion_unedited(read, read.motions[0])
 
 
-def test_motion_out_of_reach_is_told_with_a_size_in_reach(scenes):
+def test_motion_out_of_reach_is_reported_with_a_size_in_reach(scenes):
     order = MotionRequest(
         motion="breathe", kind="anything", joints={}, parameters=Parameters(size=2.0), limits=None
     )

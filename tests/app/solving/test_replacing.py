@@ -43,18 +43,18 @@ def raised():
     for place in (50 + 50j, 140 + 50j):
         document = handle_commands.add_handle(0, place)(document)
     (layer,) = document.layers
-    wishes = {0: Target(position=50 + 50j), 1: Target(position=130 + 75j)}
-    drag = DragSolver.begin(Rig.of(layer), layer.keys[0].pose).step_towards(wishes, 300)
-    return key_commands.insert_key(0, 10, drag.make_pose(wishes))(document)
+    targets = {0: Target(position=50 + 50j), 1: Target(position=130 + 75j)}
+    drag = DragSolver.begin(Rig.of(layer), layer.keys[0].pose).step_towards(targets, 300)
+    return key_commands.insert_key(0, 10, drag.make_pose(targets))(document)
 
 
 def replaced(document, made):
     (before,) = document.layers
-    renewal = start_picture_replacement(before, made, document.canvas)
-    while not renewal.is_over:
-        renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
-    assert renewal.progress == 1
-    after = renewal.command(document)
+    resolver = start_picture_replacement(before, made, document.canvas)
+    while not resolver.is_over:
+        resolver = step_resolver(resolver, np.zeros((1, 1, 4), np.uint8))
+    assert resolver.progress == 1
+    after = resolver.command(document)
     assert after.canvas == document.canvas
     return after.layers[0]
 
@@ -106,7 +106,7 @@ def test_the_same_shape_is_posed_as_before(raised):
         assert np.abs(moved).max() < 1
 
 
-def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_wishes_follow(raised):
+def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_targets_follow(raised):
     (before,) = raised.layers
     layer = replaced(raised, layer_of(blob(50, 30)))
     places = np.array([handle.position for handle in layer.handles])
@@ -121,7 +121,7 @@ def test_what_is_not_on_the_new_shape_comes_onto_it_and_its_wishes_follow(raised
         before_up = before.keys[1].pose.targets[handle.id].position
         moved = up.pose.targets[handle.id].position - before_up
         assert abs(abs(moved) - abs(by)) < 1e-9
-    # At the raised end the shape is turned, and so is the way that its wish goes.
+    # At the raised end the shape is turned, and so is the way that its target goes.
     turned = up.pose.targets[1].position - before.keys[1].pose.targets[1].position
     assert abs(np.angle(turned / (layer.handles[1].position - before.handles[1].position))) > 0.1
 
@@ -149,8 +149,8 @@ def test_a_pose_that_cannot_be_carried_over_is_reached_from_rest():
     head = next(layer for layer in document.layers if layer.name == "head")
     image = Image.new("RGBA", (460, 460))
     ImageDraw.Draw(image).ellipse((10, 10, 450, 450), fill=(250, 210, 170, 255))
-    renewal = start_picture_replacement(head, layer_of(image), document.canvas)
-    while not renewal.is_over:
-        renewal = step_resolver(renewal, np.zeros((1, 1, 4), np.uint8))
-    assert not renewal.unsolved
-    assert all(pose.certificate.is_certified for pose in renewal.poses)
+    resolver = start_picture_replacement(head, layer_of(image), document.canvas)
+    while not resolver.is_over:
+        resolver = step_resolver(resolver, np.zeros((1, 1, 4), np.uint8))
+    assert not resolver.unsolved
+    assert all(pose.certificate.is_certified for pose in resolver.poses)

@@ -234,7 +234,11 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (["handles", "hoof", "still"], "no", says(NOT_TRUE_OR_FALSE, where="handle 'hoof'.still")),
         (["tracks"], {}, says(NOT_LIST, where="tracks")),
         (["tracks", 0], [], says(NOT_OBJECT, where="tracks[0]")),
-        (["tracks", 0, "handle"], "tial", r"tracks\[0\].handle names the handle 'tial', but the"),
+        (
+            ["tracks", 0, "handle"],
+            "tial",
+            r"tracks\[0\].handle names the handle 'tial', which is not among",
+        ),
         (["tracks", 0, "handle"], 2, says(NOT_TEXT, where="tracks[0].handle")),
         (["tracks", 0, "handle"], None, says(HANDLE_OR_HANDLES, where="tracks[0]")),
         (["tracks", 0, "handles"], ["hoof"], says(HANDLE_OR_HANDLES, where="tracks[0]")),
@@ -249,7 +253,7 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (
             ["tracks", 0, "keys", 1, "frame"],
             0,
-            says(OUT_OF_ORDER, what="tracks[0].keys are", after=0, before=0),
+            says(OUT_OF_ORDER, where="tracks[0].keys", after=0, before=0),
         ),
         (["tracks", 0, "keys", 1, "frame"], 99, says(OUT_OF_ORDER, after=11, before=99)),
         (["tracks", 0, "keys", 1, "frame"], 1.5, says(NOT_A_FRAME, where="keys[1]", name="frame")),
@@ -259,11 +263,15 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (["tracks", 0, "keys", 1, "offset"], [1], says(NOT_POINT, where="keys[1].offset")),
         (["tracks", 0, "keys", 1, "offset"], [float("nan"), 0], says(NOT_FINITE)),
         (["tracks", 0, "keys", 1, "offset"], [1e9, 0], r"keys\[1\]: A track's key must be within"),
-        (["tracks", 0, "keys", 1, "at"], [1, 2], "has 'at', but its track is with the pose"),
-        (["tracks", 1, "keys", 0, "offset"], [1, 2], "'offset', but its track is with the picture"),
+        (["tracks", 0, "keys", 1, "at"], [1, 2], "has 'at', but the keys of a track with 'pose'"),
+        (
+            ["tracks", 1, "keys", 0, "offset"],
+            [1, 2],
+            "'offset', but the keys of a track with 'picture'",
+        ),
         (["tracks", 0, "keys", 0, "velocity"], 3, says(NOT_POINT, where="keys[0].velocity")),
         (["tracks", 0, "keys", 0, "velocity"], [float("nan"), 0], says(NOT_FINITE)),
-        (["tracks", 0, "keys", 0, "velocity"], [1e9, 0], "no more than 10,000,000 pixels"),
+        (["tracks", 0, "keys", 0, "velocity"], [1e9, 0], "at most 10,000,000 pixels"),
         (
             ["tracks", 0, "keys", 1, "velocity"],
             [1, 0],
@@ -405,13 +413,13 @@ def test_a_key_on_request_pulls_with_bounded_force():
         after = {"frame": 16, "targets": {"start": [32, 44]}}
         script = {"schema": 1, "handles": handles, "keys": [{"frame": 0}, far, after]}
         script["bounds"] = {"k": 0.5, "sigma_a": 2, "sigma_b": 0.5}
-        told, notices = pose_document(document, parse_pose_script(script), lambda _: None)
-        posed[bool(pull)] = told.layers[0], notices
+        result, notices = pose_document(document, parse_pose_script(script), lambda _: None)
+        posed[bool(pull)] = result.layers[0], notices
     (held, _), (pulled, notices) = posed[False], posed[True]
     for layer, far in ((held, True), (pulled, False)):
         for key in layer.keys[1:]:
             assert (abs(layer.target_errors(key.pose)[1]) > 5) == far
-    # It is told how far short it is, and it is wanted where it came to.
+    # A notice names the target error, and the target moves to where the handle is.
     assert len(notices) == 1
     assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
     wanted = pulled.keys[1].pose.targets[0].position
@@ -420,7 +428,7 @@ def test_a_key_on_request_pulls_with_bounded_force():
     assert pulled.keys[2].pose.targets[0].position == wanted
 
 
-def test_a_script_gives_its_layer_tracks_springs_and_stillness():
+def test_a_script_gives_its_layer_tracks_springs_and_auto_pins():
     opened = still_document(bar_picture())
     handles = {"end": [210, 40], "start": {"at": [30, 40], "still": False}}
     script = {
@@ -482,7 +490,7 @@ def test_the_camera_and_movements_are_read():
             {"camera": changed(("keys", 1, "zoom"), float("inf"), CAMERA)},
             says(NOT_FINITE, where="zoom"),
         ),
-        ({"camera": changed(("keys", 1, "frame"), 0, CAMERA)}, r"camera\.keys are out of order"),
+        ({"camera": changed(("keys", 1, "frame"), 0, CAMERA)}, r"camera\.keys is out of order"),
         ({"camera": changed(("keys", 1, "tilt"), 1, CAMERA)}, "unknown field 'tilt'"),
         (
             {"camera": changed(("keys", 0, "centre"), None, CAMERA)},
@@ -492,9 +500,9 @@ def test_the_camera_and_movements_are_read():
         ({"canvas": [640]}, "canvas must be width and height"),
         ({"canvas": [640, 1.5]}, "canvas must be a whole number"),
         ({"movement": {"keys": [{"frame": 0, "zoom": 2}]}}, "unknown field 'zoom'"),
-        ({"movement": {"keys": [{"frame": 3}, {"frame": 2}]}}, r"movement\.keys are out of order"),
+        ({"movement": {"keys": [{"frame": 3}, {"frame": 2}]}}, r"movement\.keys is out of order"),
         ({"opacity": 2}, "Opacity is between 0 and 1"),
-        ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, what="opacity is")),
+        ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, where="opacity")),
         ({"opacity": [[0]]}, r"opacity\[0\] must be a frame and a number"),
         ({"opacity": []}, "at least one key"),
         ({"order": [[0, None]]}, 'order needs "layers"'),
@@ -538,8 +546,8 @@ def test_a_script_says_what_repeats():
 @pytest.mark.parametrize(
     ("cycles", "message"),
     [
-        ([{"from": 8, "to": 8}], r"cycles\[0\]: What repeats ends after .* begins, 8, not at 8"),
-        ([{"from": 8, "to": 0}], "begins, 8, not at 0"),
+        ([{"from": 8, "to": 8}], r"cycles\[0\]: A cycle ends after the frame 8, .* not at 8"),
+        ([{"from": 8, "to": 0}], "begins, not at 0"),
         ([{"from": 0, "to": 24, "until": 20}], "cannot repeat until frame 20, which is before"),
         (
             [{"from": 8, "to": 24}, {"from": 0, "to": 8, "until": 16}],
@@ -548,10 +556,10 @@ def test_a_script_says_what_repeats():
         ([{"from": 0, "to": 24}, {"from": 30, "to": 40}], "overlap; end the former at frame 30"),
         ([{"from": 0, "to": 12, "until": 24}], "key at frame 16 is where frames 0 to 12 repeat"),
         ([{"from": 9, "to": 12, "until": 12}], "no key in frames 9 to 12 that could repeat"),
-        ([{"from": 4, "to": 12, "until": 16}], "Frame 4 needs a key, to which the keys before"),
+        ([{"from": 4, "to": 12, "until": 16}], "starts at frame 4. Set a key there"),
         (
             [{"from": 0, "to": 12, "until": 13}],
-            "At frame 13 the repeats .* nothing leads to the key at frame 16; .* frame 12 instead",
+            "end at frame 13, .* no motion leads to the key at frame 16; .* frame 12 instead",
         ),
         ([{"from": 0}], says(NOT_A_FRAME, where="cycles[0]", name="to")),
         ([{"from": 0, "to": 24.5}], says(NOT_A_FRAME, where="cycles[0]", name="to")),

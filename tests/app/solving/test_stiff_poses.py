@@ -116,14 +116,14 @@ def test_a_pose_of_before_stays_and_begins_a_drag_though_it_is_beyond_new_limits
     assert drag.step_towards(UP, 200).state.certificate.is_certified
 
 
-def test_limb_held_back_by_its_bone_is_told_to_be_at_the_limits():
+def test_limb_held_back_by_its_bone_is_reported_to_be_at_the_limits():
     boned = bar(100.0)
     far = targets_of(30 + 40j, 330 + 40j, 540 + 40j)
     # In some steps it is at the limits, long before all of it is at rest.
     pose = pulled(boned, boned.keys[0].pose, far, steps=30)
-    shortfall = measure_target_errors(boned, pose)
-    assert 1 in shortfall.errors
-    assert shortfall.at_limits
+    missed = measure_target_errors(boned, pose)
+    assert 1 in missed.errors
+    assert missed.at_limits
 
 
 SCRIPT = {
@@ -150,9 +150,7 @@ def test_script_stiffens_what_it_says():
     assert bent_in(layer, stiff, 110, 160) < 0.5 * bent_in(layer, soft, 110, 160)
     nowhere = {**SCRIPT, "stiff": [{"around": [240, 400], "radius": 6, "amount": 10}]}
     _, notices = pose_document(drawn(), parse_pose_script(nowhere), lambda _: None)
-    assert notices == (
-        "no outline is seen within 6 px of (240, 400): nothing is stiff or soft there",
-    )
+    assert notices == ("no outline is within 6 px of (240, 400): nothing is stiff or soft there",)
 
 
 @pytest.mark.parametrize(
@@ -262,10 +260,10 @@ def test_what_is_stiff_stays_in_its_place_on_another_domain_and_beside_a_cut(det
     for cut_out in (layer.cut_out, CutOut(cut_lines=(slit,))):
         before = replace(layer, cut_out=cut_out)
         meshing = Meshing(detail=detail, triangles=1_000)
-        renewal = KeyResolver(before=before, bounds=before.bounds, meshing=meshing)
-        while not renewal.is_over:
-            renewal = step_resolver(renewal, BAR)
-        after = renewal.command(document.with_layer(before)).layers[0]
+        resolver = KeyResolver(before=before, bounds=before.bounds, meshing=meshing)
+        while not resolver.is_over:
+            resolver = step_resolver(resolver, BAR)
+        after = resolver.command(document.with_layer(before)).layers[0]
         assert after.domain is not before.domain
         assert after.bones == before.bones
         places = (130 + 20j, 130 + 60j, 240 + 20j, 460 + 40j, 330 + 60j)
@@ -281,10 +279,10 @@ def test_another_picture_takes_over_what_is_stiff():
     larger = np.zeros((80, 500, 4), np.uint8)
     larger[16:64, 20:480] = 255
     made = still_document(larger).layers[0]
-    renewal = start_picture_replacement(document.layers[0], made, (480, 80))
-    while not renewal.is_over:
-        renewal = step_resolver(renewal, larger)
-    after = renewal.command(document).layers[0]
+    resolver = start_picture_replacement(document.layers[0], made, (480, 80))
+    while not resolver.is_over:
+        resolver = step_resolver(resolver, larger)
+    after = resolver.command(document).layers[0]
     assert after.stiffness.max() > 5
     assert stiffness_near(after, 240 + 15j)[0] < 1.1
     assert after.bones == document.layers[0].bones

@@ -39,8 +39,8 @@ def pulled(domain, places, targets, bounds):
     boundary = Boundary.sample(domain)
     handles = Handles.place(boundary, np.array(places, dtype=complex), [1.0] * len(places))
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-    wish = handles.targets(np.array(targets, dtype=complex), [np.nan] * len(targets))
-    state, _ = deformer.settle(deformer.start(), wish, at_most=400)
+    wanted = handles.targets(np.array(targets, dtype=complex), [np.nan] * len(targets))
+    state, _ = deformer.settle(deformer.start(), wanted, at_most=400)
     assert state.certificate.is_certified
     return state.map, np.abs(state.map(np.array(places, dtype=complex)) - np.array(targets))
 

@@ -98,20 +98,20 @@ def test_the_work_of_another_living_window_is_not_offered(tmp_path, autosave):
 def test_work_remembers_where_it_came_from(tmp_path, autosave, origin):
     autosave.write(full_document(), origin)
     (kept,) = tmp_path.glob("unsaved-*.lissom")
-    document, told = load_recoverable_file(kept)
-    assert told == origin
+    document, source = load_recoverable_file(kept)
+    assert source == origin
     # A saved project does not say so.
     assert not differences(document, full_document())
     assert document.unknown_members == full_document().unknown_members
 
 
 @pytest.mark.parametrize(
-    "told", [None, b"\xff", b"[" * 99_999, b"[]", b'{"name": 1}', b'{"path": "/a.lissom"}']
+    "content", [None, b"\xff", b"[" * 99_999, b"[]", b'{"name": 1}', b'{"path": "/a.lissom"}']
 )
-def test_work_that_says_nothing_of_where_it_came_from_is_there_all_the_same(tmp_path, told):
+def test_work_that_says_nothing_of_where_it_came_from_is_there_all_the_same(tmp_path, content):
     document = disc_document()
-    if told is not None:
-        document = replace(document, unknown_members={"origin.json": told})
+    if content is not None:
+        document = replace(document, unknown_members={"origin.json": content})
     save_project(tmp_path / "unsaved-1.lissom", document)
     read, origin = load_recoverable_file(tmp_path / "unsaved-1.lissom")
     assert origin == UNKNOWN_SOURCE

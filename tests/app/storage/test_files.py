@@ -160,10 +160,10 @@ def test_what_is_no_array_file_is_refused(tmp_path):
     whole = path.read_bytes()
     for damaged in (b"", b"text", whole[:500], whole[:200] + b"\0" * 400 + whole[600:]):
         path.write_bytes(damaged)
-        with pytest.raises(LissomError, match=NO_ARRAYS):
+        with pytest.raises(LissomError, match=says(NO_ARRAYS)):
             read_arrays(path, required=("a",))
     np.save(tmp_path / "one.npy", np.arange(3))
-    with pytest.raises(LissomError, match=NO_ARRAYS):
+    with pytest.raises(LissomError, match=says(NO_ARRAYS)):
         read_arrays(tmp_path / "one.npy", required=("a",))
     np.savez(path, a=np.array([{"pickled": 1}], dtype=object))
     with pytest.raises(LissomError, match="not an NPZ file of numeric arrays"):
@@ -300,11 +300,11 @@ def npy(array, shape=None):
     ],
 )
 def test_arrays_that_are_not_what_they_say_are_refused(tmp_path, content):
-    with pytest.raises(LissomError, match=NO_ARRAYS):
+    with pytest.raises(LissomError, match=says(NO_ARRAYS)):
         read_arrays(npz(tmp_path / "case.npz", content), required=("a",))
 
 
-def test_text_in_place_of_numbers_is_told(tmp_path):
+def test_text_in_place_of_numbers_is_reported(tmp_path):
     path = npz(tmp_path / "case.npz", npy(np.array(["text"])))
     with pytest.raises(LissomError, match="the array 'a' holds text"):
         read_arrays(path, required=("a",))
@@ -325,7 +325,7 @@ def test_packed_arrays_are_unpacked_within_limits(tmp_path, monkeypatch):
         read_arrays(path, required=("a",))
 
 
-def test_one_holds_a_file_and_others_are_told_who(tmp_path):
+def test_file_lock_names_its_holder_when_another_asks(tmp_path):
     path = tmp_path / "a.lissom"
     hold = FileLock(path)
     with pytest.raises(FileLockedError, match=r"by .* on .*, since 20"):
@@ -378,11 +378,13 @@ def test_a_lock_file_that_a_dead_process_left_holds_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("told", [b"", b"[" * 999, b"{}", b'{"who": "a\\u0007", "since": 1e308}'])
-def test_nonsense_in_a_lock_file_is_told_as_what_is_known(tmp_path, told):
+@pytest.mark.parametrize(
+    "content", [b"", b"[" * 999, b"{}", b'{"who": "a\\u0007", "since": 1e308}']
+)
+def test_nonsense_in_a_lock_file_is_reported_as_what_is_known(tmp_path, content):
     hold = FileLock(tmp_path / "a.lissom")
     (beside,) = tmp_path.iterdir()
-    beside.write_bytes(told)
+    beside.write_bytes(content)
     with pytest.raises(FileLockedError, match="in another window"):
         FileLock(tmp_path / "a.lissom")
     hold.release()

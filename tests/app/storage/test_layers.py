@@ -84,7 +84,7 @@ def test_several_pictures_become_layers_in_the_middle_of_the_largest(tmp_path):
     assert [layer.corner for layer in document.layers] == [0, 50 + 40j]
 
 
-def test_bad_drawings_are_told_in_words(tmp_path):
+def test_bad_drawings_are_reported_in_words(tmp_path):
     for name, content in (("a.ora", b"?"), ("a.psd", b"?")):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(LissomError, match=f"cannot open .*{name}: it is not a"):

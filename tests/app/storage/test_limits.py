@@ -232,11 +232,11 @@ NOT_READ_BACK = (
 )
 
 
-@pytest.mark.parametrize(("module", "limit", "told"), NOT_READ_BACK)
-def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module, limit, told):
+@pytest.mark.parametrize(("module", "limit", "refusal"), NOT_READ_BACK)
+def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module, limit, refusal):
     before, tmp_path = saved.read_bytes(), saved.parent
     monkeypatch.setattr(module, limit, 3)
-    with pytest.raises(LissomError, match=f"could not open it again: .*{told}"):
+    with pytest.raises(LissomError, match=f"could not open it again: .*{refusal}"):
         save_project(saved, clocked_document())
     assert saved.read_bytes() == before
     assert [*tmp_path.iterdir()] == [saved]
@@ -305,7 +305,7 @@ UNKNOWN_MOTIONS = (
 
 
 @pytest.mark.parametrize(("motion", "reason"), UNKNOWN_MOTIONS)
-def test_motion_is_kept_and_told_when_it_is_not_known(saved, motion, reason):
+def test_motion_is_kept_and_reported_when_it_is_not_known(saved, motion, reason):
     later = KNOWN | {"first": 10, "start": 10, "last": 20}
     with_content(saved, lambda c: c["layers"][0].update(motions=[KNOWN, motion, later]))
     document = load_project(saved)
@@ -343,15 +343,15 @@ REFUSED = (
     ),
     (lambda c: c["layers"][0].update(visibility_keys=[[10**6, True]]), "frame from 0 to 999,999"),
     (lambda c: c["layers"][0].update(id=MAX_ID + 1), "lacks layers/2147483648"),
-    (lambda c: c["layers"][0].update(next_handle=2**31), "id of the next handle is 0 to"),
-    (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "id of a handle is 0 to"),
+    (lambda c: c["layers"][0].update(next_handle=2**31), "The next handle has an id from 0 to"),
+    (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "A handle has an id from 0 to"),
     (
         lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 1], "keys": [[10**6, 0]]}]),
         "frame from 0 to 999,999",
     ),
     (
         lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 0], "keys": []}]),
-        "A choice has the layer 0 twice",
+        "A switch has the layer 0 twice",
     ),
     (
         lambda c: c["layers"][0].update(cycles=[{"first": -2, "last": 2, "until": None}]),
@@ -368,7 +368,7 @@ REFUSED = (
                 for i in range(MAX_CYCLES + 1)
             ]
         ),
-        "at most 1,000 stretches that repeat, not 1,001",
+        "at most 1,000 cycles, not 1,001",
     ),
 )
 

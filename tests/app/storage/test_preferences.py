@@ -82,7 +82,7 @@ def test_a_later_version_may_know_more(tmp_path):
     assert load_preferences(tmp_path) == CHOSEN
 
 
-def test_a_folder_that_cannot_be_written_is_told_and_does_no_harm(tmp_path):
+def test_a_folder_that_cannot_be_written_is_reported_and_does_no_harm(tmp_path):
     folder = tmp_path / "file"
     folder.write_bytes(b"")
     with pytest.raises(LissomError, match=r"the folder .*file cannot be made: File exists"):

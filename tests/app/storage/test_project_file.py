@@ -25,7 +25,7 @@ from app.cut_out import CutLine, CutOut
 from app.document.commands import handle_commands, key_commands, track_commands
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import TangentMode
-from app.document.layer import DUPLICATE_BONES
+from app.document.layer import DUPLICATE_BONES, NO_HANDLE
 from app.document.model import NO_LAYER, PARENT_CIRCLE
 from app.document.timing.cycles import Cycle
 from app.errors import LissomError
@@ -356,7 +356,7 @@ def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
         (["tracks", 0], 7, says(NOT_OBJECT, where="tracks[0]")),
         (["tracks", 0, "handles"], [], "track is of at least one handle"),
         (["tracks", 0, "handles"], [4, 4], "track has the handle 4 twice"),
-        (["tracks", 0, "handles"], [7], "track is of the handle 7, which is not there"),
+        (["tracks", 0, "handles"], [7], says(NO_HANDLE, identity=7)),
         (["tracks", 0, "handles"], ["4"], says(NOT_WHOLE, where="handles[0]")),
         (["tracks", 0, "is_scene_space"], 1, says(NOT_TRUE_OR_FALSE, where="is_scene_space")),
         (["tracks", 0, "keys"], [], "track has at least one key"),
@@ -373,14 +373,14 @@ def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
         (["tracks", 0, "keys", 1, "turn"], 10**400, "turn must be finite"),
         (["tracks", 0, "keys", 1, "turn"], -130, "turns by at most 20 whole turns, not by -20.69"),
         (["tracks", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
-        (["tracks", 0, "keys", 1, "tangent_mode"], "hold", "to hold is an easing"),
+        (["tracks", 0, "keys", 1, "tangent_mode"], "hold", "hold is an easing"),
         (["tracks", 0, "delay"], -1, "delay of a track is from 0"),
         (["tracks", 0, "delay"], 10**30, "delay of a track is from 0"),
         (["tracks", 0, "delay"], 60, "late by 60 frames, which is longer than the loop of 59"),
         (["tracks", 0, "reach"], 1.1, "reach of a track is between 0 and 1"),
         (["tracks", 0, "enabled"], None, says(NOT_TRUE_OR_FALSE, where="enabled")),
         (["tracks", 0, "keys_rotation"], 0.1, says(NOT_TRUE_OR_FALSE, where="keys_rotation")),
-        (["springs", 0, "handle"], 7, "spring is of the handle 7, which is not there"),
+        (["springs", 0, "handle"], 7, says(NO_HANDLE, identity=7)),
         (["springs", 0, "frequency"], 0, "frequency of a spring is above 0"),
         (["springs", 0, "damping"], -1, "damping of a spring is from 0"),
         (["springs", 0, "lag"], 1e9, "lag of a spring is from 0"),
@@ -576,9 +576,9 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["layers", 0, "picture", "sha256"], "0" * 64, says(OTHER_CHECKSUM)),
         (["layers", 0, "picture", "suffix"], ".jpg", "lacks layers/0/source.jpg"),
         (["layers", 0, "picture", "suffix"], "/../../x", "lacks layers/0/source"),
-        (["layers", 0, "picture", "size"], [0, 5], "size of the picture"),
+        (["layers", 0, "picture", "size"], [0, 5], "The picture must have 1 to"),
         (["layers", 0, "picture", "size"], [200, 201], "200 × 200 pixels, not 200 × 201"),
-        (["layers", 0, "picture", "size"], [10**30, 200], "size of the picture"),
+        (["layers", 0, "picture", "size"], [10**30, 200], "The picture must have 1 to"),
         (["layers", 0, "id"], -1, "lacks layers/-1"),
         (["layers", 0, "handles"], {}, says(NOT_LIST, where="handles")),
         (["layers", 0, "handles", 0, "name"], 5, says(NOT_TEXT, where="handles[0].name")),
@@ -602,9 +602,9 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         ),
         (["layers", 0, "keys", 1], 7, says(NOT_OBJECT, where="keys[1]")),
         (["layers", 0, "keys", 2, "depths"], [[4]], r"depths\[0\] must be a handle and a number"),
-        (["layers", 0, "keys", 2, "depths"], [[4, 7]], "between −1, behind, and 1, in front"),
+        (["layers", 0, "keys", 2, "depths"], [[4, 7]], "from −1, behind, to 1, in front"),
         (["layers", 0, "keys", 2, "depths"], [[9, 0.5]], "in front that is not there"),
-        (["layers", 0, "handles", 0, "depth"], 2, "between −1, behind, and 1, in front"),
+        (["layers", 0, "handles", 0, "depth"], 2, "from −1, behind, to 1, in front"),
         (["layers", 0, "handles", 0, "extent"], 0, "extent of handle 'nose'"),
         (["layers", 0, "name"], " ", "needs a name"),
         (["layers", 0, "name"], "parent", "Two layers are called 'parent'"),
@@ -614,14 +614,14 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (
             ["layers", 0, "visibility_keys"],
             [[12, True], [12, False]],
-            "shown or hidden at frame 12",
+            "visibility keys at frames 12 and 12",
         ),
         (["layers", 0, "visibility_keys"], [[12]], "a frame and true or false"),
         (["layers", 0, "attachment", "parent"], 7, says(NO_LAYER, identity=7)),
         (["layers", 0, "attachment", "parent"], 0, says(PARENT_CIRCLE)),
         (["layers", 0, "attachment", "parent_point"], [1e9, 0], "A joint must be within"),
         (["layers", 0, "anchor"], None, "attached, but has no anchor"),
-        (["size"], [0, 5], "size of the canvas"),
+        (["size"], [0, 5], "The canvas must have 1 to"),
     ],
 )
 def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, message):
@@ -639,7 +639,7 @@ def test_fields_that_make_no_sense_are_named(tmp_path, members, way, value, mess
         (["notes", 0], 7, says(NOT_TEXT, where="import_log.notes[0]")),
     ],
 )
-def test_what_was_told_of_an_import_must_be_lines(tmp_path, way, value, message):
+def test_what_was_reported_of_an_import_must_be_lines(tmp_path, way, value, message):
     save_project(tmp_path / "a", clocked_document())
     broken = with_json(read_members(tmp_path / "a"), "import_log", *way, value=value)
     with pytest.raises(LissomError, match=message):

@@ -148,7 +148,7 @@ def test_one_word_sets_all_three_bounds(window, project, tab):
     before = project.document
     tab("Deform", lambda robot: robot.item_click("**/stretch/###Rubbery"))
     assert project.layer.bounds == RUBBERY.bounds
-    assert project.history.undo_label == "Set bounds"
+    assert project.history.undo_label == "Set limits"
     editing.undo(window.session)
     assert project.document is before
     tab("Deform", lambda robot: robot.item_click("**/stretch/###Stiff"))
@@ -165,7 +165,7 @@ def test_tighter_bounds_bring_keys_in_as_one_step(window, project, tab):
     assert largest(project, "k") <= bound
     assert all(key.pose.certificate.is_certified for key in project.layer.keys)
     assert project.layer.key(0).pose is before.layers[0].key(0).pose
-    assert project.history.undo_label == "Set bounds"
+    assert project.history.undo_label == "Set limits"
     editing.undo(window.session)
     assert project.document is before
 

@@ -317,7 +317,7 @@ def test_how_keys_are_passed_is_chosen_in_their_menu_and_by_a_key(window, projec
 
 def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, project):
     # The motion from key to key: one handle that stays would hide it.
-    project.history.do(shape_commands.set_auto_pins(0, stillness=False))
+    project.history.do(shape_commands.set_auto_pins(0, enabled=False))
     window.run(lambda robot: robot.key_press(int(window.Key.j)))
     window.settle()
     assert project.paths.value is None  # nothing is selected

@@ -590,9 +590,7 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
 
 
 def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
-    editing.edit_document(
-        window.session, shape_commands.set_auto_pins(bent.active, stillness=False)
-    )
+    editing.edit_document(window.session, shape_commands.set_auto_pins(bent.active, enabled=False))
     editing.edit_document(window.session, key_commands.delete_keys(bent.active, {24}))
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
     editing.edit_document(window.session, track_commands.put_spring(bent.active, spring))

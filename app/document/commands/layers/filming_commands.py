@@ -13,29 +13,30 @@ from app.document.model import Document
 from app.document.queries.layers.layer_state import keyed_frame, repeating_cycle
 from app.document.queries.layers.visibility import change_frame
 from app.document.settings import FrameRange
+from app.texts import _
 
 Key = TypeVar("Key", CameraKey, TransformKey, OpacityKey)
 Moving = TypeVar("Moving", TransformKey, OpacityKey)
 
 
-@command("Key the camera")
+@command(_("Key the camera"))
 def key_camera(document: Document, key: CameraKey) -> Document:
     """Set the camera key at a frame; an existing key keeps its easing and tangent mode."""
-    return _filmed(document, _with(document.camera, key, [key.frame]))
+    return _with_camera(document, _with(document.camera, key, [key.frame]))
 
 
-@command("Move camera key")
+@command(_("Move camera key"))
 def move_camera_key(document: Document, frame: int, to: int) -> Document:
-    return _filmed(document, retime.with_moved_keys(document.camera, {frame}, to - frame))
+    return _with_camera(document, retime.with_moved_keys(document.camera, {frame}, to - frame))
 
 
-@command("Delete camera key")
+@command(_("Delete camera key"))
 def delete_camera_key(document: Document, frame: int) -> Document:
     """Delete the camera key at a frame; without keys, frames show the canvas."""
-    return _filmed(document, retime.without_keys(document.camera, {frame}))
+    return _with_camera(document, retime.without_keys(document.camera, {frame}))
 
 
-@layer_command("Key opacity")
+@layer_command(_("Key opacity"))
 def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
     row = layer.opacity_keys
     new = OpacityKey(frame=keyed_frame(layer, row, frame), opacity=float(opacity))
@@ -43,7 +44,7 @@ def key_opacity(layer: Layer, frame: int, opacity: float) -> Layer:
     return layer if changed is row else replace(layer, opacity_keys=changed)
 
 
-@layer_command("Delete opacity key")
+@layer_command(_("Delete opacity key"))
 def delete_opacity_key(layer: Layer, frame: int) -> Layer:
     """Delete an opacity key; the layer keeps the opacity of the last deleted key."""
     row = layer.opacity_keys
@@ -53,7 +54,7 @@ def delete_opacity_key(layer: Layer, frame: int) -> Layer:
     return replace(layer, opacity_keys=(), opacity=row[0].opacity)
 
 
-@layer_command("Key movement")
+@layer_command(_("Key transform"))
 def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer:
     row = layer.transform_keys
     new = TransformKey(frame=keyed_frame(layer, row, frame), shift=shift, turn=float(turn))
@@ -61,29 +62,33 @@ def key_movement(layer: Layer, frame: int, shift: complex, turn: float) -> Layer
     return layer if changed is row else replace(layer, transform_keys=changed)
 
 
-@layer_command("Delete movement key")
+@layer_command(_("Delete transform key"))
 def delete_movement_key(layer: Layer, frame: int) -> Layer:
     row = layer.transform_keys
     left = retime.without_keys(row, {keyed_frame(layer, row, frame)})
     return replace(layer, transform_keys=left)
 
 
-@layer_command("Set order from here on")
-def place_at(layer: Layer, placing: DrawOrderKey) -> Layer:
+@layer_command(_("Set order key"))
+def place_at(layer: Layer, key: DrawOrderKey) -> Layer:
     """Draw a layer directly in front of or behind another one from a frame on."""
-    at = change_frame(layer.draw_order_keys, layer.cycles, placing.frame)
-    placing = replace(placing, frame=at)
-    others = [each for each in layer.draw_order_keys if each.frame != placing.frame]
-    placings = tuple(sorted([*others, placing], key=lambda each: each.frame))
-    return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
+    at = change_frame(layer.draw_order_keys, layer.cycles, key.frame)
+    key = replace(key, frame=at)
+    others = [each for each in layer.draw_order_keys if each.frame != key.frame]
+    order_keys = tuple(sorted([*others, key], key=lambda each: each.frame))
+    return (
+        layer if order_keys == layer.draw_order_keys else replace(layer, draw_order_keys=order_keys)
+    )
 
 
-@layer_command("Change no order here")
+@layer_command(_("Delete order key"))
 def unplace_at(layer: Layer, frame: int) -> Layer:
     """Delete the draw order key at a frame."""
     at = change_frame(layer.draw_order_keys, layer.cycles, frame)
-    placings = tuple(each for each in layer.draw_order_keys if each.frame != at)
-    return layer if placings == layer.draw_order_keys else replace(layer, draw_order_keys=placings)
+    order_keys = tuple(each for each in layer.draw_order_keys if each.frame != at)
+    return (
+        layer if order_keys == layer.draw_order_keys else replace(layer, draw_order_keys=order_keys)
+    )
 
 
 def _like(layer: Layer, row: Keys[Moving], frame: int) -> list[int]:
@@ -121,7 +126,7 @@ def _with(row: Keys[Key], key: Key, frames: Collection[int]) -> Keys[Key]:
     return retime.with_replaced_keys(row, put)
 
 
-def _filmed(document: Document, camera: tuple[CameraKey, ...]) -> Document:
+def _with_camera(document: Document, camera: tuple[CameraKey, ...]) -> Document:
     """Return a document with other camera keys; its frames grow to contain the keys."""
     if camera is document.camera:
         return document

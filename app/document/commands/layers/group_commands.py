@@ -14,9 +14,10 @@ from app.document.layer import Layer
 from app.document.layers.groups import Group, GroupBlend, ancestor_paths, common_path
 from app.document.model import Document
 from app.errors import LissomError
+from app.texts import _
 
 
-@command("Group layers")
+@command(_("Group layers"))
 def group_layers(document: Document, identities: Collection[int], path: str) -> Document:
     """Put layers in a group, or with "" outside all groups; missing groups are created.
 
@@ -39,7 +40,7 @@ def group_layers(document: Document, identities: Collection[int], path: str) -> 
     return without_empty_groups(grouped)
 
 
-@command("Add groups")
+@command(_("Add groups"))
 def add_groups(document: Document, groups: Sequence[Group]) -> Document:
     """Add missing groups, still without layers."""
     known = {group.name for group in document.groups}
@@ -47,14 +48,14 @@ def add_groups(document: Document, groups: Sequence[Group]) -> Document:
     return replace(document, groups=(*document.groups, *new)) if new else document
 
 
-@command("Move group")
+@command(_("Move group"))
 def move_group_into(document: Document, path: str, around: str) -> Document:
     """Move a group into another group, in front of its layers, or with "" outside all groups."""
     _, others = _apart(document, path)
     return _put_group(document, path, around, _place_in_group(document.layers, others, around))
 
 
-@command("Move group")
+@command(_("Move group"))
 def reorder_group(document: Document, path: str, beside: int, *, in_front: bool) -> Document:
     """Move a group directly in front of or behind a layer outside the group.
 
@@ -66,22 +67,24 @@ def reorder_group(document: Document, path: str, beside: int, *, in_front: bool)
     return _put_group(document, path, around, place)
 
 
-@command("Rename group")
+@command(_("Rename group"))
 def rename_group(document: Document, path: str, name: str) -> Document:
     """Rename a group; no group beside it may have the name."""
     document.group(path)
     name = name.strip()
     if "/" in name:
-        raise LissomError(f"A group's name has no slash, unlike {name!r}.")
+        raise LissomError(_("A group's name has no slash, unlike {name!r}.").format(name=name))
     to = f"{path.rpartition('/')[0]}/{name}".removeprefix("/")
     if to == path:
         return document
     if any(group.name == to for group in document.groups):
-        raise LissomError(f"There is a group {name!r} already; choose another name.")
+        raise LissomError(
+            _("There is a group {name!r} already; choose another name.").format(name=name)
+        )
     return _moved(document, document.layers, document.groups, {path: to})
 
 
-@command("Ungroup layers")
+@command(_("Ungroup layers"))
 def ungroup_layers(document: Document, path: str) -> Document:
     """Dissolve a group; its layers and subgroups take over its opacity and stay hidden if it was.
 
@@ -111,17 +114,17 @@ def ungroup_layers(document: Document, path: str) -> Document:
     return _moved(document, layers, groups, to)
 
 
-@command("Set group's opacity")
+@command(_("Set group's opacity"))
 def set_group_opacity(document: Document, path: str, opacity: float) -> Document:
     return _changed(document, path, opacity=float(opacity))
 
 
-@command("Show or hide group")
+@command(_("Show or hide group"))
 def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document:
     return _changed(document, path, hidden=hidden)
 
 
-@command("Set group's blend")
+@command(_("Set group's blend"))
 def set_group_blend(document: Document, path: str, blend: GroupBlend) -> Document:
     return _changed(document, path, blend=blend)
 
@@ -158,10 +161,10 @@ def _apart(document: Document, path: str) -> tuple[list[Layer], list[Layer]]:
 def _put_group(document: Document, path: str, around: str, place: int) -> Document:
     """Return the document with a group inside another, at an index among the other layers."""
     if path in ancestor_paths(around):
-        raise LissomError(f"The group {path!r} cannot be put in itself.")
+        raise LissomError(_("The group {path!r} cannot be put in itself.").format(path=path))
     run, others = _apart(document, path)
     layers = (*others[:place], *run, *others[place:])
-    outer, _, name = path.rpartition("/")
+    outer, *_rest, name = path.rpartition("/")
     if around == outer and layers == document.layers:
         return document
     inner = [group for group in document.groups if path in ancestor_paths(group.name)]

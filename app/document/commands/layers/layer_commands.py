@@ -18,11 +18,12 @@ from app.document.layers.visibility import VisibilityKey
 from app.document.model import Document
 from app.document.queries.layers.visibility import change_frame
 from app.errors import ImportLog, LissomError
+from app.texts import N_, _
 
-LAST_LAYER = "A document has at least one layer; add another one first."
+LAST_LAYER = N_("A document has at least one layer; add another one first.")
 
 
-@command("Add layer")
+@command(_("Add layer"))
 def add_layer(document: Document, layer: Layer, index: int | None = None) -> Document:
     """Add a layer in front of all others, or at an index from back to front.
 
@@ -36,12 +37,12 @@ def add_layer(document: Document, layer: Layer, index: int | None = None) -> Doc
     return replace(document, layers=tuple(layers), size=document.canvas)
 
 
-@command("Add layers")
+@command(_("Add layers"))
 def append_import_log(document: Document, summary: ImportLog) -> Document:
     return replace(document, import_log=document.import_log + summary) if summary else document
 
 
-@command("Replace layer")
+@command(_("Replace layer"))
 def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
     """Replace a layer with another of the same id.
 
@@ -52,7 +53,7 @@ def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
     return changed if changed.canvas == size else replace(changed, size=size)
 
 
-@command("Keep joints")
+@command(_("Keep joints"))
 def keep_attachments(document: Document, identity: int) -> Document:
     """Move joints that are not on the layer's shape to the nearest points of the shape."""
     domain = document.layer(identity).domain
@@ -70,7 +71,7 @@ def keep_attachments(document: Document, identity: int) -> Document:
     return document
 
 
-@command("Duplicate layer")
+@command(_("Duplicate layer"))
 def duplicate_layer(document: Document, identity: int) -> Document:
     """Put a copy of a layer in front of it, in the same switch group."""
     layer = document.layer(identity)
@@ -86,12 +87,12 @@ def duplicate_layer(document: Document, identity: int) -> Document:
     return replace(document, layers=layers, switch_groups=choices, size=document.canvas)
 
 
-@command("Delete layer")
+@command(_("Delete layer"))
 def remove_layer(document: Document, identity: int) -> Document:
     """Delete a layer, and the keys of other layers that refer to the layer."""
     document.layer(identity)
     if len(document.layers) == 1:
-        raise LissomError(LAST_LAYER)
+        raise LissomError(_(LAST_LAYER))
     document = switch_group_commands.without_switch_member(document, identity)
     layers = tuple(
         _without_references_to(each, identity) for each in document.layers if each.id != identity
@@ -99,7 +100,7 @@ def remove_layer(document: Document, identity: int) -> Document:
     return without_empty_groups(replace(document, layers=layers, size=document.canvas))
 
 
-@command("Move layer")
+@command(_("Move layer"))
 def move_layer(document: Document, identity: int, index: int) -> Document:
     """Move a layer to an index in the order from back to front.
 
@@ -109,7 +110,11 @@ def move_layer(document: Document, identity: int, index: int) -> Document:
     layer = document.layer(identity)
     others = [other for other in document.layers if other is not layer]
     if not 0 <= index <= len(others):
-        raise LissomError(f"There are {len(others) + 1} layers; none can be number {index + 1}.")
+        raise LissomError(
+            _("There are {count} layers; none can be number {index}.").format(
+                count=len(others) + 1, index=index + 1
+            )
+        )
     if document.layers[index] is layer:
         return document
     group = group_at(others, index, layer)
@@ -118,53 +123,53 @@ def move_layer(document: Document, identity: int, index: int) -> Document:
     return without_empty_groups(moved)
 
 
-@command("Rename layer")
+@command(_("Rename layer"))
 def rename_layer(document: Document, identity: int, name: str) -> Document:
     """Rename a layer; the name must be free."""
     return _with(document, identity, name=name.strip())
 
 
-@command("Set opacity")
+@command(_("Set opacity"))
 def set_opacity(document: Document, identity: int, opacity: float) -> Document:
     return _with(document, identity, opacity=float(opacity))
 
 
-@command("Set blend")
+@command(_("Set blend"))
 def set_blend(document: Document, identity: int, blend: BlendMode) -> Document:
     return _with(document, identity, blend=blend)
 
 
-@command("Clip layer")
+@command(_("Clip layer"))
 def set_clipped(document: Document, identity: int, *, clipped: bool) -> Document:
     """Turn clipping of a layer to the layer or group below it on or off."""
     return _with(document, identity, clipped=clipped)
 
 
-@command("Show or hide layer")
+@command(_("Show or hide layer"))
 def set_hidden(document: Document, identity: int, *, hidden: bool) -> Document:
     """Hide a layer at all frames, or show it."""
     return _with(document, identity, hidden=hidden)
 
 
-@command("Show layer")
+@command(_("Show layer"))
 def show_layer(document: Document, identity: int) -> Document:
     """Show a layer and the groups around it; their other members become hidden."""
     return with_layer_shown(document, identity)
 
 
-@command("Lock or unlock layer")
+@command(_("Lock or unlock layer"))
 def set_locked(document: Document, identity: int, *, locked: bool) -> Document:
     """Let clicks on the drawing pass through a layer, or not."""
     return _with(document, identity, locked=locked)
 
 
-@command("Set reference")
+@command(_("Set reference"))
 def set_reference(document: Document, identity: int, *, reference: bool) -> Document:
     """Exclude a layer from exports, or include it."""
     return _with(document, identity, reference=reference)
 
 
-@command("Show or hide from here on")
+@command(_("Set visibility key"))
 def key_visibility(
     document: Document, identity: int, frame: int, *, visible: bool | None
 ) -> Document:
@@ -190,11 +195,15 @@ def key_visibility(
     return _with(document, identity, visibility_keys=switches)
 
 
-@layer_command("Move visibility")
+@layer_command(_("Move visibility key"))
 def move_visibility_key(layer: Layer, frame: int, to: int) -> Layer:
     moved = [switch for switch in layer.visibility_keys if switch.frame == frame]
     if not moved:
-        raise LissomError(f"{layer.name!r} is neither shown nor hidden at frame {frame}.")
+        raise LissomError(
+            _("{layer!r} has no visibility key at frame {frame}.").format(
+                layer=layer.name, frame=frame
+            )
+        )
     if to == frame:
         return layer
     others = [switch for switch in layer.visibility_keys if switch.frame != frame]
@@ -202,7 +211,7 @@ def move_visibility_key(layer: Layer, frame: int, to: int) -> Layer:
     return replace(layer, visibility_keys=tuple(switches))
 
 
-@command("Attach")
+@command(_("Attach"))
 def attach_layer(document: Document, identity: int, anchor: complex, joint: Attachment) -> Document:
     """Attach a layer by its anchor to a point of another layer from a frame on.
 
@@ -214,18 +223,20 @@ def attach_layer(document: Document, identity: int, anchor: complex, joint: Atta
     return _with(document, identity, anchor=anchor, attachments=tuple(joints))
 
 
-@layer_command("Attach as before")
+@layer_command(_("Attach as before"))
 def delete_attachment_key(layer: Layer, frame: int) -> Layer:
     """Delete the attachment key at a frame; the attachment before it stays in effect."""
     joints = tuple(joint for joint in layer.attachments if joint.frame != frame)
     return layer if joints == layer.attachments else replace(layer, attachments=joints)
 
 
-@layer_command("Move joint in time")
+@layer_command(_("Move joint key"))
 def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
     moved = next((joint for joint in layer.attachments if joint.frame == frame), None)
     if moved is None:
-        raise LissomError(f"{layer.name!r} is not attached anew at frame {frame}.")
+        raise LissomError(
+            _("{layer!r} has no attachment at frame {frame}.").format(layer=layer.name, frame=frame)
+        )
     if to == frame:
         return layer
     others = [joint for joint in layer.attachments if joint is not moved]
@@ -233,7 +244,7 @@ def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
     return replace(layer, attachments=tuple(joints))
 
 
-@command("Detach")
+@command(_("Detach"))
 def detach_layer(document: Document, identity: int, factor: complex, shift: complex) -> Document:
     """Remove all parents of a layer, and transform its poses to where it was seen at one frame.
 
@@ -246,13 +257,13 @@ def detach_layer(document: Document, identity: int, factor: complex, shift: comp
     return document.with_layer(layer.with_poses(poses, attachments=()))
 
 
-@layer_command("Set depth")
+@layer_command(_("Set depth"))
 def set_depth(layer: Layer, identity: int, front: float, extent: float | None) -> Layer:
     """Set the default depth around a handle and its radius."""
     return with_handles(layer, {identity}, depth=float(front), extent=extent)
 
 
-@layer_command("Set depth from here on")
+@layer_command(_("Set depth key"))
 def key_depth(layer: Layer, frame: int, identity: int, front: float | None) -> Layer:
     """Set the depth around a handle from a key on; None removes it from that key."""
     key = layer.key(frame)
@@ -301,10 +312,10 @@ def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
 def _without_references_to(layer: Layer, other: int) -> Layer:
     """Return a layer without attachment and draw order keys that refer to another layer."""
     joints = tuple(joint for joint in layer.attachments if joint.parent != other)
-    placings = tuple(placing for placing in layer.draw_order_keys if placing.beside != other)
-    if (joints, placings) == (layer.attachments, layer.draw_order_keys):
+    order_keys = tuple(key for key in layer.draw_order_keys if key.beside != other)
+    if (joints, order_keys) == (layer.attachments, layer.draw_order_keys):
         return layer
-    return replace(layer, attachments=joints, draw_order_keys=placings)
+    return replace(layer, attachments=joints, draw_order_keys=order_keys)
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

@@ -14,9 +14,10 @@ from app.document.queries.layers.visibility import (
     with_repeats,
 )
 from app.errors import LissomError
+from app.texts import _
 
 
-@command("Let layers take turns")
+@command(_("Create switch"))
 def create_switch_group(document: Document, name: str, layers: Sequence[int]) -> Document:
     """Create a switch group from layers that are in no other switch group.
 
@@ -39,7 +40,7 @@ def create_switch_group(document: Document, name: str, layers: Sequence[int]) ->
     return replace(document, switch_groups=(*document.switch_groups, choice))
 
 
-@command("Choose from here on")
+@command(_("Set switch key"))
 def choose_at(document: Document, identity: int, frame: int) -> Document:
     """Show a layer of its switch group from a frame on; in a cycle, the key repeats."""
     choice = _switch_group_of(document, identity)
@@ -51,7 +52,7 @@ def choose_at(document: Document, identity: int, frame: int) -> Document:
     return _replace_switch_group(document, choice, changed)
 
 
-@command("Change nothing here")
+@command(_("Delete switch key"))
 def unchoose_at(document: Document, name: str, frame: int) -> Document:
     """Delete the switch key at a frame; the layer visible before it stays visible."""
     choice = document.switch_group(name)
@@ -59,26 +60,28 @@ def unchoose_at(document: Document, name: str, frame: int) -> Document:
     return _replace_switch_group(document, choice, replace(choice, keys=left))
 
 
-@command("Move choice in time")
+@command(_("Move switch key"))
 def move_turn(document: Document, name: str, frame: int, to: int) -> Document:
     """Move a switch key to another frame, in place of a key there."""
     choice = document.switch_group(name)
     moved = next((turn for turn in choice.keys if turn.frame == frame), None)
     if moved is None:
-        raise LissomError(f"The choice {name!r} changes nothing at frame {frame}.")
+        raise LissomError(
+            _("The switch {name!r} has no key at frame {frame}.").format(name=name, frame=frame)
+        )
     others = (turn for turn in choice.keys if turn is not moved)
     changed = replace(choice, keys=_put(others, moved._replace(frame=to)))
     return _replace_switch_group(document, choice, changed)
 
 
-@command("Rename choice")
+@command(_("Rename switch"))
 def rename_switch_group(document: Document, name: str, new: str) -> Document:
     """Rename a switch group; the name must be free."""
     choice = document.switch_group(name)
     return _replace_switch_group(document, choice, replace(choice, name=new.strip()))
 
 
-@command("Take into the choice")
+@command(_("Add to switch"))
 def add_to_switch_group(document: Document, name: str, layers: Sequence[int]) -> Document:
     """Add layers to a switch group as the last ones; switch keys decide their visibility."""
     choice = document.switch_group(name)
@@ -90,7 +93,7 @@ def add_to_switch_group(document: Document, name: str, layers: Sequence[int]) ->
     return _replace_switch_group(document, choice, replace(choice, layers=(*choice.layers, *new)))
 
 
-@command("Remove from switch")
+@command(_("Remove from switch"))
 def remove_from_switch_group(document: Document, identity: int) -> Document:
     """Remove a layer from its switch group; it keeps its visibility as keys of its own.
 
@@ -103,7 +106,7 @@ def remove_from_switch_group(document: Document, identity: int) -> Document:
     )
 
 
-@command("Let layers take turns no more")
+@command(_("Delete switch"))
 def delete_switch_group(document: Document, name: str) -> Document:
     """Delete a switch group; each layer keeps its visibility as keys of its own."""
     choice = document.switch_group(name)
@@ -176,5 +179,5 @@ def _switch_group_of(document: Document, identity: int) -> SwitchGroup:
     choice = document.switch_group_of(identity)
     if choice is None:
         name = document.layer(identity).name
-        raise LissomError(f"The layer {name!r} takes no turns with others.")
+        raise LissomError(_("The layer {name!r} is in no switch.").format(name=name))
     return choice

@@ -127,11 +127,11 @@ def _alike(first: TransformKey | OpacityKey, last: TransformKey | OpacityKey) ->
 
 def draw_order_key_at(document: Document, layer: Layer, frame: float) -> DrawOrderKey | None:
     """Return the draw order key in effect at a frame; None before the first."""
-    placings = repeated(
+    order_keys = repeated(
         layer.draw_order_keys, layer.cycles, document.frames.last, DEFAULT_DRAW_ORDER
     )
-    count = bisect_right(placings, frame, key=lambda each: each.frame)
-    return placings[count - 1] if count else None
+    count = bisect_right(order_keys, frame, key=lambda each: each.frame)
+    return order_keys[count - 1] if count else None
 
 
 def layers_in_draw_order(document: Document, frame: float) -> tuple[Layer, ...]:
@@ -143,9 +143,9 @@ def layers_in_draw_order(document: Document, frame: float) -> tuple[Layer, ...]:
     """
     placed: dict[int, tuple[int, int, bool]] = {}
     for layer in document.layers:
-        placing = draw_order_key_at(document, layer, frame)
-        if placing is not None and placing.beside is not None:
-            placed[layer.id] = placing.frame, placing.beside, placing.in_front
+        order_key = draw_order_key_at(document, layer, frame)
+        if order_key is not None and order_key.beside is not None:
+            placed[layer.id] = order_key.frame, order_key.beside, order_key.in_front
     if not placed:
         return document.layers
     order = [layer.id for layer in document.layers]
@@ -184,16 +184,16 @@ def _value_at(
     if cycle is not None:
         frame, period = cycle.clamped_source_frame(frame, document.frames.last), cycle.period
     first, last = keys[0].frame, keys[-1].frame
-    passages = _key_sequence(keys, moved, period if document.loop or cycle is not None else 0)
+    sequence = _key_sequence(keys, moved, period if document.loop or cycle is not None else 0)
     if first <= frame < last:
         index = bisect_right(keys, frame, key=lambda key: key.frame) - 1
         leg = TangentSegment(index, index + 1, keys[index + 1].frame - keys[index].frame)
-    elif passages.gap:
-        leg = TangentSegment(len(keys) - 1, 0, passages.gap)
+    elif sequence.gap:
+        leg = TangentSegment(len(keys) - 1, 0, sequence.gap)
         frame += 0 if frame >= last else period
     else:
         return moved.value_of(keys[0] if frame < first else keys[-1])
-    return sample_segment(passages, leg, (frame - keys[leg.first].frame) / leg.frames, moved)
+    return sample_segment(sequence, leg, (frame - keys[leg.first].frame) / leg.frames, moved)
 
 
 def _key_sequence(

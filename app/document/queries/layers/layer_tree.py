@@ -7,6 +7,7 @@ from app.document.layer import Layer
 from app.document.layers.groups import Group, ancestor_paths
 from app.document.layers.visibility import SwitchGroup
 from app.document.model import Document
+from app.texts import _
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -65,18 +66,19 @@ def parent_label(document: Document, layer: Layer, frame: float) -> tuple[int, s
     other frames.
     """
     parents = {joint.parent for joint in layer.attachments if joint.parent is not None}
-    _, *carriers = document.parent_chain(layer.id, frame)
+    ancestors = document.parent_chain(layer.id, frame)[1:]
     if not parents:
         return 0, ""
-    now = carriers[0].name if carriers else "nothing"
-    others = parents - {each.id for each in carriers[:1]}
-    return len(carriers), f"on {now}…" if others else f"on {now}"
+    now = ancestors[0].name if ancestors else _("nothing")
+    others = parents - {each.id for each in ancestors[:1]}
+    label = _("on {parent}…") if others else _("on {parent}")
+    return len(ancestors), label.format(parent=now)
 
 
 def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRow]:
     order = _in_order(document)
     path: tuple[str, ...] = ()
-    told: SwitchGroup | None = None
+    listed_switch: SwitchGroup | None = None
     for index, (layer, choice, where) in enumerate(order):
         around = ancestor_paths(where)
         shared = sum(1 for one, other in zip(path, around, strict=False) if one == other)
@@ -91,15 +93,15 @@ def _whole_tree(document: Document, toggled: Collection[str]) -> Iterator[TreeRo
                 group=document.group(around[depth]),
             )
         path = around
-        if choice is not None and choice is not told:
+        if choice is not None and choice is not listed_switch:
             yield TreeRow(
                 key=f"choice {choice.name}",
                 depth=len(around),
-                layers=tuple(each.id for each, other, _ in order if other is choice),
+                layers=tuple(each.id for each, other, _group in order if other is choice),
                 is_open=f"choice {choice.name}" in toggled,
                 switch_group=choice,
             )
-        told = choice
+        listed_switch = choice
         depth = len(around) + (choice is not None)
         yield TreeRow(key=f"{layer.id}", depth=depth, layers=(layer.id,), layer=layer)
 
@@ -113,13 +115,13 @@ def _in_order(document: Document) -> list[_Listed]:
     Members of a switch group are consecutive, at the foremost member.
     """
     order: list[_Listed] = []
-    told: set[str] = set()
+    listed: set[str] = set()
     for layer in reversed(document.layers):
         choice = document.switch_group_of(layer.id)
         if choice is None:
             order.append((layer, None, layer.group))
-        elif choice.name not in told:
-            told.add(choice.name)
+        elif choice.name not in listed:
+            listed.add(choice.name)
             members = (each for each in reversed(document.layers) if each.id in choice.layers)
             order += [(each, choice, layer.group) for each in members]
     return order
@@ -128,7 +130,7 @@ def _in_order(document: Document) -> list[_Listed]:
 def _run(order: list[_Listed], first: int, path: str) -> tuple[int, ...]:
     """Return the ids of the run of consecutive layers of a group that begins at an index."""
     run = []
-    for layer, _, where in order[first:]:
+    for layer, _switch, where in order[first:]:
         if path not in ancestor_paths(where):
             break
         run.append(layer.id)

@@ -25,6 +25,6 @@ def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:
         small_text(look, _("In this layer no handle stays between keys."))
         hint = _("Let handles stay in place between two keys with equal targets")
         if text_button(_("Let handles stay"), FILL, hint):
-            command = shape_commands.set_auto_pins(project.active, stillness=True)
+            command = shape_commands.set_auto_pins(project.active, enabled=True)
             actions.append(do(editing.edit_document, command))
     return actions

@@ -28,7 +28,7 @@ def document():
     return document
 
 
-def told(document, *toggled, kept=()):
+def listed(document, *toggled, kept=()):
     return [
         "  " * row.depth + row.name + ("" if row.is_open else " +")
         for row in layer_tree(document, toggled, kept)
@@ -36,14 +36,14 @@ def told(document, *toggled, kept=()):
 
 
 def test_without_groups_and_choices_it_is_the_order_of_painting(document):
-    assert told(document) == ["layer 5", "layer 4", "layer 3", "layer 2", "layer 1", "layer"]
+    assert listed(document) == ["layer 5", "layer 4", "layer 3", "layer 2", "layer 1", "layer"]
     assert all(row.layers == (row.layer.id,) for row in layer_tree(document))
 
 
 def test_groups_hold_what_is_in_them(document):
     document = groups.group_layers((1, 2), "body/legs")(document)
     document = groups.group_layers((3,), "body")(document)
-    assert told(document) == [
+    assert listed(document) == [
         "layer 5",
         "layer 4",
         "body",
@@ -56,9 +56,9 @@ def test_groups_hold_what_is_in_them(document):
     rows = {row.name: row for row in layer_tree(document)}
     assert rows["body"].layers == (3, 2, 1)
     assert rows["legs"].layers == (2, 1)
-    assert told(document, "group body") == ["layer 5", "layer 4", "body +", "layer"]
+    assert listed(document, "group body") == ["layer 5", "layer 4", "body +", "layer"]
     # What is posed is listed all the same.
-    assert told(document, "group body", kept={1}) == [
+    assert listed(document, "group body", kept={1}) == [
         "layer 5",
         "layer 4",
         "body +",
@@ -69,8 +69,8 @@ def test_groups_hold_what_is_in_them(document):
 
 def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
     document = choices.create_switch_group("mouth", (1, 4))(document)
-    assert told(document) == ["layer 5", "mouth +", "layer 3", "layer 2", "layer"]
-    assert told(document, "choice mouth") == [
+    assert listed(document) == ["layer 5", "mouth +", "layer 3", "layer 2", "layer"]
+    assert listed(document, "choice mouth") == [
         "layer 5",
         "mouth",
         "  layer 4",
@@ -84,7 +84,7 @@ def test_layers_that_take_turns_are_one_row_where_the_foremost_is(document):
 def test_a_choice_in_a_group(document):
     document = groups.group_layers((3, 4), "face")(document)
     document = choices.create_switch_group("mouth", (2, 4))(document)
-    assert told(document, "choice mouth") == [
+    assert listed(document, "choice mouth") == [
         "layer 5",
         "face",
         "  mouth",

@@ -28,10 +28,10 @@ def test_what_is_known_of_twenty_layers_is_not_found_out_again_in_each_frame():
         (pose_segments(clip), measure_target_errors(clip.layer, clip.keys[-1].pose))
         for clip in clips
     ]
-    for clip, (ways, shortfall) in zip(clips, first, strict=True):
+    for clip, (ways, errors) in zip(clips, first, strict=True):
         assert pose_segments(clip) is ways
         assert pose_segments(replace(clip)) is ways
-        assert measure_target_errors(clip.layer, clip.keys[-1].pose) is shortfall
+        assert measure_target_errors(clip.layer, clip.keys[-1].pose) is errors
 
 
 def test_what_is_known_of_a_layer_goes_with_it():

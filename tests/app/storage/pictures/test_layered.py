@@ -96,21 +96,21 @@ def test_layers_that_inherit_alpha_are_clipped():
     assert clipped(kept + atop + base) == (["head", "kept"], ())
     assert clipped(atop) == ([], ())
     # All that lies below in the group clips it there.
-    told = ("head: clipped by what lies right below it, not by all that does in its group",)
-    assert clipped(atop + base + other) == (["head"], told)
+    notices = ("head: clipped by the layer directly below, not by all layers below in its group",)
+    assert clipped(atop + base + other) == (["head"], notices)
     assert clipped(f"<stack>{atop}{base}</stack>{other}") == (["head"], ())
     assert clipped(f"{atop}<stack>{base}{other}</stack>") == (["head"], ())
-    assert clipped(f"{atop}{base}<stack>{other}</stack>") == (["head"], told)
+    assert clipped(f"{atop}{base}<stack>{other}</stack>") == (["head"], notices)
     paper = '<layer name="paper" src="data/0.png"/>'
     whole = Image.new("RGBA", (100, 120), (255, 255, 255, 255))
     assert clipped(atop.replace("0.png", "1.png") + paper, whole) == ([], ())
 
 
-def test_layers_of_one_name_are_told_apart():
+def test_layers_of_one_name_are_reported_apart():
     assert sorted(layers_of(drawing(HEAD * 3))) == ["head", "head 2", "head 3"]
 
 
-def test_what_cannot_be_kept_is_told():
+def test_what_cannot_be_kept_is_reported():
     stack = (
         HEAD.replace("/>", ' composite-op="svg:overlay"/>')
         + '<text name="title"/>'
@@ -140,7 +140,7 @@ def test_what_cannot_be_kept_is_told():
         (drawing(HEAD * 201), "up to 200: merge"),
     ],
 )
-def test_bad_files_are_told_in_words(data, words):
+def test_bad_files_are_reported_in_words(data, words):
     with pytest.raises(LissomError, match=words):
         read_openraster(data)
 
@@ -216,13 +216,13 @@ def test_a_photoshop_file_without_layers_is_one_layer():
 
 
 @pytest.mark.parametrize("data", [b"", b"8BPS", b"8BPS" + bytes(200), b"PK no"])
-def test_damaged_photoshop_files_are_told_in_words(data):
+def test_damaged_photoshop_files_are_reported_in_words(data):
     with pytest.raises(LissomError, match="Photoshop"):
         read_photoshop(data)
 
 
 @pytest.mark.parametrize("mode", ["RGBA", "L"])
-def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_told(mode):
+def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_reported(mode):
     """All single bytes that say which channels there are, how they are packed, and how long."""
     colours = np.zeros((40, 30, 4), np.uint8)
     colours[...] = (200, 80, 40, 255)
@@ -234,8 +234,8 @@ def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_told(mode):
     whole = file.getvalue()
     (layer,) = PSDImage.open(io.BytesIO(whole))
     places = []
-    for told, channel in zip(layer._record.channel_info, layer._channels, strict=True):
-        entry = struct.pack(">hI", int(told.id), told.length)
+    for info, channel in zip(layer._record.channel_info, layer._channels, strict=True):
+        entry = struct.pack(">hI", int(info.id), info.length)
         places += range(whole.index(entry), whole.index(entry) + len(entry))
         begun = whole.index(channel.data) - 2
         places += range(begun, begun + 8)
@@ -255,7 +255,7 @@ def test_one_byte_that_costs_a_photoshop_layer_a_colour_is_told(mode):
     assert refused > len(places)
 
 
-def test_a_photoshop_file_cut_short_is_told_in_words():
+def test_a_photoshop_file_cut_short_is_reported_in_words():
     whole = photoshop(lambda drawing: drawing.create_pixel_layer(blob(30, 20), name="head"))
     for end in range(4, len(whole), max(1, len(whole) // 40)):
         try:

@@ -142,13 +142,13 @@ def test_what_an_empty_group_clips_is_nowhere_too():
     )
 
 
-def test_a_group_whose_mask_lets_its_layers_shine_through_each_other_is_told():
+def test_a_group_whose_mask_lets_its_layers_shine_through_each_other_is_reported():
     def grouped(mask, *layers):
         return read(Folder(name="limbs", layers=layers, mask=mask))
 
     half = Mask(pixels=HALF // 2, left=10, top=20)
-    told = ("limbs: half seen through its mask, so that its layers shine through each other",)
-    assert grouped(half, drawn("arm"), drawn("hand"), drawn("hat")).summary.warnings == told
+    notices = ("limbs: half seen through its mask, so that its layers shine through each other",)
+    assert grouped(half, drawn("arm"), drawn("hand"), drawn("hat")).summary.warnings == notices
     aside = Drawn(name="aside", pixels=FULL, left=-5, top=50)
     assert not grouped(half, drawn("arm"), aside).summary.warnings
     sharp = Mask(pixels=HALF, left=10, top=20)
@@ -190,8 +190,8 @@ def test_masks_are_taken_into_the_pixels_of_layers_and_groups(mask):
     assert (own.picture.rgba[..., :3] == 255).all()
     grouped = read(Folder(name="limbs", layers=[drawn("arm")], mask=mask))
     assert_array_equal(grouped.layers[0].picture.rgba, own.picture.rgba)
-    told = ("limbs: its mask is cut into the layers of the group, as they are drawn",)
-    assert grouped.summary.notes == (() if mask.disabled else told)
+    notices = ("limbs: its mask is cut into the layers of the group, as they are drawn",)
+    assert grouped.summary.notes == (() if mask.disabled else notices)
 
 
 def test_a_feathered_mask_is_soft():
@@ -203,7 +203,7 @@ def test_a_feathered_mask_is_soft():
     assert (levels[[0, -1]] == (255, 0)).all()
 
 
-def test_what_is_not_taken_over_is_told_once_with_all_names():
+def test_what_is_not_taken_over_is_reported_once_with_all_names():
     found = read(
         drawn("a", blend=OVERLAY),
         Folder(name="limbs", layers=[drawn("b", blend=OVERLAY)], blend=OVERLAY),
@@ -214,7 +214,7 @@ def test_what_is_not_taken_over_is_told_once_with_all_names():
     assert found.summary.warnings == (
         "limbs, a, b: drawn normally, not in the mode 'overlay'",
         "paint: left out, since it is a fill layer",
-        "hole: drawn over what is behind, which it knocks out in the file",
+        "hole: drawn over the layers behind, which it knocks out in the file",
         "bright: drawn at all brightnesses, whatever its “Blend If” says",
     )
 

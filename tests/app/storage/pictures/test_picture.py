@@ -195,7 +195,7 @@ def test_inks_with_a_profile():
         (press_profile("Press"), "another kind of picture"),
     ],
 )
-def test_a_profile_that_cannot_be_used_is_told(profile, what):
+def test_a_profile_that_cannot_be_used_is_reported(profile, what):
     picture = decode_picture(encode(Image.fromarray(RGB), "PNG", icc_profile=profile), "drawing")
     assert_array_equal(picture.rgba[..., :3], RGB)
     (notice,) = picture.notices
@@ -300,7 +300,7 @@ def test_several_pictures_are_decoded_side_by_side(monkeypatch):
     before = list(warnings.filters)
     for picture, wanted in zip(decode_pictures(files), pixels, strict=True):
         assert_array_equal(picture.rgba, wanted)
-    # Each is still refused by its own name, and what is told elsewhere stays as it was.
+    # Each is still refused by its own name, and warnings elsewhere stay as they are.
     files[7] = (files[7][0][:200], "7.png")
     with pytest.raises(LissomError, match=says(DAMAGED_PICTURE, name="7.png")):
         decode_pictures(files)

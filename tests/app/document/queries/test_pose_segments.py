@@ -32,14 +32,14 @@ def keyed(*frames, last=48, loop=False, poses=POSES, **changes):
 
 
 def ends(clip):
-    return [(transit.start, transit.end) for transit in pose_segments(clip)]
+    return [(segment.start, segment.end) for segment in pose_segments(clip)]
 
 
 def test_new_keys_between_others_are_passed_through():
     clip = keyed(0, 10, 30, 48)
     one, other = InteriorKnot(10, 20), InteriorKnot(20, 18)
     assert ends(clip) == [(1.0, one), (one, other), (other, 1.0)]
-    frames = [[key.frame for key in transit.keys] for transit in pose_segments(clip)]
+    frames = [[key.frame for key in segment.keys] for segment in pose_segments(clip)]
     assert frames == [[0, 10, 30], [0, 10, 30, 48], [10, 30, 48]]
 
 
@@ -64,14 +64,14 @@ def test_in_a_loop_the_motion_passes_its_first_and_last_key():
     closing = keyed(0, 10, 30, loop=True)
     joints = [InteriorKnot(18, 10), InteriorKnot(10, 20), InteriorKnot(20, 18)]
     assert ends(closing) == [(joints[i], joints[(i + 1) % 3]) for i in range(3)]
-    frames = [[key.frame for key in transit.keys] for transit in pose_segments(closing)]
+    frames = [[key.frame for key in segment.keys] for segment in pose_segments(closing)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 0], [10, 30, 0, 10]]
     # The last key is the first one again.
     around = keyed(0, 10, 30, 48, loop=True, poses=[*POSES[:3], POSES[0]], revolutions=[1, 2, 3, 9])
     assert ends(around) == ends(closing)
-    frames = [[key.frame for key in transit.keys] for transit in pose_segments(around)]
+    frames = [[key.frame for key in segment.keys] for segment in pose_segments(around)]
     assert frames == [[30, 0, 10, 30], [0, 10, 30, 48], [10, 30, 48, 10]]
-    assert [transit.revolutions for transit in pose_segments(around)] == [
+    assert [segment.revolutions for segment in pose_segments(around)] == [
         (3, 1, 2),
         (1, 2, 3),
         (2, 3, 1),
@@ -136,5 +136,5 @@ def test_passings_are_set_and_holds_undone():
     stopped = key_commands.set_tangent_mode(0, {0, 10}, TangentMode.STOP)(held)
     assert [key.shown_tangent_mode for key in stopped.layers[0].keys] == ["stop", "stop", "hold"]
     assert stopped.layers[0].key(10).easing == LINEAR
-    with pytest.raises(LissomError, match="to hold is an easing"):
+    with pytest.raises(LissomError, match="hold is an easing"):
         replace(stopped.layers[0].keys[0], tangent_mode=TangentMode.HOLD)

@@ -41,23 +41,23 @@ KEYS = (
 STEP = 1e-5  # frames, for slopes
 
 
-def filmed(keys=KEYS, *, loop=False):
+def with_camera(keys=KEYS, *, loop=False):
     return altered(EMPTY, camera=tuple(keys), loop=loop)
 
 
-def told(document, frame):
+def camera_values(document, frame):
     """Return what the camera shows as numbers that are blended evenly."""
     shot = camera_at(document, frame)
     return np.array([shot.centre.real, shot.centre.imag, log(shot.zoom), shot.turn])
 
 
 def slopes(document, frame):
-    before, at, after = (told(document, frame + by) for by in (-STEP, 0, STEP))
+    before, at, after = (camera_values(document, frame + by) for by in (-STEP, 0, STEP))
     return (at - before) / STEP, (after - at) / STEP
 
 
 def test_a_key_is_given_to_the_bit_and_held_outside():
-    document = filmed()
+    document = with_camera()
     for key in KEYS:
         shot = camera_at(document, key.frame)
         assert (shot.centre, shot.turn) == (key.centre, key.turn)
@@ -69,22 +69,22 @@ def test_a_key_is_given_to_the_bit_and_held_outside():
 
 def test_the_camera_passes_its_keys_and_the_ends_of_its_motion_without_a_jerk():
     for key in KEYS:
-        assert_allclose(*slopes(filmed(), key.frame), rtol=0, atol=1e-3)
-    assert np.abs(slopes(filmed(), 10)).min() > 0.01
-    corners = filmed(replace(key, tangent_mode=TangentMode.CORNER) for key in KEYS)
+        assert_allclose(*slopes(with_camera(), key.frame), rtol=0, atol=1e-3)
+    assert np.abs(slopes(with_camera(), 10)).min() > 0.01
+    corners = with_camera(replace(key, tangent_mode=TangentMode.CORNER) for key in KEYS)
     assert np.abs(np.subtract(*slopes(corners, 10))).max() > 1
 
 
 def test_zoom_is_blended_by_its_logarithm():
     two = (CameraKey(frame=0, centre=0j), CameraKey(frame=24, centre=0j, zoom=4.0))
-    assert camera_at(filmed(two), 12).zoom == pytest.approx(2.0, rel=1e-12)
-    even = filmed(replace(key, tangent_mode=TangentMode.CORNER) for key in two)
+    assert camera_at(with_camera(two), 12).zoom == pytest.approx(2.0, rel=1e-12)
+    even = with_camera(replace(key, tangent_mode=TangentMode.CORNER) for key in two)
     for frame in (3, 6, 17.5):
         assert camera_at(even, frame).zoom == pytest.approx(exp(log(4) * frame / 24), rel=1e-12)
 
 
 def test_what_is_seen_is_zoomed_and_turned_counter_clockwise_around_the_centre():
-    document = filmed([CameraKey(frame=0, centre=30 + 40j, zoom=2.0, turn=pi / 2)])
+    document = with_camera([CameraKey(frame=0, centre=30 + 40j, zoom=2.0, turn=pi / 2)])
     seen = camera_at(document, 0).canvas_motion((200, 100))
     # What lies to the right of the centre is seen above it.
     places = seen.apply(np.array([30 + 40j, 35 + 40j]))
@@ -93,22 +93,24 @@ def test_what_is_seen_is_zoomed_and_turned_counter_clockwise_around_the_centre()
 
 
 def test_in_a_loop_the_camera_comes_round():
-    document = filmed(loop=True)
+    document = with_camera(loop=True)
     for frame in (0, 4, 40, 47.9):
         assert_allclose(*slopes(document, frame), rtol=0, atol=1e-3)
-        assert_allclose(told(document, frame + 48), told(document, frame), rtol=0, atol=1e-9)
+        assert_allclose(
+            camera_values(document, frame + 48), camera_values(document, frame), rtol=0, atol=1e-9
+        )
     assert camera_at(document, 0).zoom != camera_at(document, 40).zoom
     closed = (replace(KEYS[0], frame=0), KEYS[1], KEYS[2], replace(KEYS[0], frame=48))
-    seam = filmed(closed, loop=True)
+    seam = with_camera(closed, loop=True)
     assert_allclose(slopes(seam, 0)[1], slopes(seam, 48)[0], rtol=0, atol=1e-3)
     assert np.abs(slopes(seam, 0)[1]).max() > 0.1
-    assert camera_at(filmed(KEYS[:1], loop=True), 20) == camera_at(filmed(KEYS[:1]), 20)
+    assert camera_at(with_camera(KEYS[:1], loop=True), 20) == camera_at(with_camera(KEYS[:1]), 20)
 
 
 def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_again():
     assert export_frame_range(altered(EMPTY, loop=True)).last == 47
     panned = (replace(KEYS[0], frame=0), replace(KEYS[1], frame=48))
-    assert export_frame_range(filmed(panned, loop=True)).last == 48
+    assert export_frame_range(with_camera(panned, loop=True)).last == 48
     # A wheel that has turned round is where it was.
     wheel = (TransformKey(frame=0), TransformKey(frame=48, turn=2 * pi))
     assert export_frame_range(altered(EMPTY, transform_keys=wheel, loop=True)).last == 47
@@ -117,7 +119,7 @@ def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_
 
 
 def test_a_held_camera_jumps():
-    held = filmed([replace(KEYS[0], easing=HOLD), *KEYS[1:]])
+    held = with_camera([replace(KEYS[0], easing=HOLD), *KEYS[1:]])
     assert camera_at(held, 9.999) == camera_at(held, 4)
 
 
@@ -153,7 +155,7 @@ def test_fades_are_even_and_stay_between_nothing_and_all():
     assert min(values) == 0.0
 
 
-def stack(**placings):
+def stack(**order_keys):
     document = EMPTY
     for name in "abcd"[: 4 - len(document.layers)]:
         copy = replace(EMPTY.layers[0], id=layer_commands.next_layer_id(document), name=f"{name}")
@@ -164,7 +166,7 @@ def stack(**placings):
             layer,
             draw_order_keys=tuple(
                 DrawOrderKey(frame, ids.get(beside), in_front)
-                for frame, beside, in_front in placings.get(layer.name, ())
+                for frame, beside, in_front in order_keys.get(layer.name, ())
             ),
         )
         for layer in document.layers
@@ -201,7 +203,9 @@ def test_time_edits_carry_all_of_them_along():
     assert [key.frame for key in layer.transform_keys] == [8, 16]
     assert [layer.opacity_keys[0].frame, layer.draw_order_keys[0].frame] == [4, 12]
     for frame in (3.0, 7.3, 11.0):
-        assert_allclose(told(twice, 2 * frame), told(document, frame), rtol=0, atol=1e-12)
+        assert_allclose(
+            camera_values(twice, 2 * frame), camera_values(document, frame), rtol=0, atol=1e-12
+        )
 
 
 def test_what_cannot_be_is_refused():
@@ -210,11 +214,11 @@ def test_what_cannot_be_is_refused():
     with pytest.raises(LissomError, match="zoom is above 0"):
         CameraKey(frame=0, centre=0j, zoom=float("nan"))
     with pytest.raises(LissomError, match="frame 4 after that at frame 10"):
-        filmed([KEYS[1], KEYS[0]])
+        with_camera([KEYS[1], KEYS[0]])
     with pytest.raises(LissomError, match="key at frame 40 lies outside"):
         altered(EMPTY, frames=FrameRange(0, 39), camera=KEYS)
     with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=40)):
-        scene_commands.set_frames(FrameRange(0, 39))(filmed())
+        scene_commands.set_frames(FrameRange(0, 39))(with_camera())
     with pytest.raises(LissomError, match="in front of itself"):
         altered(EMPTY, draw_order_keys=(DrawOrderKey(0, 0),))
     with pytest.raises(LissomError, match=says(NO_LAYER, identity=7)):
@@ -248,7 +252,7 @@ def stacked(places=None, **groups):
     layers = []
     for name, (group, clipped) in drawn.items():
         placed = (places or {}).get(name)
-        placings = (DrawOrderKey(6, ids[placed[0]], placed[1]),) if placed else ()
+        order_keys = (DrawOrderKey(6, ids[placed[0]], placed[1]),) if placed else ()
         layers.append(
             replace(
                 EMPTY.layers[0],
@@ -256,7 +260,7 @@ def stacked(places=None, **groups):
                 name=name,
                 group=group if groups else "",
                 clipped=clipped,
-                draw_order_keys=placings,
+                draw_order_keys=order_keys,
             )
         )
     return replace(document, layers=tuple(layers))

@@ -11,9 +11,9 @@ def test_a_layer_that_is_built_anew_stays_where_it_is(tmp_path):
     path.write_bytes(openraster((200, 220), stack, [blob(70, 50)]))
     opened = open_layered(path, Meshing(triangles=4_000))
     (head,) = opened.document.layers
-    renewal = KeyResolver(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
-    while not renewal.is_over:
-        renewal = step_resolver(renewal, opened.pictures[head.id].rgba)
-    assert abs(renewal.new_layer.domain.outline.mean() - head.domain.outline.mean()) < 1
-    (again,) = renewal.command(opened.document).layers
+    resolver = KeyResolver(before=head, bounds=head.bounds, meshing=Meshing(triangles=5_000))
+    while not resolver.is_over:
+        resolver = step_resolver(resolver, opened.pictures[head.id].rgba)
+    assert abs(resolver.new_layer.domain.outline.mean() - head.domain.outline.mean()) < 1
+    (again,) = resolver.command(opened.document).layers
     assert again.corner == head.corner == 60 + 160j
