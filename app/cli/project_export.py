@@ -18,7 +18,7 @@ from app.export import (
     with_reduced_meshes,
 )
 from app.export_formats import EXPORT_FORMATS
-from app.motion import Animation, hung_animations
+from app.motion import Animation, placed_animations
 from app.render.gpu.context import create_context
 from app.storage import cut_picture, decode_picture
 from app.texts import _, ngettext
@@ -84,7 +84,7 @@ def _pictures(document: Document, source: str) -> dict[int, Bytes]:
 
 def _cached_vertices(document: Document, variant: Variant | None) -> dict[int, CachedVertices]:
     animations = [Animation(clip_of(document, layer.id), variant) for layer in document.layers]
-    attached = hung_animations(animations, document)
+    attached = placed_animations(animations, document)
     return {layer: CachedVertices(animation) for layer, animation in attached.items()}
 
 

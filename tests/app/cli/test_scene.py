@@ -654,7 +654,9 @@ def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
     ):
         _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
         notice = " ".join(notices)
-        assert ("arm is attached to body and moves with it: its own movement" in notice) == is_told
+        assert (
+            "arm is attached to body and moves with it: its own movement" in notice
+        ) == is_reported
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):
