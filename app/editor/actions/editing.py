@@ -30,6 +30,7 @@ from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeyRow, KeysByRow, TrackRow, frames_in, layer_of
 from app.editor.work.layer_runtime import LayerRuntime
 from app.storage import decode_picture
+from app.texts import N_, _
 
 Arguments = ParamSpec("Arguments")
 
@@ -49,7 +50,8 @@ class KeyVerb(NamedTuple):
         return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
 
 
-FIRST_KEY_STAYS = "The first key of {layers} stays: a layer has at least one key."
+FIRST_KEY_STAYS = N_("The first key of {layers} stays: a layer has at least one key.")
+UNDONE, REDONE = _("Undone: {step}"), _("Done again: {step}")
 DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 
@@ -96,12 +98,12 @@ def undo(session: Session, project: Project) -> None:
         return
     if project.motion_job is not None:
         apply_motion.cancel_motion_job(session)
-        _show_step_notice(session, "Undone", "Give a motion")
+        _show_step_notice(session, UNDONE, _("Give a motion"))
         return
     is_held = any(pull.is_held for pull in project.pulls)
     waiting = None if is_held else pending_changes.cancel_deferred_action(project)
     if waiting is not None:
-        _show_step_notice(session, "Undone", waiting)
+        _show_step_notice(session, UNDONE, waiting)
         return
     before, unkeyed, label = (
         project.document,
@@ -122,7 +124,7 @@ def undo(session: Session, project: Project) -> None:
                 project.history.revert(gesture)
     else:
         project.history.undo()
-        _show_step_notice(session, "Undone", label)
+        _show_step_notice(session, UNDONE, label)
     _forget_what_is_gone(project)
     _go_to_change(session, project, before, unkeyed)
 
@@ -138,15 +140,15 @@ def revert_gesture(session: Session, project: Project, gesture: object) -> None:
 @with_project
 def redo(session: Session, project: Project) -> None:
     before, unkeyed = project.document, project.history.preview_pose
-    _show_step_notice(session, "Done again", project.history.redo_label)
+    _show_step_notice(session, REDONE, project.history.redo_label)
     project.history.redo()
     _forget_what_is_gone(project)
     _go_to_change(session, project, before, unkeyed)
 
 
-def _show_step_notice(session: Session, what: str, label: str | None) -> None:
+def _show_step_notice(session: Session, text: str, label: str | None) -> None:
     if label is not None:
-        session.show_notice(f"{what}: {label}", topic="undo")
+        session.show_notice(text.format(step=label), topic="undo")
 
 
 def _go_to_change(
@@ -203,8 +205,10 @@ def select_mirrored(session: Session, project: Project) -> None:
         select_handles(session, partners)
     else:
         session.show_notice(
-            "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
-            "“foot_l” and “foot_r”, or “left ear” and “right ear”."
+            _(
+                "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
+                "“foot_l” and “foot_r”, or “left ear” and “right ear”."
+            )
         )
 
 
@@ -223,7 +227,8 @@ def toggle_handles_locked(session: Session, project: Project) -> None:
 def group_handles(session: Session, project: Project) -> None:
     if len(project.selected_handles) > 1:
         taken = {handle.group for handle in project.layer.handles}
-        name = next(f"group {n}" for n in count(1) if f"group {n}" not in taken)
+        names = (_("group {number}").format(number=number) for number in count(1))
+        name = next(each for each in names if each not in taken)
         edit_layer(session, handle_commands.group_handles, project.selected_handles, name)
 
 
@@ -286,7 +291,7 @@ def _delete_keys(session: Session, project: Project) -> None:
     left = {row: frames for row, frames in chosen_of.items() if frames}
     edit_document(session, change_keys(DELETE, left or project.selected_keys))
     if keeping:
-        session.show_notice(FIRST_KEY_STAYS.format(layers=", ".join(keeping)))
+        session.show_notice(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
 
 
 def update_layer_runtimes(project: Project) -> None:
@@ -300,9 +305,9 @@ def update_layer_runtimes(project: Project) -> None:
     for file in spare - project.history.picture_files if spare else ():
         del project.pictures[file]
     for layer in document.layers:
-        puppet = project.layer_runtimes.get(layer.id)
-        if puppet is not None and puppet.file is layer.picture:
-            project.pictures[layer.picture] = puppet.picture
+        runtime = project.layer_runtimes.get(layer.id)
+        if runtime is not None and runtime.file is layer.picture:
+            project.pictures[layer.picture] = runtime.picture
             continue
         if layer.picture not in project.pictures:
             decoded = decode_picture(layer.picture.data, layer.name)

@@ -40,6 +40,7 @@ from app.storage import (
     run_parallel,
     sample_images,
 )
+from app.texts import N_, _, message_of, ngettext
 
 PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
@@ -50,16 +51,16 @@ OPENABLE = (PROJECT, *PICTURES, *LAYERED)
 LOOK = 2.0  # seconds between two checks whether files still exist
 
 
-# Short descriptions of the samples by file name, as long as a card has room for.
+# Short descriptions of the samples by their names, as long as a card has room for.
 STORIES = {
-    "bar": "A bar to bend as you like",
-    "character": "Waves a hand",
-    "dragon": "Nods and sweeps its tail",
-    "friend": "Layers that wave and laugh",
-    "giraffe": "Bends down and comes up",
-    "octopus": "Arms that curl without end",
-    "ring": "A hole that opens and closes",
-    "s": "A spine to curl or straighten",
+    N_("Bar"): _("A bar to bend as you like"),
+    N_("Character"): _("Waves a hand"),
+    N_("Dragon"): _("Nods and sweeps its tail"),
+    N_("Friend"): _("Layers that wave and laugh"),
+    N_("Giraffe"): _("Bends down and comes up"),
+    N_("Octopus"): _("Arms that curl without end"),
+    N_("Ring"): _("A hole that opens and closes"),
+    N_("S"): _("A spine to curl or straighten"),
 }
 
 
@@ -89,12 +90,12 @@ def sample_files() -> tuple[SampleFile, ...]:
                 name=picture.stem.capitalize(),
                 file=projects.get(name, picture),
                 picture=picture,
-                what="animated" if is_animated else "picture",
-                story=STORIES.get(name, ""),
+                what=_("animated") if is_animated else _("picture"),
+                story=STORIES.get(picture.stem.capitalize(), ""),
                 moving=sample_images() / "moving" / f"{name}.webp",
             )
         )
-    return tuple(sorted(found, key=lambda sample: sample.what))
+    return tuple(sorted(found, key=lambda sample: sample.file.suffix != PROJECT))
 
 
 def recent_files(session: Session) -> tuple[tuple[Path, bool], ...]:
@@ -115,7 +116,9 @@ def open_recent_file(session: Session, path: Path) -> None:
         return
     session.preferences = session.preferences.without_recent(path)
     session.show_notice(
-        f"{path.name} is not in {path.parent} any more. It was taken off the recent files.",
+        _("{name} is not in {folder} any more. It was taken off the recent files.").format(
+            name=path.name, folder=path.parent
+        ),
         tone="error",
     )
 
@@ -140,7 +143,7 @@ class OpenedFile(NamedTuple):
 
 
 def ask_file_to_open(session: Session) -> None:
-    session.ask_file("Open image or project", OPENABLE, lambda path: do(open_file, path))
+    session.ask_file(_("Open image or project"), OPENABLE, lambda path: do(open_file, path))
 
 
 def open_file(session: Session, path: Path) -> None:
@@ -149,14 +152,18 @@ def open_file(session: Session, path: Path) -> None:
     If the project has unsaved changes by then, a question comes first.
     """
     meshing = session.meshing
-    kind = JobKind(display_name(f"Opening {path.name}"), f"{path.name} cannot be opened")
+    kind = JobKind(
+        display_name(_("Opening {name}").format(name=path.name)),
+        _("{name} cannot be opened").format(name=path.name),
+    )
     _open(session, path, kind, lambda: _read(path, meshing))
 
 
 def open_files_as_layers(session: Session, paths: Sequence[Path]) -> None:
     """Read several pictures on the worker, and open them as the layers of one scene."""
     meshing = session.meshing
-    kind = JobKind(f"Opening {len(paths)} pictures", "The pictures cannot be opened")
+    text = ngettext("Opening {count} picture", "Opening {count} pictures", len(paths))
+    kind = JobKind(text.format(count=len(paths)), _("The pictures cannot be opened"))
 
     def read() -> OpenedFile:
         return with_layer_runtimes(open_pictures(paths, meshing))._replace(drawings=tuple(paths))
@@ -179,14 +186,18 @@ def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
         open_files_as_layers(session, pictures)
     elif usable:
         if len(paths) > 1:
-            session.show_notice(f"Opened {usable[0].name}; only one file at a time.")
+            text = _("Opened {name}; only one file at a time.")
+            session.show_notice(text.format(name=usable[0].name))
         open_file(session, usable[0])
     elif paths:
-        what = "a folder" if paths[0].is_dir() else "neither a picture nor a project"
-        kinds = "a picture (PNG, JPEG, WebP, …)"
-        session.show_notice(
-            f"{paths[0].name} is {what}. Drop {kinds} or a {PROJECT} file.", tone="error"
-        )
+        if paths[0].is_dir():
+            text = _("{name} is a folder. Drop a picture (PNG, JPEG, WebP, …) or a {suffix} file.")
+        else:
+            text = _(
+                "{name} is neither a picture nor a project. Drop a picture (PNG, JPEG, WebP, …) "
+                "or a {suffix} file."
+            )
+        session.show_notice(text.format(name=paths[0].name, suffix=PROJECT), tone="error")
 
 
 def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> None:
@@ -199,12 +210,14 @@ def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> Non
         hold = saving.lock_project_file(session, path)
     except FileLockedError as error:
         session.dialog = Question(
-            title="Open elsewhere",
-            text=f"{path.name} is open already {error}. What is saved here and there takes the "
-            "place of each other.",
+            title=_("Open elsewhere"),
+            text=_(
+                "{name} is open already {where}. What is saved here and there takes the place of "
+                "each other."
+            ).format(name=path.name, where=message_of(error)),
             answers=(
-                ("Open a copy", do(install_copy, path, opened)),
-                ("Open anyway", do(install_anyway, path, opened)),
+                (_("Open a copy"), do(install_copy, path, opened)),
+                (_("Open anyway"), do(install_anyway, path, opened)),
             ),
         )
         return
@@ -256,10 +269,13 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
     project.is_import_log_open = True
     count = len(summary.warnings)
     session.show_notice(
-        f"{'One thing looks' if count == 1 else f'{count} things look'} different here; the tab "
-        "Layers tells which.",
+        ngettext(
+            "One thing looks different here; the tab Layers lists it.",
+            "{count} things look different here; the tab Layers lists them.",
+            count,
+        ).format(count=count),
         topic="import",
-        label="Show",
+        label=_("Show"),
         action=do(show_import_log),
     )
 
@@ -287,8 +303,8 @@ def _foremost(document: Document) -> int:
 
 def with_layer_runtimes(opened: OpenedScene) -> OpenedFile:
     """Add the layer runtimes to a scene."""
-    puppets = _layer_runtimes(opened.document, opened.pictures)
-    return OpenedFile(opened.document, puppets, opened.notices)
+    runtimes = _layer_runtimes(opened.document, opened.pictures)
+    return OpenedFile(opened.document, runtimes, opened.notices)
 
 
 def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict[int, LayerRuntime]:
@@ -321,7 +337,8 @@ def _read_project(path: Path) -> OpenedFile:
 def decode_project(document: Document, name: str) -> OpenedFile:
     """Return a project's document with its layer runtimes."""
     files = list(dict.fromkeys(layer.picture for layer in document.layers))
-    decoded = decode_pictures([(file.data, f"the picture of {name}") for file in files])
+    title = _("the picture of {name}").format(name=name)
+    decoded = decode_pictures([(file.data, title) for file in files])
     by_file = dict(zip(files, decoded, strict=True))
     pictures = {layer.id: by_file[layer.picture] for layer in document.layers}
     return OpenedFile(document, _layer_runtimes(document, pictures), motion_notices(document))
@@ -329,24 +346,28 @@ def decode_project(document: Document, name: str) -> OpenedFile:
 
 def _read_picture(path: Path, meshing: Meshing) -> OpenedFile:
     opened = with_layer_runtimes(open_picture(path, meshing))
-    (puppet,) = opened.layer_runtimes.values()
-    return opened._replace(next_step=_next_step(puppet), drawings=(path,))
+    (runtime,) = opened.layer_runtimes.values()
+    return opened._replace(next_step=_next_step(runtime), drawings=(path,))
 
 
-def _next_step(puppet: LayerRuntime) -> NextStep | None:
+def _next_step(runtime: LayerRuntime) -> NextStep | None:
     """Return a suggestion for an opaque picture that was just opened."""
-    cut = puppet.cut.value
-    if puppet.is_opaque and cut.is_all:
+    cut = runtime.cut.value
+    if runtime.is_opaque and cut.is_all:
         return NextStep(
-            text="The whole picture is the drawing. Brush away what does not belong to it, or pick "
-            "the background's colour in the tab Cut-out.",
-            label="Cut out",
+            text=_(
+                "The whole picture is the drawing. Brush away what does not belong to it, or pick "
+                "the background's colour in the tab Cut-out."
+            ),
+            label=_("Cut out"),
             action=do(cut_out_editing.toggle_cut_brush),
         )
     if cut.holes is not None and cut.holes.shut:
         return NextStep(
-            text="Does the background show through inside the drawing? A click opens it as a hole.",
-            label="Show where",
+            text=_(
+                "Does the background show through inside the drawing? A click opens it as a hole."
+            ),
+            label=_("Show where"),
             action=do(cut_out_editing.toggle_cut_tool, "holes"),
         )
     return None
@@ -363,7 +384,7 @@ def show_recovery(session: Session) -> None:
     """Show the unsaved work of earlier sessions, or a notice that there is none."""
     ask_recovery(session)
     if not isinstance(session.dialog, RecoveryDialog):
-        session.show_notice("There is no unsaved work of an earlier time.")
+        session.show_notice(_("There is no unsaved work of an earlier time."))
 
 
 def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
@@ -380,7 +401,7 @@ def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
 
 def recover_file(session: Session, path: Path) -> None:
     """Open unsaved work; its autosave stays until the work is saved."""
-    kind = JobKind("Opening unsaved work", "The unsaved work cannot be opened")
+    kind = JobKind(_("Opening unsaved work"), _("The unsaved work cannot be opened"))
 
     def done(read: tuple[OpenedFile, SourceInfo]) -> None:
         saving.confirm_unsaved(session, do(install_recovered, path, *read))
@@ -396,7 +417,7 @@ def _read_recoverable_file(path: Path) -> tuple[OpenedFile, SourceInfo]:
 def discard_recoverable_file(session: Session, path: Path) -> None:
     """Delete unsaved work, and show the rest of the list."""
     remove_recoverable_file(path)
-    session.show_notice("The unsaved work was discarded.")
+    session.show_notice(_("The unsaved work was discarded."))
     ask_recovery(session)
 
 
@@ -415,5 +436,8 @@ def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: 
     )
     session.autosave.write(opened.document, origin)
     remove_recoverable_file(path)
-    what = f"unsaved work on {origin.path.name}" if origin.path else "unsaved work"
-    session.show_notice(f"This is your {what}. Save it to keep it.", tone="good")
+    text = _("This is your unsaved work. Save it to keep it.")
+    if origin.path:
+        text = _("This is your unsaved work on {name}. Save it to keep it.")
+        text = text.format(name=origin.path.name)
+    session.show_notice(text, tone="good")

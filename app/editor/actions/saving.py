@@ -36,14 +36,18 @@ from app.storage import (
     save_project,
     write_atomically,
 )
+from app.texts import N_, _, message_of
 
 PROJECT = ".lissom"
 PATIENCE = 10.0  # seconds that saving and closing wait for pending changes
-UNSAVED = "Unsaved changes"
-SAVING = JobKind("Saving", "The project was not saved", "keep")
-AUTOSAVING = JobKind("Autosaving", "Unsaved work cannot be kept", "keep")
-WRITING = JobKind("Saving preferences", "The preferences cannot be kept", "keep")
-CLEARING = JobKind("Clearing up", "What was left half written stays", "keep")
+UNSAVED = _("Unsaved changes")
+NOT_FINISHED = N_("Not finished: {tasks}.")
+SAVING = JobKind(_("Saving"), _("The project was not saved"), "keep")
+AUTOSAVING = JobKind(_("Autosaving"), _("Unsaved work cannot be kept"), "keep")
+WRITING = JobKind(_("Saving preferences"), _("The preferences cannot be kept"), "keep")
+CLEARING = JobKind(
+    _("Clearing up"), _("Unfinished files of earlier saves were not removed"), "keep"
+)
 
 
 def save(session: Session) -> None:
@@ -72,7 +76,7 @@ def write_project(session: Session, path: Path, then: Action | None) -> None:
     """
     writing = do(write_project_now, path, then)
     pending_changes.run_when_idle(
-        session, writing, "Save", changes=False, after_saves=True, patience=PATIENCE
+        session, writing, _("Save"), changes=False, after_saves=True, patience=PATIENCE
     )
 
 
@@ -89,7 +93,9 @@ def overwrite_changed_file(
 def write_project_now(session: Session, project: Project, path: Path, then: Action | None) -> None:
     """Save the project to a file as it is, without waiting for pending changes."""
     document, known = project.document, project.read_as if path == project.path else None
-    textures = {layer: puppet.cut.value.texture for layer, puppet in project.layer_runtimes.items()}
+    textures = {
+        layer: runtime.cut.value.texture for layer, runtime in project.layer_runtimes.items()
+    }
     drawings = tuple(project.drawings)
 
     def work() -> str:
@@ -106,7 +112,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
         project.read_as = digest
         _lock_saved_file(session, project, path)
         session.preferences = session.preferences.with_recent(path)
-        session.show_notice(f"Saved {path.name}.", tone="good")
+        session.show_notice(_("Saved {name}.").format(name=path.name), tone="good")
         if then is not None:
             # The project may have new changes by now.
             confirm_unsaved(session, then)
@@ -117,12 +123,14 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
             report_failure(session, SAVING.complaint, error)
         elif session.project is project:
             session.dialog = Question(
-                title="Changed by somebody else",
-                text=f"{path.name} is not as it was when you opened or saved it: another window or "
-                "program has changed it since.",
+                title=_("Changed by somebody else"),
+                text=_(
+                    "{name} is not as it was when you opened or saved it: another window or "
+                    "program has changed it since."
+                ).format(name=path.name),
                 answers=(
-                    ("Save under another name", do(_ask_where, then)),
-                    ("Replace it", do(overwrite_changed_file, path, then)),
+                    (_("Save under another name"), do(_ask_where, then)),
+                    (_("Replace it"), do(overwrite_changed_file, path, then)),
                 ),
             )
 
@@ -151,8 +159,10 @@ def lock_project_file(session: Session, path: Path) -> FileLock | None:
     except OSError as error:
         reason = error.strerror or str(error)
         session.show_notice(
-            f"Whether {path.name} is open in another window cannot be seen in {path.parent} "
-            f"({reason}). You are asked before it replaces what somebody else has saved."
+            _(
+                "Whether {name} is open in another window cannot be seen in {folder} ({reason}). "
+                "You are asked before it replaces what somebody else has saved."
+            ).format(name=path.name, folder=path.parent, reason=reason)
         )
         return None
 
@@ -178,7 +188,8 @@ def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
         project.file_lock = lock_project_file(session, path)
     except FileLockedError as error:
         project.file_lock = None
-        session.show_notice(f"{path.name} is open elsewhere, too: {error}.", tone="error")
+        text = _("{name} is open elsewhere, too: {where}.")
+        session.show_notice(text.format(name=path.name, where=message_of(error)), tone="error")
     if before is not None:
         before.release()
 
@@ -203,13 +214,13 @@ def save_curves(session: Session, project: Project, path: Path) -> None:
         write_atomically(path, lambda file: file.write(picture))
     else:
         write_curves(path, curves)
-    session.show_notice(f"Saved {path.name}.", tone="good")
+    session.show_notice(_("Saved {name}.").format(name=path.name), tone="good")
 
 
 @with_project
 def _ask_curves(session: Session, project: Project, suffix: str) -> None:
-    name = f"{project.name} distortion{suffix}"
-    session.ask_file("Save the curves", (suffix,), lambda path: do(save_curves, path), name=name)
+    name = _("{project} distortion").format(project=project.name) + suffix
+    session.ask_file(_("Save the curves"), (suffix,), lambda path: do(save_curves, path), name=name)
 
 
 def confirm_unsaved(session: Session, then: Action) -> None:
@@ -227,12 +238,13 @@ def confirm_unsaved(session: Session, then: Action) -> None:
         ask_unsaved_now(session, then)
         return
     if not pending_changes.is_document_idle(project, after_saves=True):
+        text = _("Lissom finishes first: {tasks}.")
         session.show_notice(
-            f"{pending_changes.pending_label(project)} comes first.", topic="settling"
+            text.format(tasks=pending_changes.pending_label(project)), topic="settling"
         )
     asking = do(ask_unsaved_now, then)
     pending_changes.run_when_idle(
-        session, asking, "Close", changes=False, after_saves=True, patience=PATIENCE
+        session, asking, _("Close"), changes=False, after_saves=True, patience=PATIENCE
     )
 
 
@@ -249,16 +261,22 @@ def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
     if is_settled and not has_unsaved_changes(project):
         then.apply(session)
         return
-    name = project.path.name if project.path else "This project"
-    text = f"{name} has changes that are not saved."
+    if project.path:
+        sentences = [_("{name} has changes that are not saved.").format(name=project.path.name)]
+    else:
+        sentences = [_("This project has changes that are not saved.")]
     save = do(save_then, then)
     if not is_settled:
-        text += f" {pending_changes.pending_label(project)} is not finished."
+        unfinished = pending_changes.pending_label(project)
+        sentences.append(_(NOT_FINISHED).format(tasks=unfinished))
     if unkeyed is not None:
-        text += f" The pose at frame {unkeyed.frame} is in no key: saving makes one of it."
+        text = _("The pose at frame {frame} is in no key: saving makes a key of it.")
+        sentences.append(text.format(frame=unkeyed.frame))
         save = do(key_and_save, then)
     session.dialog = Question(
-        title=UNSAVED, text=text, answers=(("Save", save), ("Don't save", then))
+        title=UNSAVED,
+        text=" ".join(sentences),
+        answers=((_("Save"), save), (_("Don't save"), then)),
     )
 
 
@@ -408,7 +426,7 @@ def _begin_autosave(session: Session, project: Project, now: float) -> None:
 @with_project
 def _ask_where(session: Session, project: Project, then: Action | None) -> None:
     session.dialog = FileDialog(
-        title="Save the project",
+        title=_("Save the project"),
         folder=project.path.parent if project.path else session.usual_folder,
         name=project.path.name if project.path else f"{project.name}{PROJECT}",
         suffixes=(PROJECT,),

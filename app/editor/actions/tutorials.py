@@ -17,6 +17,7 @@ from app.editor.project import Project
 from app.editor.session import Session, TutorialStage, TutorialState
 from app.editor.work.jobs import JobKind
 from app.storage import load_project, sample_images
+from app.texts import _
 from engine.maps import HarmonicMap
 
 STEPS: tuple[TutorialStage, ...] = ("handle", "time", "pose", "play", "export")
@@ -26,7 +27,7 @@ LED = "nose"  # the sample's handle that the person adds again
 HELD = ("withers", "chest", "rump", "hoof")  # endings of the names of handles that stay
 LAST, SIZE = 48, (480, 480)  # last frame of the sample's loop; size of its GIF in pixels
 HOLDS_AND_MOVES = 2  # number of handles that the person's own drawing needs
-OPENING = JobKind("Opening the giraffe", "The giraffe cannot be opened")
+OPENING = JobKind(_("Opening the giraffe"), _("The giraffe cannot be opened"))
 
 
 def begin_tutorial(session: Session) -> None:
@@ -40,7 +41,7 @@ def begin_tutorial(session: Session) -> None:
 
 def begin_tutorial_with_own_drawing(session: Session) -> None:
     """Ask for a drawing, and guide the person through its first animation."""
-    session.ask_file("Open a drawing", files.OPENABLE, lambda path: do(files.open_file, path))
+    session.ask_file(_("Open a drawing"), files.OPENABLE, lambda path: do(files.open_file, path))
     session.tutorial = TutorialState()
 
 

@@ -23,6 +23,7 @@ from app.storage import (
     ThemeName,
     manual_page,
 )
+from app.texts import _
 
 SCALE_STEP = 0.25
 LEAST_PART = 0.05  # of the viewport's width; each method keeps at least this share
@@ -40,7 +41,7 @@ def set_view(_: Session, project: Project, camera: View | None) -> None:
 
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
-    shown = [puppet.shown for puppet in project.layer_runtimes.values()]
+    shown = [runtime.shown for runtime in project.layer_runtimes.values()]
     boxes = [
         bounding_box(each.placement.apply(each.positions)) for each in shown if each is not None
     ]
@@ -237,9 +238,10 @@ def open_manual(session: Session, page: str) -> None:
     except (webbrowser.Error, OSError):
         is_open = False
     if not is_open:
-        raise LissomError(f"no browser was found; the manual is {path}")
+        raise LissomError(_("no browser was found; the manual is {path}").format(path=path))
     # The program that starts the browser may fail later, without an error here.
-    session.show_notice(f"The manual opens in the browser. It lies in {path}.", topic="manual")
+    text = _("The manual opens in the browser. Its file is {path}.")
+    session.show_notice(text.format(path=path), topic="manual")
 
 
 def close_dialog(session: Session) -> None:

@@ -6,6 +6,7 @@ from typing import Self
 
 from app.document import AppliedMotion, Document, Layer
 from app.solving import MotionSolve
+from app.texts import _
 from engine.domain import MeshedDomain
 from engine.geometry.motions.body import other_side
 from engine.geometry.motions.kinds import BodyKind, find_kind
@@ -96,4 +97,4 @@ class MotionJob:
     @property
     def step_label(self) -> str:
         """Description of the next step."""
-        return "Reading the joints" if self.solve is None else self.solve.status_text
+        return _("Reading the joints") if self.solve is None else self.solve.status_text

@@ -115,8 +115,8 @@ def test_turn_of_a_handle_that_came_later_is_left_out(session):
     playback.scrub(session, 5)
     with session.jobs.held():
         handle = project.layer.handles[0]
-        wishes = {handle.id: Target(position=handle.position + 9)}
-        drag_handles(session, wishes, gesture="drag")
+        targets = {handle.id: Target(position=handle.position + 9)}
+        drag_handles(session, targets, gesture="drag")
         add_handle(session, complex(project.layer.domain.mesh.vertices[0]))
         free_rotation(session, project.layer.handles[-1].id)
     settle(session)

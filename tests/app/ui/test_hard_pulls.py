@@ -38,7 +38,7 @@ def drag(window, bar, way, *, key=None):
         robot.mouse_move_to_pos(window.point(start + way / 2))
         robot.mouse_move_to_pos(window.point(start + way))
         robot.yield_(2)
-        assert "to keep the wish beyond its reach" in window.session.hint
+        assert "to keep the target beyond its reach" in window.session.hint
         if key is not None:
             robot.key_down(int(key))
         robot.mouse_up(0)
@@ -60,7 +60,7 @@ def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
     wanted = bar.layer.keys[0].pose.targets[HAND].position
     assert abs(wanted - reached[HAND]) < 2
     (text,) = told(window)
-    assert text == STOPPED_AT_LIMIT.format(who=bar.layer.handles[HAND].name, its="its")
+    assert text == STOPPED_AT_LIMIT.format(handle=bar.layer.handles[HAND].name)
     window.run(lambda robot: robot.item_click("**/Loosen"))
     window.settle()
     assert bar.layer.bounds == RUBBERY.bounds

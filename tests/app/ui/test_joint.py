@@ -126,8 +126,8 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     window.settle()
     before, was = scene.document, on_scene(scene, "arm")
     told = drag(BESIDE, SHOULDER)
-    assert "drag to hang it on another layer" in told[0].lower()
-    assert "over the layer to hang it on" in told[1]
+    assert "drag to attach it to another layer" in told[0].lower()
+    assert "over the layer to attach it to" in told[1]
     assert "to hang arm on body" in told[2]
     joint = scene.document.layer(arm).attachments[0]
     assert (joint.parent, joint.inherits_rotation) == (body, True)
@@ -200,7 +200,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     assert scene.document is before
     assert window.session.toasts[-1].tone == "error"
     assert re.search(
-        says(PARENT_IS_DESCENDANT, name="hand", parent="body", other="body"),
+        says(PARENT_IS_DESCENDANT, name="hand", parent="body"),
         window.session.toasts[-1].text,
     )
 

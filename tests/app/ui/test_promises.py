@@ -279,7 +279,7 @@ def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
         saving.close_project(window.session)
         assert question(window) is None
         saving.close_project(window.session)
-        assert "Inserting a key is not finished" in question(window).text
+        assert saving.NOT_FINISHED.format(tasks=INSERTING.label) in question(window).text
     window.session.dialog = None
     window.settle()
     assert window.session.project is loose

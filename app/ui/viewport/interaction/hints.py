@@ -65,8 +65,8 @@ def _sentence(parts: list[str]) -> str:
 
 
 def _format_hint(hint: Hint) -> str:
-    how = reduce(lambda told, key: format_modified(key, told), KEYS.get(hint.key, ()), hint.how)
-    return f"{how} {hint.what}"
+    keys = KEYS.get(hint.key, ())
+    return reduce(lambda text, key: format_modified(key, text), keys, hint.text)
 
 
 def draw_badges(

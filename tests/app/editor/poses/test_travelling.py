@@ -274,8 +274,8 @@ def test_layers_without_a_common_name_are_left_out_and_told(session):
     settle(session)
     assert layer(session, "body").key_frames == {0, 12}
     assert layer(session, "far leg").key_frames == {0}
-    told = [toast.text for toast in session.toasts]
-    assert "“far leg” has no handle called hip, knee or foot." in told
+    texts = [toast.text for toast in session.toasts]
+    assert "“far leg” has no handle called hip, knee or foot." in texts
 
 
 def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
@@ -297,8 +297,8 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
     pasting.paste_copied(session)
     settle(session)
     shin = next(each for each in layer(session, "far leg").handles if each.name == "shin")
-    wished = layer(session, "far leg").key(12).pose.targets[shin.id].position
-    assert wished == pytest.approx(here, abs=0.5)
+    target = layer(session, "far leg").key(12).pose.targets[shin.id].position
+    assert target == pytest.approx(here, abs=0.5)
     close(
         {k: w for k, w in ways(session, "far leg", 12).items() if k != "shin"},
         ways(session, "near leg", 0),
@@ -321,12 +321,12 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
 def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     editing.select_handles(session, frozenset({2}))
     nudge_handles(session, 13 + 3j)
-    (promised,) = session.project.pulls
-    while promised.kept is None:
+    (pull,) = session.project.pulls
+    while pull.kept is None:
         maintain(session)
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
-    assert not promised.is_settled
+    assert not pull.is_settled
     copying.copy_pose_or_keys(session)
     set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)
@@ -412,9 +412,9 @@ def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
     pose = replace(key.pose, targets=targets, phi=turn * body.domain.cage)
     copied = CopiedKeys(body, (replace(key, pose=pose),))
     landing = paste_destinations.find_paste_destination(scene, copied, body, SWAPPED)
-    wished = landing.pose_transfer(SWAPPED).transfer_targets(body, pose)
+    target = landing.pose_transfer(SWAPPED).transfer_targets(body, pose)
     for handle in body.handles:
-        assert wished[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
+        assert target[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
 
 
 @pytest.mark.parametrize(("way", "mirrors"), [(SWAPPED, False), (FLIPPED, True)])

@@ -137,7 +137,7 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     assert ((wanted - after[hand]) / (asked - after[hand])).real > 0
     (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
     name = project.layer.handle(hand).name
-    assert toast.text == STOPPED_AT_LIMIT.format(who=name, its="its")
+    assert toast.text == STOPPED_AT_LIMIT.format(handle=name)
     # All of that is one step, and the pose is found again from its own wishes.
     solve_pose_again(session, {}, gesture=object())
     settle(session)

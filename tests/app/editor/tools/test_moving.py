@@ -251,12 +251,12 @@ def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
 def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     """The hand lets a handle go, and moves all of it before the pose has come to rest."""
     session = session_of(blob, tmp_path)
-    wished = {1: replace(target(session, 1), position=RIGHT + 12j)}
-    set_targets(session, wished)
+    targets = {1: replace(target(session, 1), position=RIGHT + 12j)}
+    set_targets(session, targets)
     settle(session)
     rested = pose_of(session)
     editing.undo(session)
-    set_targets(session, wished)
+    set_targets(session, targets)
     maintain(session)
     assert session.jobs.wait_until_idle()
     session.jobs.deliver()
