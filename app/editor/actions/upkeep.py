@@ -221,7 +221,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if project.is_posing:
         # The jobs below take longer than a pause of the drag.
         return
-    yield from _hang(session, project)
+    yield from _compute_joints(session, project)
     if not session.prepares_ahead:
         return
     yield from _stream(session, project)
@@ -430,7 +430,7 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
         yield from _derive(session, TRACING, paths, clip, trace)
 
 
-def _hang(session: Session, project: Project) -> Iterator[Job]:
+def _compute_joints(session: Session, project: Project) -> Iterator[Job]:
     """Yield a job for some frames of the joints of attached layers."""
     joints, source = project.parent_transforms, parenting_key(project.document)
     is_settled = not source or joints.follows(source) or joints.has_failed(source)

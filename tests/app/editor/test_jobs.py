@@ -21,7 +21,7 @@ def job(kind, work, results, *, lane="display"):
     )
 
 
-STUCK = 300.0  # seconds after which a worker is taken to hang; no result depends on it
+STUCK = 300.0  # seconds after which a worker counts as stuck; no result depends on it
 HAND = {name: JobKind(name, lane="hand") for name in ("stuck", "pose")}
 
 

@@ -128,7 +128,7 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     told = drag(BESIDE, SHOULDER)
     assert "drag to attach it to another layer" in told[0].lower()
     assert "over the layer to attach it to" in told[1]
-    assert "to hang arm on body" in told[2]
+    assert "to attach arm to body" in told[2]
     joint = scene.document.layer(arm).attachments[0]
     assert (joint.parent, joint.inherits_rotation) == (body, True)
     assert abs(joint.parent_point - SHOULDER) < 1
@@ -196,7 +196,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     window.act(set_active_layer, body)
     window.settle()
     told = drag(212 + 120j)
-    assert "hangs on body itself" in told[-1]
+    assert "hand is attached to body itself" in told[-1]
     assert scene.document is before
     assert window.session.toasts[-1].tone == "error"
     assert re.search(

@@ -31,7 +31,7 @@ from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 AROUND = 1 / 64  # frames before and after a key, between which its velocity is measured
 CONVERTING_KEYS = JobKind(
-    _("Placing keys of a track"), _("The places of the track's keys could not be found")
+    _("Moving keys of a track"), _("The places of the track's keys could not be found")
 )
 
 

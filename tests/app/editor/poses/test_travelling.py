@@ -261,7 +261,7 @@ def test_why_nothing_can_be_pasted_is_said(session):
     assert "still picture" in pasting.paste_disabled_reason(session, project, PLAIN)
 
 
-def test_layers_without_a_common_name_are_left_out_and_told(session):
+def test_paste_reports_layers_without_a_common_name(session):
     far = identity(session, "far leg")
     for handle in layer(session, "far leg").handles:
         command = handle_commands.rename_handle(far, handle.id, f"point {handle.id}")
@@ -335,7 +335,7 @@ def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     close(ways(session, "far leg", 0), ways(session, "near leg", 0))
 
 
-def test_a_layer_that_changes_meanwhile_is_told(session):
+def test_paste_reports_a_layer_that_changes_meanwhile(session):
     copying.copy_pose_or_keys(session)
     set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)

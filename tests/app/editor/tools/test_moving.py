@@ -150,7 +150,7 @@ def test_each_arrow_is_a_step(session):
 
 @pytest.fixture
 def joined(blob, tmp_path):
-    """Two blobs, the second of which hangs on the first, and is posed."""
+    """Two blobs: the second is attached to the first, and is posed."""
     session = session_of(blob, tmp_path)
     session.project.history.do(shape_commands.set_anchor(0, LEFT))
     settle(session)
@@ -167,7 +167,7 @@ def places_of(session, layer):
     return shown.placement.apply(shown.positions)
 
 
-def test_a_layer_moves_what_it_hangs_on(joined):
+def test_layer_moves_its_root_parent(joined):
     project, before = joined.project, [places_of(joined, layer) for layer in (0, 1)]
     drag(joined, end=False, ctrl=True, shift=True)
     settle(joined)
@@ -184,7 +184,7 @@ def test_a_layer_moves_what_it_hangs_on(joined):
     np.testing.assert_allclose(places_of(joined, 1), before[1] + 4, atol=1e-3)
 
 
-def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
+def test_layer_stays_when_its_parent_is_locked(joined):
     toggle_layers_locked(joined, 0)
     document = joined.project.document
     drag(joined, ctrl=True, shift=True)
