@@ -7,12 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import Clip, ExportSettings, FrameRange, clip_of, scene_commands
+from app.document import Clip, ExportSettings, FrameRange, clip_of
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing
 from app.editor.actions.posing.pose_commit import key_pose_command
-from app.editor.dialogs import FileDialog, Question
+from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
@@ -20,21 +19,17 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.promise import Afterwards
 from app.errors import LissomError, display_name
 from app.export import (
-    FRAMES,
     CachedVertices,
     ExportRequest,
-    FrameNames,
     check_request,
     clipboard_program,
-    data_file,
     list_overwritten_files,
     plan_export,
     put_on_clipboard,
     with_reduced_meshes,
-    with_suffix_for,
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT
-from app.motion import Animation, BoundingBox, PoseSampler, extent_key, hung_animations
+from app.motion import Animation, PoseSampler, extent_key, hung_animations
 from app.storage import Cancellation, make_settings_folder, temporary_picture
 from app.texts import _, ngettext
 
@@ -46,35 +41,9 @@ PREPARING = JobKind(_("Preparing the export"), _("The export could not begin"), 
 COPYING = JobKind(_("Copying the picture"), _("The picture was not copied"), "export")
 
 
-def ask_destination_and_export(session: Session) -> None:
-    """Ask for a destination, and start the export."""
-    _ask(session, _("Export"), lambda path: do(start_export_at, path))
-
-
-def ask_export_destination(session: Session) -> None:
-    """Ask for the destination of the next export; do not start it."""
-    _ask(session, _("Choose"), lambda path: do(set_export_destination, path))
-
-
-@with_project
-def set_export_destination(_: Session, project: Project, out: Path) -> None:
-    """Set the destination of the next export of this format."""
-    name = project.document.export.format
-    _note_place(project, name, out)
-    data = data_file(out, name)
-    if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
-        # The file dialog has already asked whether to replace the file.
-        project.replaceable = name, out
-
-
-def _note_place(project: Project, name: str, out: Path) -> None:
+def note_export_destination(project: Project, name: str, out: Path) -> None:
     project.export_destinations.pop(name, None)
     project.export_destinations[name] = out
-
-
-def start_export_at(session: Session, out: Path) -> None:
-    set_export_destination(session, out)
-    start_export(session, out)
 
 
 @with_project
@@ -82,27 +51,6 @@ def replace_export_files(session: Session, project: Project, out: Path) -> None:
     """Export, and replace existing files."""
     project.replaceable = project.document.export.format, out
     start_export(session, out)
-
-
-@with_project
-def repeat_export(session: Session, project: Project) -> None:
-    """Export to the chosen or last destination; ask if there is neither."""
-    out = export_destination(project)
-    if out is not None:
-        start_export(session, out)
-    else:
-        ask_destination_and_export(session)
-
-
-def export_destination(project: Project) -> Path | None:
-    """Return the destination of the next export, or None.
-
-    This is the last destination of the format. The first export of a format goes beside the last
-    export of another format, under a suitable name.
-    """
-    name, places = project.document.export.format, project.export_destinations
-    newest = next(reversed(places.values()), None)
-    return places.get(name) or (with_suffix_for(newest, name) if newest else None)
 
 
 @with_project
@@ -137,7 +85,7 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
 
     def begun(run: ExportRun) -> None:
         session.export = run
-        _note_place(project, settings.format, out)
+        note_export_destination(project, settings.format, out)
         folder = out.parent if EXPORT_FORMATS[settings.format].suffixes else out
         session.preferences = replace(session.preferences, exported=folder)
         # A new pose makes a new picture, which must not replace this one without a question.
@@ -212,9 +160,7 @@ def _prepare(
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
             document = key_pose_command(session, project, unkeyed)(document)
-    pictures = {
-        layer: runtime.cut.value.texture for layer, runtime in project.layer_runtimes.items()
-    }
+    pictures = {layer: each.cut.value.texture for layer, each in project.layer_runtimes.items()}
     samplers = {
         layer: (runtime.fine or runtime.store).sampler or runtime.store.sampler
         for layer, runtime in project.layer_runtimes.items()
@@ -278,10 +224,9 @@ def confirm_ending_export(session: Session, then: Action) -> None:
         progress = ngettext(
             "{done} of {total} frame is drawn.", "{done} of {total} frames are drawn.", total
         ).format(done=done, total=total)
+    result = _("Frames that are written stay if the export ends now.")
     if run is not None and _is_one_file(run):
         result = _("Nothing is written if the export ends now.")
-    else:
-        result = _("Frames that are written stay if the export ends now.")
     session.dialog = Question(
         title=RUNNING,
         text=f"{progress} {result}",
@@ -333,29 +278,13 @@ def _copy(session: Session, picture: Path) -> None:
         finally:
             picture.unlink(missing_ok=True)
 
-    def done(_result: None) -> None:
-        session.show_notice(_("The picture is on the clipboard."), tone="good")
-
-    run_job(session, COPYING, work, done)
+    text = _("The picture is on the clipboard.")
+    run_job(session, COPYING, work, lambda _result: session.show_notice(text, tone="good"))
 
 
 def report_failed_export(session: Session, error: Exception) -> None:
     session.export = None
     report_failure(session, _("The export failed"), error)
-
-
-def set_export_settings(session: Session, export: ExportSettings) -> None:
-    editing.edit_document(session, scene_commands.set_export(export))
-
-
-def set_aspect_locked(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
-    """Link or unlink width and height of an export."""
-    session.is_aspect_locked = keeps
-
-
-def preview_export_frame(session: Session, box: BoundingBox) -> None:
-    """Show the export's frame in the viewport, until the next frame of the window."""
-    session.export_frame = box
 
 
 def open_folder(session: Session, folder: Path) -> None:
@@ -369,24 +298,3 @@ def open_folder(session: Session, folder: Path) -> None:
         text = _("no file manager was found; the folder is {folder}")
         raise LissomError(text.format(folder=folder)) from None
     session.hint = display_name(folder)
-
-
-@with_project
-def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path], Action]) -> None:
-    if session.export is not None:
-        return
-    settings = project.document.export
-    suffixes = EXPORT_FORMATS[settings.format].suffixes
-    out = export_destination(project)
-    if out is None:
-        out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
-    session.dialog = FileDialog(
-        title=_("Export into a file") if suffixes else _("Export into a folder"),
-        folder=out.parent,
-        name=out.name,
-        suffixes=suffixes,
-        writes=True,
-        verb=verb,
-        chosen=chosen,
-        is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
-    )

@@ -2,45 +2,39 @@
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
 from app.document import Document, History, Meshing, clip_of, motion_notices
 from app.editor.action import Action, do
-from app.editor.actions import playback, saving
+from app.editor.actions import playback, saving, viewing
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.saving import PROJECT
-from app.editor.dialogs import Question, RecoverableFile, RecoveryDialog
+from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence, run_job
 from app.editor.project import Project
-from app.editor.session import Session, with_project
+from app.editor.session import Session
 from app.editor.work.jobs import JobKind
 from app.editor.work.layer_runtime import LayerRuntime
-from app.errors import ImportLog, display_name
+from app.errors import display_name
 from app.storage import (
     FileLock,
     FileLockedError,
     OpenedScene,
     Picture,
-    SourceInfo,
     decode_pictures,
-    find_recoverable_files,
     is_layered,
     load_project,
-    load_recoverable_file,
     move_to_disk,
     open_layered,
     open_picture,
     open_pictures,
     project_digest,
-    read_source_info,
-    remove_recoverable_file,
     run_parallel,
     sample_images,
 )
-from app.texts import N_, _, message_of, ngettext
+from app.texts import _, message_of, ngettext
 
 PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
@@ -49,53 +43,6 @@ PICTURES = (
 LAYERED = (".ora", ".psd")
 OPENABLE = (PROJECT, *PICTURES, *LAYERED)
 LOOK = 2.0  # seconds between two checks whether files still exist
-
-
-# Short descriptions of the samples by their names, as long as a card has room for.
-STORIES = {
-    N_("Bar"): _("A bar to bend as you like"),
-    N_("Character"): _("Waves a hand"),
-    N_("Dragon"): _("Nods and sweeps its tail"),
-    N_("Friend"): _("Layers that wave and laugh"),
-    N_("Giraffe"): _("Bends down and comes up"),
-    N_("Octopus"): _("Arms that curl without end"),
-    N_("Ring"): _("A hole that opens and closes"),
-    N_("S"): _("A spine to curl or straighten"),
-}
-
-
-class SampleFile(NamedTuple):
-    """A picture, or a project with its picture, that ships with Lissom."""
-
-    name: str
-    file: Path
-    picture: Path
-    what: str
-    story: str
-    moving: Path  # a small animation; the file may be missing
-
-
-@cache
-def sample_files() -> tuple[SampleFile, ...]:
-    """Return the samples, animated ones first."""
-    found = []
-    projects = {path.stem: path for path in sample_images().glob(f"*{PROJECT}")}
-    pictures = {path.stem: path for path in sample_images().glob("*.png")}
-    # A layered drawing has no picture but the thumbnail in its project.
-    for name in sorted(projects.keys() | pictures.keys()):
-        picture = pictures.get(name, projects.get(name, Path()))
-        is_animated = name in projects
-        found.append(
-            SampleFile(
-                name=picture.stem.capitalize(),
-                file=projects.get(name, picture),
-                picture=picture,
-                what=_("animated") if is_animated else _("picture"),
-                story=STORIES.get(picture.stem.capitalize(), ""),
-                moving=sample_images() / "moving" / f"{name}.webp",
-            )
-        )
-    return tuple(sorted(found, key=lambda sample: sample.file.suffix != PROJECT))
 
 
 def recent_files(session: Session) -> tuple[tuple[Path, bool], ...]:
@@ -243,7 +190,7 @@ def _install(
         name=display_name(path.stem),
         history=History(opened.document, saved=True),
         layer_runtimes=opened.layer_runtimes,
-        active=_foremost(opened.document),
+        active=foremost_posable(opened.document),
         path=own,
         read_as=opened.read_as,
         drawings=set(opened.drawings),
@@ -257,43 +204,12 @@ def _install(
     for notice in opened.notices:
         session.show_notice(as_sentence(notice))
     if opened.drawings:
-        show_import_notice(session, project, opened.document.import_log)
+        viewing.show_import_notice(session, project, opened.document.import_log)
     if opened.next_step:
         session.show_notice(tone="good", **opened.next_step._asdict())
 
 
-def show_import_notice(session: Session, project: Project, summary: ImportLog) -> None:
-    """Show a notice about effects of a drawing that its import lost."""
-    if not summary.warnings:
-        return
-    project.is_import_log_open = True
-    count = len(summary.warnings)
-    session.show_notice(
-        ngettext(
-            "One thing looks different here; the tab Layers lists it.",
-            "{count} things look different here; the tab Layers lists them.",
-            count,
-        ).format(count=count),
-        topic="import",
-        label=_("Show"),
-        action=do(show_import_log),
-    )
-
-
-@with_project
-def show_import_log(session: Session, project: Project) -> None:
-    """Show the import log in the panel of layers."""
-    project.is_import_log_open = True
-    session.panel_to_focus = "Layers"
-
-
-@with_project
-def toggle_import_log(_: Session, project: Project) -> None:
-    """Show or hide the import log in the panel of layers."""
-    project.is_import_log_open = not project.is_import_log_open
-
-
-def _foremost(document: Document) -> int:
+def foremost_posable(document: Document) -> int:
     """Return the layer to pose first: the front one, still pictures aside."""
     return next(
         (layer.id for layer in reversed(document.layers) if not layer.still),
@@ -371,73 +287,3 @@ def _next_step(runtime: LayerRuntime) -> NextStep | None:
             action=do(cut_out_editing.toggle_cut_tool, "holes"),
         )
     return None
-
-
-def ask_recovery(session: Session) -> None:
-    """If there is unsaved work of an earlier session, ask about it."""
-    candidates = list_recoverable_files(session)
-    if candidates:
-        session.dialog = RecoveryDialog(candidates)
-
-
-def show_recovery(session: Session) -> None:
-    """Show the unsaved work of earlier sessions, or a notice that there is none."""
-    ask_recovery(session)
-    if not isinstance(session.dialog, RecoveryDialog):
-        session.show_notice(_("There is no unsaved work of an earlier time."))
-
-
-def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
-    """Return the unsaved work of closed windows, the newest first."""
-    found = []
-    for path in find_recoverable_files(session.folder):
-        with suppress(OSError):  # another window has just taken it
-            status = path.stat()
-            found.append(
-                RecoverableFile(path, read_source_info(path), status.st_mtime, status.st_size)
-            )
-    return tuple(found)
-
-
-def recover_file(session: Session, path: Path) -> None:
-    """Open unsaved work; its autosave stays until the work is saved."""
-    kind = JobKind(_("Opening unsaved work"), _("The unsaved work cannot be opened"))
-
-    def done(read: tuple[OpenedFile, SourceInfo]) -> None:
-        saving.confirm_unsaved(session, do(install_recovered, path, *read))
-
-    run_job(session, kind, lambda: _read_recoverable_file(path), done)
-
-
-def _read_recoverable_file(path: Path) -> tuple[OpenedFile, SourceInfo]:
-    document, origin = load_recoverable_file(path)
-    return decode_project(document, origin.name), origin
-
-
-def discard_recoverable_file(session: Session, path: Path) -> None:
-    """Delete unsaved work, and show the rest of the list."""
-    remove_recoverable_file(path)
-    session.show_notice(_("The unsaved work was discarded."))
-    ask_recovery(session)
-
-
-def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: SourceInfo) -> None:
-    """Open unsaved work under its own name; it stays unsaved."""
-    saving.set_project(
-        session,
-        Project(
-            name=origin.name,
-            history=History(opened.document, saved=False),
-            layer_runtimes=opened.layer_runtimes,
-            active=_foremost(opened.document),
-            path=origin.path,
-            is_recovered=True,
-        ),
-    )
-    session.autosave.write(opened.document, origin)
-    remove_recoverable_file(path)
-    text = _("This is your unsaved work. Save it to keep it.")
-    if origin.path:
-        text = _("This is your unsaved work on {name}. Save it to keep it.")
-        text = text.format(name=origin.path.name)
-    session.show_notice(text, tone="good")

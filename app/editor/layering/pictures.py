@@ -5,18 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import (
-    Document,
-    Group,
-    Layer,
-    Meshing,
-    clip_of,
-    group_commands,
-    layer_commands,
-)
+from app.document import Document, Group, Layer, Meshing, clip_of, group_commands, layer_commands
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, files
+from app.editor.actions import editing, files, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence
@@ -182,7 +174,7 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
                 project.layer_runtimes[identity] = runtime
         editing.update_layer_runtimes(project)
         set_active_layer(session, identity)
-        files.show_import_notice(session, project, summary)
+        viewing.show_import_notice(session, project, summary)
 
     pending_changes.begin_pending_change(session, project, ADDING, work, done)
 

@@ -8,7 +8,7 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui, implot
 
 from app.editor import Action, ComparisonRuntime, CurveKind, HeatMap, Project, Session, do
-from app.editor.actions import playback, saving, viewing
+from app.editor.actions import playback, saving_curves, viewing
 from app.motion import DisplayedFrame
 from app.render import heat_colormap
 from app.reports import TIMES, Curves, split_at_keys
@@ -214,9 +214,9 @@ def _over_time(session: Session, look: Look, project: Project) -> list[Action]:
     halves, is_new = split_line(2), curves.clip == project.clip
     png, csv = f"{icons.ICON_FA_IMAGE}  Save as PNG…", f"{icons.ICON_FA_TABLE}  Save as CSV…"
     if text_button(f"{png}###png", next(halves), enabled=is_new):
-        actions.append(do(saving.ask_curves_png))
+        actions.append(do(saving_curves.ask_curves_png))
     if text_button(f"{csv}###csv", next(halves), enabled=is_new):
-        actions.append(do(saving.ask_curves_csv))
+        actions.append(do(saving_curves.ask_curves_csv))
     return actions
 
 

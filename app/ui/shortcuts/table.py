@@ -9,14 +9,16 @@ from app.document import LINEAR, PRESETS
 from app.editor import Project, Session, do, error_reports, with_project
 from app.editor.actions import (
     editing,
+    export_settings,
     exporting,
     files,
     playback,
+    recovery,
     saving,
     tutorials,
     viewing,
 )
-from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
+from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stiffness_editing
 from app.editor.actions.posing.handles import mirror_handles, suggest_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.actions.posing.pose_drag import pin_selected_handles
@@ -162,7 +164,7 @@ def _rename_layer(session: Session, project: Project) -> None:
 def _export(session: Session) -> None:
     """Show the export panel. If it is in front already, ask for the file and begin."""
     if bring_to_front("Export"):
-        exporting.ask_destination_and_export(session)
+        export_settings.ask_destination_and_export(session)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpec:
@@ -182,10 +184,12 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "save": ActionSpec("Save", do(saving.save), "Ctrl+S", has_separator=True),
         "save as": ActionSpec("Save as…", do(saving.save_as), "Ctrl+Shift+S"),
         "export": ActionSpec("Export…", do(_export), "Ctrl+E", has_separator=True),
-        "export again": ActionSpec("Export again", do(exporting.repeat_export), "Ctrl+Shift+E"),
+        "export again": ActionSpec(
+            "Export again", do(export_settings.repeat_export), "Ctrl+Shift+E"
+        ),
         "copy picture": ActionSpec("Copy picture", do(exporting.copy_picture), "Ctrl+Shift+C"),
         "unsaved work": ActionSpec(
-            "Unsaved work…", do(files.show_recovery), has_separator=True, needs_project=False
+            "Unsaved work…", do(recovery.show_recovery), has_separator=True, needs_project=False
         ),
         "close": ActionSpec("Close", do(saving.close_project), "Ctrl+W", has_separator=True),
         "quit": ActionSpec("Quit", do(saving.request_quit), "Ctrl+Q", needs_project=False),
@@ -325,7 +329,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "lock": ActionSpec(
             "Lock",
-            do(editing.toggle_handles_locked),
+            do(handle_editing.toggle_handles_locked),
             "Shift+L",
             icon=icons.ICON_FA_LOCK,
             hint="Locked handles hold their places and are not dragged",
@@ -365,7 +369,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "group": ActionSpec(
             "Group",
-            do(editing.group_handles),
+            do(handle_editing.group_handles),
             "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
             hint="Select and drag these handles together from now on",
@@ -374,7 +378,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "ungroup": ActionSpec(
             "Ungroup",
-            do(editing.ungroup_handles),
+            do(handle_editing.ungroup_handles),
             "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
             hint="Let each of these handles be dragged alone",
@@ -390,7 +394,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "mirrored": ActionSpec(
             "Select partners",
-            do(editing.select_mirrored),
+            do(handle_editing.select_mirrored),
             "Shift+M",
             icon=icons.ICON_FA_RIGHT_LEFT,
             hint="Select the handles on the other side that have the same names",
@@ -677,7 +681,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "report": ActionSpec(
             "Report a problem…", do(error_reports.show_kept_or_new_report), needs_project=False
         ),
-        "import": ActionSpec("Import log", do(files.show_import_log), condition=_has_summary),
+        "import": ActionSpec("Import log", do(viewing.show_import_log), condition=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

@@ -23,7 +23,7 @@ import glfw  # isort: skip
 
 from app.document import Pose
 from app.editor import Action, FileDialog, Project, Session, do, error_reports
-from app.editor.actions import exporting, saving
+from app.editor.actions import autosaving, exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu.context import describe_graphics, is_software
@@ -219,7 +219,7 @@ class Window:
         if project is not None and saving.has_unsaved_changes(project):
             kept = " Unsaved work was kept."
             try:
-                saving.autosave_now(session)
+                autosaving.autosave_now(session)
             except EXPECTED_ERRORS as reason:
                 kept = f" Unsaved work could not be kept ({reason})."
         error_reports.report_unexpected_error(

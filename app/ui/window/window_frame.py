@@ -16,7 +16,16 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import editing, exporting, playback, saving, tutorials, upkeep, viewing
+from app.editor.actions import (
+    autosaving,
+    editing,
+    export_settings,
+    playback,
+    saving,
+    tutorials,
+    upkeep,
+    viewing,
+)
 from app.editor.actions.timing import timeline_drag
 from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer
@@ -46,7 +55,7 @@ LEFT = imgui.MouseButton_.left
 UNLOGGED = {
     dismiss_toast,
     editing.note_widget_in_use,
-    exporting.preview_export_frame,
+    export_settings.preview_export_frame,
     tool_pointer.show_hint,
     tool_pointer.hover_handle,
     timeline_drag.scroll_to_playhead,
@@ -123,7 +132,7 @@ class WindowFrame:
             for each in (
                 pending_changes.run_deferred_actions,
                 *upkeep.STEPS,
-                saving.write_due_files,
+                autosaving.write_due_files,
                 tutorials.update_tutorial,
             )
         ]

@@ -9,7 +9,7 @@ from harness import Harness
 from app.document import UnreadMotion
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, files, saving, viewing
+from app.editor.actions import autosaving, editing, files, recovery, saving, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
@@ -176,7 +176,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project
     path = tmp_path / "unsaved.lissom"
     save_project(path, project.document)
     with window.session.jobs.held():
-        window.act(files.recover_file, path)
+        window.act(recovery.recover_file, path)
         window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
@@ -334,11 +334,11 @@ def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, ver
 
 @pytest.mark.parametrize("verb", [saving.discard_project, editing.undo])
 def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, verb):
-    with window.session.jobs.held(saving.AUTOSAVING):
+    with window.session.jobs.held(autosaving.AUTOSAVING):
         project.autosaved_at = window.clock.now
         change(window, project)
         pass_time(window, SECONDS)
-        assert saving.AUTOSAVING in window.session.jobs.kinds
+        assert autosaving.AUTOSAVING in window.session.jobs.kinds
         window.act(verb)
     window.settle()
     assert list(window.folder.glob("unsaved-*")) == []

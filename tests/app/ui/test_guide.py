@@ -10,8 +10,8 @@ from app.document.keyframe import Target
 from app.document.settings import ExportSettings
 from app.editor.actions import (
     editing,
+    export_settings,
     exporting,
-    files,
     playback,
     saving,
     tutorials,
@@ -156,7 +156,7 @@ def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
     led.show_tab("Export")
     assert "Choose GIF" in words(window)
     window.act(
-        exporting.set_export_settings, ExportSettings(format=tutorials.FORMAT, size=(120, 40))
+        export_settings.set_export_settings, ExportSettings(format=tutorials.FORMAT, size=(120, 40))
     )
     window.frames(2)
     assert "Click Export" in words(window)
@@ -248,7 +248,7 @@ def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):
 
 
 def test_samples_have_stories_and_move_under_the_pointer(window):
-    for sample in files.sample_files():
+    for sample in tutorials.sample_files():
         assert sample.story, f"{sample.name} has no story"
         assert sample.moving.exists() == (sample.what == "animated"), sample.name
     window.frames(20)

@@ -23,7 +23,7 @@ from app.document import (
     shape_commands,
     transform_at,
 )
-from app.editor.actions import editing, files, playback, viewing
+from app.editor.actions import editing, playback, recovery, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.layering.layer_list import move_layer
@@ -253,7 +253,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     Autosave(tmp_path).write(scene.document, SourceInfo("man", None))
     (kept,) = tmp_path.glob("unsaved-*.lissom")
     window.session.project = None
-    window.act(files.recover_file, kept)
+    window.act(recovery.recover_file, kept)
     window.settle()
     again = window.session.project
     assert not differences(again.document, scene.document)

@@ -21,7 +21,7 @@ from app.document import (
 )
 from app.document.keyframe import Target
 from app.editor import do
-from app.editor.actions import editing, files, playback, saving
+from app.editor.actions import editing, playback, saving, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.timing import keys, timeline_drag
@@ -1041,7 +1041,7 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
     arm = identity(project, "arm")
     window.act(set_active_layer, arm)
     window.show_tab("Layers")
-    window.act(files.toggle_import_log)
+    window.act(viewing.toggle_import_log)
 
     def play(robot):
         robot.set_ref("Layers")

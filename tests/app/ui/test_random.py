@@ -21,8 +21,13 @@ from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.document.timing.easing import PRESETS, Easing
 from app.document.timing.springs import Spring
-from app.editor.actions import editing, exporting, playback, viewing
-from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
+from app.editor.actions import editing, export_settings, playback, viewing
+from app.editor.actions.layer_setup import (
+    cut_out_editing,
+    handle_editing,
+    resolving,
+    stiffness_editing,
+)
 from app.editor.actions.posing.handles import (
     add_handle,
     mirror_handles,
@@ -414,9 +419,9 @@ class Walk:
                 self.act(
                     self.choice(
                         (
-                            editing.toggle_handles_locked,
-                            editing.group_handles,
-                            editing.ungroup_handles,
+                            handle_editing.toggle_handles_locked,
+                            handle_editing.group_handles,
+                            handle_editing.ungroup_handles,
                         )
                     )
                 )
@@ -767,7 +772,7 @@ class Walk:
             framing=self.choice(("canvas", "fit")),
             frames=self.choice((None, FrameRange(*frames))),
         )
-        self.act(exporting.set_export_settings, settings)
+        self.act(export_settings.set_export_settings, settings)
 
     def undo(self) -> None:
         for _ in range(self.rng.integers(1, 4)):

@@ -290,9 +290,7 @@ def test_a_row_that_is_dropped_on_another_one_hangs_there(window, scene, ids, us
     use(lambda robot: drop(robot, ids["head"], ids["hat"]))
     assert scene.document is before
     (toast,) = window.session.toasts
-    assert re.search(
-        says(PARENT_IS_DESCENDANT, name="hat", parent="head"), toast.text
-    )
+    assert re.search(says(PARENT_IS_DESCENDANT, name="hat", parent="head"), toast.text)
     # So it is where it hangs there by others, and where one of several would.
     window.act(attach_layer, ids["ah"], ids["hat"])
     window.settle()

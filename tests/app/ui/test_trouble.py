@@ -10,7 +10,7 @@ import pytest
 from harness import Harness
 
 from app.document.keyframe import Target
-from app.editor.actions import exporting, files, saving, upkeep
+from app.editor.actions import autosaving, exporting, files, recovery, saving, upkeep
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
@@ -104,13 +104,13 @@ def crash(window, project):
     """End without a farewell while there is unsaved work, and start again; what it goes by."""
     window.clock.now += SECONDS
     project.autosaved = None
-    saving.autosave(window.session)
+    autosaving.autosave(window.session)
     window.settle()
     window.session.autosave = Autosave(window.folder)
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     window.session.project = None
-    files.ask_recovery(window.session)
+    recovery.ask_recovery(window.session)
     window.frames(3)
     (leftover,) = find_recoverable_files(window.folder)
     return load_recoverable_file(leftover)[1]
@@ -124,11 +124,11 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     orphan.with_suffix(".lock").unlink()
     assert find_recoverable_files(window.folder) == [orphan]
     window.session.project = None
-    files.ask_recovery(window.session)
+    recovery.ask_recovery(window.session)
     window.frames(3)
     assert window.session.dialog is not None
     window.session.dialog = None
-    files.recover_file(window.session, orphan)
+    recovery.recover_file(window.session, orphan)
     window.settle()
     recovered = window.session.project
     assert recovered is not None
@@ -364,9 +364,9 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window.session.jobs.put(busy)
     window.clock.now += SECONDS
     window.frames(2)
-    assert saving.AUTOSAVING in window.session.jobs.kinds
+    assert autosaving.AUTOSAVING in window.session.jobs.kinds
     window.act(add_handle, middle + 50)
-    saving.autosave_now(window.session)
+    autosaving.autosave_now(window.session)
     end.set()
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
@@ -383,7 +383,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
         with suppress(OSError, OverflowError):
             os.utime(path, (time, time))
     saving.set_project(window.session, None)
-    files.ask_recovery(window.session)
+    recovery.ask_recovery(window.session)
     window.frames(3)
     dialog = window.session.dialog
     assert isinstance(dialog, RecoveryDialog)
@@ -398,7 +398,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
     assert window.session.project is not None
     assert len(find_recoverable_files(window.folder)) == 1
     remove_recoverable_file(find_recoverable_files(window.folder)[0])
-    window.act(files.show_recovery)
+    window.act(recovery.show_recovery)
     assert any("no unsaved work" in text for text in texts(window))
 
 
@@ -413,7 +413,7 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
-    window.until(lambda: saving.WRITING not in window.session.jobs.kinds)
+    window.until(lambda: autosaving.WRITING not in window.session.jobs.kinds)
     window.clock.now += ENDLESS
     window.frames(3)
     assert [kind.label for kind in window.session.jobs.running_for(ENDLESS)] == ["Opening bar.png"]

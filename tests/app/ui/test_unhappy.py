@@ -12,7 +12,16 @@ from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import TangentMode, Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import editing, exporting, files, playback, saving, upkeep, viewing
+from app.editor.actions import (
+    autosaving,
+    editing,
+    export_settings,
+    files,
+    playback,
+    saving,
+    upkeep,
+    viewing,
+)
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
@@ -543,7 +552,7 @@ WAITING = {
     upkeep.SKETCHING: lambda session: keys.set_inbetween_method(session, "nu"),
     upkeep.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
-        exporting.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
+        export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
         upkeep.maintain(session),
     ),
     resolving.SOLVING_KEYS: resolving.solve_keys_again,
@@ -603,10 +612,10 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
 
 @pytest.mark.usefixtures("loose")
 def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window):
-    with window.session.jobs.held(saving.AUTOSAVING):
+    with window.session.jobs.held(autosaving.AUTOSAVING):
         window.clock.now += 2 * SECONDS
         window.frames(2)
-        assert saving.AUTOSAVING in window.session.jobs.kinds
+        assert autosaving.AUTOSAVING in window.session.jobs.kinds
         saving.discard_project(window.session)
         window.frames(2)
     window.settle()

@@ -21,7 +21,7 @@ from app.document import (
     track_commands,
 )
 from app.editor.actions import editing, playback
-from app.editor.actions.layer_setup import stiffness_editing
+from app.editor.actions.layer_setup import handle_editing, stiffness_editing
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.upkeep import maintain
 from app.editor.layering.layer_list import rename_layer
@@ -472,7 +472,7 @@ def test_pairs_of_the_document_tell_partners_of_handles_too(session):
         editing.edit_layer(session, handle_commands.rename_handle, handle, name)
     pasting.set_mirror_names(session, "L/R, Spielknie/Standknie")
     editing.select_handles(session, frozenset({1}))
-    editing.select_mirrored(session)
+    handle_editing.select_mirrored(session)
     assert session.project.selected_handles == {2}
     editing.edit_document(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
     pairs = session.project.document.pairs
