@@ -67,7 +67,6 @@ class Jobs:
 
     A job is unfinished until its result is delivered. A job becomes stale if its kind is put again
     or dropped: it never starts, or its result is dropped. Jobs queued by `add` are all done.
-    `clock` gives seconds, for the running time of jobs.
     """
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
