@@ -73,7 +73,7 @@ def test_a_dropped_project_opens(window, project, drop, tmp_path):
     assert window.session.preferences.recent[0] == path
 
 
-def test_a_motion_that_is_not_known_here_is_told(window, project, tmp_path):
+def test_unknown_motion_is_reported(window, project, tmp_path):
     unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
     layer = replace(project.layer, unread_motions=(unread,))
     path = tmp_path / "later.lissom"
@@ -251,19 +251,19 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
     assert kept() == 2
 
 
-def test_refused_autosave_keeps_the_earlier_and_is_told_once(window, project, kept, monkeypatch):
+def test_refused_autosave_is_reported_once(window, project, kept, monkeypatch):
     project.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
     with monkeypatch.context() as patched:
         patched.setattr(project_file, "MOST_VALUES", 3)
-        for is_told in (True, False, False):
+        for has_notice in (True, False, False):
             change(window, project)
             pass_time(window, SECONDS)
             window.settle()
-            told = [text for text in texts(window) if "could not open it again" in text]
-            assert len(told) == is_told
+            notices = [text for text in texts(window) if "could not open it again" in text]
+            assert len(notices) == has_notice
     assert kept() == 1
     pass_time(window, SECONDS)
     assert kept() == 4
@@ -368,8 +368,8 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     change(window, project)
     path = tmp_path / "bar.lissom"
     (key,) = project.layer.keys
-    told = MappingProxyType({"from the future": 1})
-    targets = {i: replace(target, unknown=told) for i, target in key.pose.targets.items()}
+    unknown = MappingProxyType({"from the future": 1})
+    targets = {i: replace(target, unknown=unknown) for i, target in key.pose.targets.items()}
     key = replace(key, pose=replace(key.pose, targets=targets))
     layer = replace(project.layer, keys=(key,))
     save_project(path, replace(project.document, layers=(layer,)))
@@ -380,9 +380,9 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     window.settle()
     target = opened.layer.keys[0].pose.targets[0]
     assert target.position == place + 20j
-    assert target.unknown == told
+    assert target.unknown == unknown
     window.act(editing.edit_document, handle_commands.move_handle(opened.active, 0, place - 5))
-    assert opened.layer.keys[0].pose.targets[0].unknown == told
+    assert opened.layer.keys[0].pose.targets[0].unknown == unknown
 
 
 def test_preferences_are_kept_as_soon_as_they_change(window):

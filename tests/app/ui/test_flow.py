@@ -366,7 +366,7 @@ def test_a_box_selects_the_handles_in_it(window, bar):
 
 
 def turned(bar, identity=1):
-    """Return the turn that the pose wishes at a handle, in degrees."""
+    """Return the target angle of a pose at a handle, in degrees."""
     return np.degrees(bar.layer.keys[0].pose.targets[identity].rotation)
 
 

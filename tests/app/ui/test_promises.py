@@ -1,4 +1,4 @@
-"""Whatever follows a drag at once, what comes is the pose in which its wish comes to rest."""
+"""Whatever follows a drag at once, the document gets the pose at rest at the drag's targets."""
 
 import threading
 from dataclasses import replace
@@ -269,7 +269,7 @@ def test_closing_asks_about_what_is_on_its_way(window, loose, tmp_path, what):
     assert len(saved.layers[0].library) == len(loose.document.layers[0].library)
 
 
-def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
+def test_second_close_asks_at_once(window, loose, tmp_path):
     saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.settle()
     playback.scrub(window.session, 7)
@@ -316,8 +316,8 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
             playback.scrub(window.session, frame)
             insert_key(window.session)
     window.settle()
-    told = [toast.text for toast in window.session.toasts]
-    assert loose.layer.key_frames == {0, 7, 14, 24}, told
+    texts = [toast.text for toast in window.session.toasts]
+    assert loose.layer.key_frames == {0, 7, 14, 24}, texts
 
 
 def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_path):

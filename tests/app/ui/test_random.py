@@ -89,7 +89,7 @@ from engine.maps.bounds import Bounds
 SEEDS = (1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (15, 3)))
 FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
-REMEMBERED = 20  # actions that are told where the walk fails
+REMEMBERED = 20  # actions that are reported when the walk fails
 # Steps between two looks at the invariants, between two saves, and until all work is done.
 LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
@@ -214,7 +214,7 @@ class Walk:
         self.path = folder / "walk.lissom"
         self.picture = draw_bone(folder / "bone.png")
         self.rng = np.random.default_rng(seed)
-        self.told = deque(maxlen=REMEMBERED)
+        self.actions = deque(maxlen=REMEMBERED)
         self.is_down = False
         self.modifier = 0
 
@@ -248,11 +248,11 @@ class Walk:
     def pick(self, verbs) -> None:
         odds = np.array([weight for _, weight in verbs], dtype=float)
         verb, _ = verbs[self.rng.choice(len(verbs), p=odds / odds.sum())]
-        self.told.append(verb.__name__)
+        self.actions.append(verb.__name__)
         verb(self)
 
     def note(self, *words: object) -> None:
-        self.told[-1] += " " + " ".join(map(str, words))
+        self.actions[-1] += " " + " ".join(map(str, words))
 
     def choice(self, options):
         """Return one of some options as it is, whatever NumPy would make of it."""
@@ -395,15 +395,15 @@ class Walk:
 
     def pull(self) -> None:
         shown = self.project.layer_runtime.shown
-        wishes = {}
+        targets = {}
         for handle, place in zip(shown.clip.layer.handles, shown.handle_positions, strict=True):
             if handle in self.project.layer.handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
-                wishes[handle.id] = Target(position=complex(place) + offset, rotation=turn)
-        if wishes:
-            self.act(set_targets, wishes)
+                targets[handle.id] = Target(position=complex(place) + offset, rotation=turn)
+        if targets:
+            self.act(set_targets, targets)
 
     def change_handle(self) -> None:
         handles = self.project.layer.handles
@@ -929,7 +929,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
         try:
             walk.step(number)
         except Exception as error:
-            last = "\n".join(walk.told)
+            last = "\n".join(walk.actions)
             raise AssertionError(f"seed {seed}, step {number}: {error}\nafter\n{last}") from error
     walk.release()
     walk.act(release_drag)

@@ -1,4 +1,4 @@
-"""What goes wrong is told in words, and the window lives on."""
+"""Failures are reported in words, and the window lives on."""
 
 import errno
 import os
@@ -256,7 +256,7 @@ def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"a.lissom", "b.lissom"}
 
 
-def test_where_no_lock_can_be_had_the_file_opens_and_that_is_told(window, saved, monkeypatch):
+def test_file_opens_with_a_notice_when_it_cannot_be_locked(window, saved, monkeypatch):
     def no_locks(_):
         raise OSError(errno.ENOLCK, "No locks available")
 
@@ -310,7 +310,7 @@ def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project,
     assert len(load_project(saved).layers[0].handles) == 1
 
 
-def test_a_folder_that_was_removed_is_told_and_the_work_stays(window, project, saved):
+def test_removed_folder_is_reported_and_the_work_stays(window, project, saved):
     for path in saved.parent.iterdir():
         path.unlink()
     saved.parent.rmdir()
@@ -345,7 +345,7 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
         window.session.toasts = []
         window.clock.now += SECONDS
         window.settle()
-        assert texts(window) == []  # it was told
+        assert texts(window) == []  # it was reported
     assert list(window.folder.glob("unsaved-*.lissom")) == []
     window.clock.now += SECONDS
     window.settle()
@@ -446,9 +446,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
 
 
 @pytest.mark.parametrize("has_room", [True, False])
-def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
-    window, project, monkeypatch, has_room
-):
+def test_failing_graphics_driver_is_reported(window, project, monkeypatch, has_room):
     window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.session.autosave.remove()
@@ -465,9 +463,9 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
         if not has_room:
             patch.setattr("app.storage.files.atomic.os.fsync", full)
         window.frames(3)
-    (told,) = (text for text in texts(window) if "the context was lost" in text)
-    assert ("work was kept" in told) is has_room
-    assert ("work could not be kept" in told) is not has_room
+    (text,) = (text for text in texts(window) if "the context was lost" in text)
+    assert ("work was kept" in text) is has_room
+    assert ("work could not be kept" in text) is not has_room
     window.session.toasts = []
     kept = list(window.folder.glob("unsaved-*.lissom"))
     assert len(kept) == has_room

@@ -363,8 +363,8 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
         assert all(map(is_whole, written))
     else:
         assert written == []
-    told = exporting.CANCELLED_MIDWAY if written else exporting.CANCELLED_UNWRITTEN
-    assert told in texts(window)
+    text = exporting.CANCELLED_MIDWAY if written else exporting.CANCELLED_UNWRITTEN
+    assert text in texts(window)
     window.act(exporting.start_export, out)
     window.until(lambda: any("Exported 9 frames" in text for text in texts(window)))
 
@@ -372,7 +372,7 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
 @pytest.mark.usefixtures("project")
 @pytest.mark.parametrize("name", ["bar.glb", "bar.gif", "pose.png"])
 def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
-    """Until the disk has all of a file it can be cancelled; then it is there, and told so."""
+    """Until the disk has all of a file it can be cancelled; then the file is complete."""
     session, out = window.session, tmp_path / name
     format_ = "picture" if name == "pose.png" else name[4:]
     export_settings.set_export_settings(session, ExportSettings(format=format_, size=SIZE))
@@ -629,7 +629,7 @@ def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path
 
 
 @pytest.mark.usefixtures("project")
-def test_what_the_clipboard_needs_is_told(window, monkeypatch, tmp_path):
+def test_missing_clipboard_program_is_reported(window, monkeypatch, tmp_path):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr("sys.platform", "linux")
     window.act(exporting.copy_picture)
