@@ -93,7 +93,7 @@ def undo(session: Session, project: Project) -> None:
         return
     if project.motion_job is not None:
         apply_motion.cancel_motion_job(session)
-        _show_step_notice(session, UNDONE, _("Give a motion"))
+        _show_step_notice(session, UNDONE, _("Apply motion preset"))
         return
     is_held = any(pull.is_held for pull in project.pulls)
     waiting = None if is_held else pending_changes.cancel_deferred_action(project)

@@ -53,7 +53,7 @@ def make_still(session: Session, project: Project, identity: int) -> None:
     """Turn a layer into a still picture, without handles and keys."""
     still = make_still_layer(project.document.layer(identity))
     command = layer_commands.replace_layer(identity, still)
-    editing.edit_document(session, replace(command, label=_("Make still")))
+    editing.edit_document(session, replace(command, label=_("Make still picture")))
 
 
 @with_project
@@ -70,7 +70,7 @@ def make_posable(session: Session, project: Project, identity: int) -> None:
 
     def done(made: Layer) -> None:
         command = layer_commands.replace_layer(identity, made)
-        editing.edit_document(session, replace(command, label=_("Let be posed")))
+        editing.edit_document(session, replace(command, label=_("Make posable")))
         set_active_layer(session, identity)
 
     kind = JobKind(_("Finding a shape"), _("{layer} cannot be posed").format(layer=layer.name))

@@ -18,7 +18,7 @@ from app.editor.work.promise import Promise
 from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 from app.texts import _, ngettext
 
-GIVING = JobKind(_("Giving the motion"), _("The motion was not given"), "hand")
+GIVING = JobKind(_("Applying the motion"), _("The motion was not applied"), "hand")
 MOST_NAMED = 3  # most unreached joints that a notice names
 
 
@@ -28,7 +28,7 @@ def apply_motion_preset(session: Session, project: Project) -> None:
     draft = project.motion_setup
     if draft is not None and not preset_setup.apply_motion_disabled_reason(project):
         preset_setup.close_motion_setup(session)
-        pending_changes.run_when_idle(session, do(_begin, draft), _("Give a motion"))
+        pending_changes.run_when_idle(session, do(_begin, draft), _("Apply motion preset"))
 
 
 @with_project
@@ -38,7 +38,7 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
     before = project.document.layer(draft.layer)
     if before.domain is not draft.domain:
         session.show_notice(
-            _("The motion was not given: the drawing has another shape by now. Start again.")
+            _("The motion was not applied: the drawing has another shape by now. Start again.")
         )
         return
     base = _without(project.document, draft)
@@ -122,7 +122,7 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
     before, draft = task.before, task.setup
     if before not in project.document.layers:
         session.show_notice(
-            _("The motion was not given: the drawing was posed or changed meanwhile.")
+            _("The motion was not applied: the drawing was posed or changed meanwhile.")
         )
         project.motion_setup = project.motion_setup or draft
         return
@@ -183,7 +183,7 @@ def apply_motion_at_size(
     draft = preset_setup.setup_of_applied_motion(found, given)
     parameters = replace(draft.parameters, size=size)
     pending_changes.run_when_idle(
-        session, do(_begin, replace(draft, parameters=parameters)), _("Give a motion")
+        session, do(_begin, replace(draft, parameters=parameters)), _("Apply motion preset")
     )
 
 

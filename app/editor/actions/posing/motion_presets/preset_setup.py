@@ -24,7 +24,7 @@ def motion_disabled_reason(_session: Session, project: Project) -> str:
     """Return why the active layer cannot get a motion; empty if it can."""
     layer = project.layer
     if layer.still:
-        text = _("{layer} is a still picture: there is no shape on it to be moved.")
+        text = _("{layer} is a still picture, which has no shape to move.")
         return text.format(layer=layer.name)
     if layer.locked:
         text = _("{layer} is locked: unlock it in the list of layers first.")
@@ -212,7 +212,7 @@ def apply_motion_disabled_reason(project: Project) -> str:
     """Return why the draft cannot be applied; empty if it can."""
     draft = project.motion_setup
     if draft is None:
-        return _("There is no motion to be given.")
+        return _("There is no motion to apply.")
     if draft.missing_joints:
         text = ngettext(
             "{motion} needs {joints}: click on this joint in the diagram to add it.",
@@ -222,7 +222,7 @@ def apply_motion_disabled_reason(project: Project) -> str:
         missing = ", ".join(map(_, draft.missing_joints))
         return text.format(motion=draft.preset.label, joints=missing)
     if is_applied_motion_edited(project) and not draft.replaces_edits:
-        return _("The motion was edited by hand since it was given. The edits would be lost.")
+        return _("The motion was edited by hand since it was applied. The edits would be lost.")
     return ""
 
 
