@@ -13,7 +13,8 @@ from imgui_bundle import (
 )
 
 from app.editor import Action, Session, do
-from app.editor.actions import files, tutorials
+from app.editor.actions import tutorials
+from app.editor.actions.project_files import files
 from app.errors import display_name
 from app.render import Thumbnail
 from app.ui.shortcuts.table import BINDINGS

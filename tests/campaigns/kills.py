@@ -24,7 +24,7 @@ from app.cli.main import main
 from app.document import Document, History, Variant
 from app.document.commands import scene_commands
 from app.document.settings import Marker
-from app.editor.actions import autosaving
+from app.editor.actions.project_files import autosaving
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs

@@ -20,9 +20,10 @@ from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, FrameRange, Meshing
-from app.editor.actions import editing, export_settings, exporting, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import attach_layer
 from app.export_formats import EXPORT_FORMATS, MeshOptions

@@ -18,7 +18,7 @@ from app.cli.process import (
     set_switch_interval,
 )
 from app.editor import Jobs, Session, error_reports
-from app.editor.actions import autosaving, files, recovery
+from app.editor.actions.project_files import autosaving, files, recovery
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
 from app.render.gpu.context import window_context

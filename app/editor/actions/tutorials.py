@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from app.document import Document, FrameRange, Layer, handle_commands, key_commands, scene_commands
 from app.editor.action import do
-from app.editor.actions import files, saving
-from app.editor.actions.saving import PROJECT
+from app.editor.actions.project_files import files, saving
+from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import run_job
 from app.editor.project import Project
 from app.editor.session import Session, TutorialStage, TutorialState

@@ -8,8 +8,9 @@ from typing import NamedTuple
 from app.document import Document, Group, Layer, Meshing, clip_of, group_commands, layer_commands
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, files, viewing
+from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import resolving
+from app.editor.actions.project_files import files
 from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence
 from app.editor.layering.layer_selection import set_active_layer

@@ -8,7 +8,8 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui, implot
 
 from app.editor import Action, ComparisonRuntime, CurveKind, HeatMap, Project, Session, do
-from app.editor.actions import playback, saving_curves, viewing
+from app.editor.actions import playback, viewing
+from app.editor.actions.project_files import saving_curves
 from app.motion import DisplayedFrame
 from app.render import heat_colormap
 from app.reports import TIMES, Curves, split_at_keys

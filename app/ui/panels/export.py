@@ -6,7 +6,8 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import ExportSettings, FrameRange, export_frame_range, scene_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, export_settings, exporting
+from app.editor.actions import editing
+from app.editor.actions.project_files import export_settings, exporting
 from app.errors import LIBRARIES, LissomError, display_name, install_hint
 from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS

@@ -7,21 +7,12 @@ from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
 from app.editor import Project, Session, do, error_reports, with_project
-from app.editor.actions import (
-    editing,
-    export_settings,
-    exporting,
-    files,
-    playback,
-    recovery,
-    saving,
-    tutorials,
-    viewing,
-)
+from app.editor.actions import editing, playback, tutorials, viewing
 from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stiffness_editing
 from app.editor.actions.posing.handles import mirror_handles, suggest_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.actions.posing.pose_drag import pin_selected_handles
+from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import cycles, keys, timeline_drag, tracks
 from app.editor.actions.tracking.recording import discard_recording, toggle_recording_armed
 from app.editor.actions.viewing import OverlayName

@@ -23,7 +23,7 @@ import glfw  # isort: skip
 
 from app.document import Pose
 from app.editor import Action, FileDialog, Project, Session, do, error_reports
-from app.editor.actions import autosaving, exporting, saving
+from app.editor.actions.project_files import autosaving, exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu.context import describe_graphics, is_software

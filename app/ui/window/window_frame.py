@@ -16,16 +16,8 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import (
-    autosaving,
-    editing,
-    export_settings,
-    playback,
-    saving,
-    tutorials,
-    upkeep,
-    viewing,
-)
+from app.editor.actions import editing, playback, tutorials, upkeep, viewing
+from app.editor.actions.project_files import autosaving, export_settings, saving
 from app.editor.actions.timing import timeline_drag
 from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer

@@ -14,7 +14,7 @@ from app.cli.commands import window
 from app.cli.main import COMMANDS, EXIT_PIPE_CLOSED, main
 from app.cli.usage import pose
 from app.document import FRAMINGS, SPRING_PRESETS, VARIANTS, Meshing
-from app.editor.actions import autosaving, saving
+from app.editor.actions.project_files import autosaving, saving
 from app.editor.work.jobs import Job
 from app.storage import SourceInfo
 from app.storage.assets import sample_images

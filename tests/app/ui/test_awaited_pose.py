@@ -7,9 +7,10 @@ import pytest
 from bars import HALF, LAST, bend_bar
 
 from app.document.commands import key_commands
-from app.editor.actions import editing, export_settings, playback
+from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.project_files import export_settings
 from app.editor.actions.timing import keys
 from app.motion import Animation
 

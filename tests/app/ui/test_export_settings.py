@@ -6,7 +6,7 @@ import pytest
 from imgui_bundle import imgui
 
 from app.document.settings import ExportSettings
-from app.editor.actions import export_settings, exporting, saving
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import FileDialog
 from app.export_formats import EXPORT_FORMATS

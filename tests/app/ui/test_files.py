@@ -9,11 +9,12 @@ from harness import Harness
 from app.document import UnreadMotion
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
-from app.editor.actions import autosaving, editing, files, recovery, saving, viewing
+from app.editor.actions import editing, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import autosaving, files, recovery, saving
 from app.editor.dialogs import Question
 from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images

@@ -8,10 +8,11 @@ from app.document.commands.shape_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
-from app.editor.actions import editing, export_settings, exporting, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle, remove_handles, toggle_anchor_at_handle
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.render.view import View
 from app.storage.assets import sample_images

@@ -8,18 +8,11 @@ from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings
-from app.editor.actions import (
-    editing,
-    export_settings,
-    exporting,
-    playback,
-    saving,
-    tutorials,
-    viewing,
-)
+from app.editor.actions import editing, playback, tutorials, viewing
 from app.editor.actions.layer_setup import stiffness_editing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
 from app.ui.window.tutorial.card import NAME

@@ -23,9 +23,10 @@ from app.document import (
     shape_commands,
     transform_at,
 )
-from app.editor.actions import editing, playback, recovery, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.project_files import recovery
 from app.editor.layering.layer_list import move_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer

@@ -21,9 +21,10 @@ from app.document import (
 )
 from app.document.keyframe import Target
 from app.editor import do
-from app.editor.actions import editing, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import saving
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.actions.viewing import close_dialog
 from app.editor.layering.layer_list import (

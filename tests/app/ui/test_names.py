@@ -11,7 +11,8 @@ import pytest
 
 from app.document.settings import ExportSettings
 from app.editor.action import do
-from app.editor.actions import export_settings, files, recovery, saving, viewing
+from app.editor.actions import viewing
+from app.editor.actions.project_files import export_settings, files, recovery, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import FileDialog
 from app.storage.assets import sample_images

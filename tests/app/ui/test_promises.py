@@ -11,12 +11,13 @@ from PIL import Image
 from app.document.commands import key_commands, scene_commands
 from app.document.keyframe import Target
 from app.document.settings import FrameRange
-from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle, mirror_handles, remove_handles
 from app.editor.actions.posing.inserting import INSERTING, insert_key
 from app.editor.actions.posing.pose_drag import cancel_drag, release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING, is_display_final
+from app.editor.actions.project_files import exporting, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import Question
 from app.editor.layering.layer_list import duplicate_layer
@@ -198,7 +199,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
 def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
     window, loose, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ())
+    monkeypatch.setattr("app.editor.actions.project_files.exporting.clipboard_program", lambda: ())
     few = FrameRange(0, 2)
     export = replace(loose.document.export, format="gif", framing="canvas", frames=few)
     editing.edit_document(window.session, scene_commands.set_export(export))

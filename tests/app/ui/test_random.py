@@ -21,7 +21,7 @@ from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.document.timing.easing import PRESETS, Easing
 from app.document.timing.springs import Spring
-from app.editor.actions import editing, export_settings, playback, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import (
     cut_out_editing,
     handle_editing,
@@ -40,6 +40,7 @@ from app.editor.actions.posing.pose_drag import (
     release_drag,
     set_targets,
 )
+from app.editor.actions.project_files import export_settings
 from app.editor.actions.timing import keys, springs, timeline_drag, tracks
 from app.editor.layering.layer_channels import (
     delete_draw_order_key,

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from app.editor import error_reports
-from app.editor.actions import recovery, viewing
+from app.editor.actions import viewing
+from app.editor.actions.project_files import recovery
 from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.reports import format_trace
 from app.storage.autosave import Autosave, load_report, write_report

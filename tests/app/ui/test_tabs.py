@@ -11,10 +11,11 @@ from app.document.commands import key_commands
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
-from app.editor.actions import editing, export_settings, playback, upkeep
+from app.editor.actions import editing, playback, upkeep
 from app.editor.actions.layer_setup.resolving import SOLVING_KEYS
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import export_settings
 from app.export_formats import MeshOptions, SpriteSheetOptions
 from app.motion.extents.extent import extent_key
 from app.storage import NO_FOLDER

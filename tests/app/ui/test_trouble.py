@@ -10,10 +10,11 @@ import pytest
 from harness import Harness
 
 from app.document.keyframe import Target
-from app.editor.actions import autosaving, exporting, files, recovery, saving, upkeep
+from app.editor.actions import upkeep
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import autosaving, exporting, files, recovery, saving
 from app.editor.dialogs import FileDialog, Question, RecoveryDialog
 from app.editor.work.jobs import Job, JobKind
 from app.errors import CANCELLED
@@ -406,7 +407,9 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     window, project, tmp_path, monkeypatch, end
 ):
     monkeypatch.setattr(window.session.jobs, "_clock", window.clock)
-    monkeypatch.setattr("app.editor.actions.files.open_picture", lambda *_: end.wait())
+    monkeypatch.setattr(
+        "app.editor.actions.project_files.files.open_picture", lambda *_: end.wait()
+    )
     files.open_file(window.session, sample_images() / "bar.png")
     window.frames(3)
     # What is kept does not wait for it.

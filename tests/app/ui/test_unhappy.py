@@ -12,21 +12,13 @@ from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import TangentMode, Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import (
-    autosaving,
-    editing,
-    export_settings,
-    files,
-    playback,
-    saving,
-    upkeep,
-    viewing,
-)
+from app.editor.actions import editing, playback, upkeep, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import autosaving, export_settings, files, saving
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
@@ -478,11 +470,11 @@ FAILURES = {
         lambda session: keys.insert_key_in_row_at(session, 12),
     ),
     "Saving": (
-        "app.editor.actions.saving.save_project",
+        "app.editor.actions.project_files.saving.save_project",
         lambda session: saving.write_project(session, session.folder / "bar.lissom", None),
     ),
     "Opening": (
-        "app.editor.actions.files.open_picture",
+        "app.editor.actions.project_files.files.open_picture",
         lambda session: files.open_file(session, BAR),
     ),
 }

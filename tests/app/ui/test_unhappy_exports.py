@@ -18,17 +18,10 @@ from PIL import Image
 
 from app.document import PreviewPose
 from app.document.settings import ExportSettings, FrameRange
-from app.editor.actions import (
-    autosaving,
-    editing,
-    export_settings,
-    exporting,
-    files,
-    playback,
-    saving,
-)
+from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.handles import add_handle, remove_handles
+from app.editor.actions.project_files import autosaving, export_settings, exporting, files, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import Question
 from app.editor.layering import pictures

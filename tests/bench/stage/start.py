@@ -7,7 +7,8 @@ import time
 from pathlib import Path
 
 from app.editor import Jobs, Session, do
-from app.editor.actions import recovery, saving, tutorials
+from app.editor.actions import tutorials
+from app.editor.actions.project_files import recovery, saving
 from app.render import Renderer
 from app.render.gpu.context import create_context, window_context
 from app.storage import load_preferences

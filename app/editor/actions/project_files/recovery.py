@@ -5,8 +5,8 @@ from pathlib import Path
 
 from app.document import History
 from app.editor.action import do
-from app.editor.actions import saving
-from app.editor.actions.files import OpenedFile, decode_project, foremost_posable
+from app.editor.actions.project_files import saving
+from app.editor.actions.project_files.files import OpenedFile, decode_project, foremost_posable
 from app.editor.dialogs import RecoverableFile, RecoveryDialog
 from app.editor.error_reports import run_job
 from app.editor.project import Project

@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 from app.document import Document, History, Meshing, clip_of, motion_notices
 from app.editor.action import Action, do
-from app.editor.actions import playback, saving, viewing
+from app.editor.actions import playback, viewing
 from app.editor.actions.layer_setup import cut_out_editing
-from app.editor.actions.saving import PROJECT
+from app.editor.actions.project_files import saving
+from app.editor.actions.project_files.saving import PROJECT
 from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence, run_job
 from app.editor.project import Project

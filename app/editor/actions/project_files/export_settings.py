@@ -6,7 +6,7 @@ from pathlib import Path
 from app.document import ExportSettings, scene_commands
 from app.editor.action import Action, do
 from app.editor.actions import editing
-from app.editor.actions.exporting import note_export_destination, start_export
+from app.editor.actions.project_files.exporting import note_export_destination, start_export
 from app.editor.dialogs import FileDialog
 from app.editor.project import Project
 from app.editor.session import Session, with_project

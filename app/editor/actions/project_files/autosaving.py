@@ -6,7 +6,7 @@ from app.document import Document
 from app.editor import pending_changes
 from app.editor.actions.posing.pose_commit import key_pose_command
 from app.editor.actions.posing.pose_lifecycle import commit_all_poses
-from app.editor.actions.saving import has_unsaved_changes
+from app.editor.actions.project_files.saving import has_unsaved_changes
 from app.editor.error_reports import clear_reported_failure, report_first_failure, run_job
 from app.editor.project import Project
 from app.editor.session import Session, with_project

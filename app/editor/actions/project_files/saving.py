@@ -4,8 +4,8 @@ from pathlib import Path
 
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import exporting
 from app.editor.actions.posing.inserting import insert_key_at
+from app.editor.actions.project_files import exporting
 from app.editor.dialogs import FileDialog, Question
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
