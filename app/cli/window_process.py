@@ -17,7 +17,7 @@ from app.cli.process import (
     set_switch_interval,
 )
 from app.editor import Jobs, Session, error_reports
-from app.editor.actions import files, saving
+from app.editor.actions.project_files import autosaving, files, recovery
 from app.errors import EXPECTED_ERRORS
 from app.render import Renderer
 from app.render.gpu.context import window_context
@@ -61,10 +61,10 @@ def run_window(file: Path | None) -> int:
         system_dialogs=find_system_dialogs() is not None,
     )
     _make(folder, session)
-    saving.remove_temporary_files(session)
+    autosaving.remove_temporary_files(session)
     with suppress(*EXPECTED_ERRORS):
         error_reports.keep_fault_report(session)
-    files.ask_recovery(session)
+    recovery.ask_recovery(session)
     error_reports.offer_kept_report(session)
     if file is not None:
         files.open_file(session, file.resolve())
@@ -144,7 +144,7 @@ def _make(folder: Path, session: Session) -> None:
             ),
             tone="error",
         )
-        session.reported_failures |= {saving.AUTOSAVING.complaint, saving.WRITING.complaint}
+        session.reported_failures |= {autosaving.AUTOSAVING.complaint, autosaving.WRITING.complaint}
 
 
 def _keep_at_lost_display(session: Session) -> None:
@@ -159,7 +159,7 @@ def _keep_at_lost_display(session: Session) -> None:
 def _keep(session: Session) -> None:
     """Autosave unsaved work after an end that the person did not request."""
     try:
-        saving.autosave_now(session)
+        autosaving.autosave_now(session)
     except EXPECTED_ERRORS as error:
         print_notice(_("unsaved work could not be kept: {error}").format(error=message_of(error)))
         return

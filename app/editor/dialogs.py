@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from app.editor.action import Action
 from app.storage import SourceInfo
+from app.texts import _
 
 
 def _no_file(_: str) -> bool:
@@ -23,7 +24,7 @@ class FileDialog:
     # Suffixes of the listed files, such as ".png"; none if it asks for a folder to write to.
     suffixes: tuple[str, ...]
     writes: bool  # whether the file is written; otherwise it is read
-    verb: str = "Save"  # label of the button if it writes
+    verb: str = _("Save")  # label of the button if it writes
     chosen: Callable[[Path], Action]  # returns the action for a path
     marked: str = ""  # the marked entry in Lissom's browser
     # Returns whether an existing file of this name may be in the folder to write to.

@@ -21,14 +21,17 @@ from app.storage import (
     write_atomically,
     write_report,
 )
+from app.texts import _, message_of
+from engine.errors import Message
 
 Result = TypeVar("Result")
 MOST_NOTED = 40  # most logged actions
 TIMES = " × "  # between an action's name and its number of repetitions
 
 
-def as_sentence(text: str) -> str:
-    """Turn an exception's text into a sentence: an upper-case start and a full stop."""
+def as_sentence(said: Exception | Message | str) -> str:
+    """Return an error or notice as a sentence: an upper-case start and a full stop."""
+    text = message_of(said)
     begins_with_name = not text.partition(" ")[0].isalpha()
     text = text if begins_with_name else text[:1].upper() + text[1:]
     return text if text.endswith((".", "?", "…")) else f"{text}."
@@ -61,7 +64,7 @@ def clear_reported_failure(session: Session, what: str) -> None:
 def report_failure(session: Session, what: str, error: Exception) -> None:
     """Show which work failed and why; an unexpected error comes with details to copy."""
     if isinstance(error, EXPECTED_ERRORS):
-        session.show_notice(as_sentence(f"{what}: {error}"), tone="error")
+        session.show_notice(as_sentence(f"{what}: {message_of(error)}"), tone="error")
     else:
         report_unexpected_error(session, f"{what}.", error)
 
@@ -76,7 +79,7 @@ def report_unexpected_error(
         tone="error",
         topic=topic,
         details=session.last_error_trace,
-        label="Report…",
+        label=_("Report…"),
         action=do(show_problem_report),
     )
 
@@ -113,9 +116,9 @@ def keep_crash_report(session: Session, error: Exception) -> str:
 
 def keep_fault_report(session: Session) -> None:
     """Write a report of an earlier crash of Python, for example in a driver, if there was one."""
-    told = read_fault_log(session.folder)
-    if told:
-        trace = redact_names(told, _hidden(session))
+    logged = read_fault_log(session.folder)
+    if logged:
+        trace = redact_names(logged, _hidden(session))
         write_report(session.folder, format_problem_report(graphics="", actions=(), trace=trace))
 
 
@@ -138,9 +141,11 @@ def offer_kept_report(session: Session) -> None:
     """Offer the kept report of an earlier crash once, unless a dialog is open."""
     if session.dialog is None and mark_report_seen(session.folder):
         session.show_notice(
-            "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
-            "nowhere.",
-            label="Show it",
+            _(
+                "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
+                "nowhere."
+            ),
+            label=_("Show it"),
             action=do(show_kept_or_new_report),
         )
 
@@ -152,9 +157,9 @@ def edit_report_text(session: Session, report: ProblemReport, text: str) -> None
 
 def ask_report_path(session: Session, report: ProblemReport) -> None:
     session.dialog = FileDialog(
-        title="Save the report",
+        title=_("Save the report"),
         folder=session.usual_folder,
-        name="Lissom report.txt",
+        name=_("Lissom report") + ".txt",
         suffixes=(".txt",),
         writes=True,
         chosen=lambda path: do(save_report, report, path),
@@ -168,13 +173,13 @@ def save_report(session: Session, report: ProblemReport, path: Path) -> None:
     if report.is_kept:
         remove_report(session.folder)
     session.dialog = report.behind
-    session.show_notice(f"Saved {path.name}.", tone="good")
+    session.show_notice(_("Saved {name}.").format(name=path.name), tone="good")
 
 
 def discard_report(session: Session, report: ProblemReport) -> None:
     remove_report(session.folder)
     session.dialog = report.behind
-    session.show_notice("The report was discarded.")
+    session.show_notice(_("The report was discarded."))
 
 
 def _behind(session: Session) -> RecoveryDialog | None:

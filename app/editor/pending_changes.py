@@ -17,6 +17,7 @@ from app.editor.session import Session, with_project
 from app.editor.work.jobs import Job, JobKind
 from app.editor.work.promise import Afterwards, Promise
 from app.editor.work.pull import Pull
+from app.texts import _
 
 Result = TypeVar("Result")
 
@@ -40,19 +41,19 @@ def begin_pending_change(
     failed : callable, optional
         Takes the error of a failure; by default it is reported.
     """
-    promised = promise or Promise(label=kind.label)
-    project.pending.append(promised)
+    pending = promise or Promise(label=kind.label)
+    project.pending.append(pending)
 
     def arrived(result: Result) -> None:
-        if _end_pending_change(session, project, promised):
+        if _end_pending_change(session, project, pending):
             done(result)
 
     def lost(error: Exception) -> None:
-        if _end_pending_change(session, project, promised):
+        if _end_pending_change(session, project, pending):
             (failed or partial(report_failure, session, kind.complaint))(error)
 
     session.jobs.add(Job(kind=kind, work=work, done=arrived, failed=lost))
-    return promised
+    return pending
 
 
 def _end_pending_change(session: Session, project: Project, promise: Promise) -> bool:
@@ -143,12 +144,13 @@ def deferred_label(project: Project) -> str:
     """Return the label of the first waiting action; empty if there is none."""
     if not project.afterwards:
         return ""
-    return f"{pending_label(project)}, then: {project.afterwards[0].what}"
+    text = _("{tasks}, then: {action}")
+    return text.format(tasks=pending_label(project), action=project.afterwards[0].what)
 
 
 def pending_label(project: Project) -> str:
     """Return the label of a pending change or save."""
     labels = [promise.label for promise in project.pending]
     if project.stale_layer is not None:
-        labels.append("Cutting out")
+        labels.append(_("Cutting out"))
     return ", ".join(dict.fromkeys(labels))

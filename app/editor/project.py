@@ -275,31 +275,31 @@ class Project:
     @property
     def samplers(self) -> dict[int, PoseSampler]:
         """Pose samplers of the layers, by id."""
-        samplers = {layer: puppet.store.sampler for layer, puppet in self.layer_runtimes.items()}
+        samplers = {layer: runtime.store.sampler for layer, runtime in self.layer_runtimes.items()}
         return {layer: sampler for layer, sampler in samplers.items() if sampler is not None}
 
     @property
     def is_crowded(self) -> bool:
         """Whether inactive layers hold, or will hold, much memory that can be freed."""
         return (
-            sum(puppet.releasable_bytes(clip) for clip, puppet in self._unedited())
+            sum(runtime.releasable_bytes(clip) for clip, runtime in self._unedited())
             > MOST_RELEASABLE_BYTES
         )
 
     def free_memory(self) -> None:
         """Free intermediate values of inactive layers while they take much memory."""
         unedited = self._unedited()
-        held = {puppet: puppet.releasable_bytes(clip) for clip, puppet in unedited}
-        for clip, puppet in unedited:
+        held = {runtime: runtime.releasable_bytes(clip) for clip, runtime in unedited}
+        for clip, runtime in unedited:
             if sum(held.values()) <= MOST_RELEASABLE_BYTES:
                 return
-            puppet.release_intermediates(clip)
-            held[puppet] = puppet.releasable_bytes(clip)
+            runtime.release_intermediates(clip)
+            held[runtime] = runtime.releasable_bytes(clip)
 
     def _unedited(self) -> list[tuple[Clip, LayerRuntime]]:
         return [
-            (clip_of(self.document, layer), puppet)
-            for layer, puppet in self.layer_runtimes.items()
+            (clip_of(self.document, layer), runtime)
+            for layer, runtime in self.layer_runtimes.items()
             if layer != self.active
         ]
 
@@ -393,19 +393,19 @@ class Project:
     def update_comparisons(self, method: Variant | Baseline | None) -> None:
         """Compare each layer with a method, or with none."""
         for layer in self.document.layers:
-            puppet = self.layer_runtimes[layer.id]
+            runtime = self.layer_runtimes[layer.id]
             if method is None:
-                puppet.comparison = None
+                runtime.comparison = None
                 continue
-            twin = puppet.comparison or ComparisonRuntime(
+            comparison = runtime.comparison or ComparisonRuntime(
                 original=layer, layer=layer, method=layer.variant
             )
-            if twin.original is not layer or twin.method is not method:
-                twin.original, twin.method = layer, method
-                twin.layer = (
+            if comparison.original is not layer or comparison.method is not method:
+                comparison.original, comparison.method = layer, method
+                comparison.layer = (
                     layer if isinstance(method, Baseline) else replace(layer, variant=method)
                 )
-            puppet.comparison = twin
+            runtime.comparison = comparison
 
     def view(self, screen: tuple[int, int]) -> View:
         """Return the viewport's view on a screen of this size in pixels."""

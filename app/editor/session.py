@@ -162,10 +162,9 @@ class CopiedTrack:
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """A hint about the pointer: gesture, effect, and the key to hold."""
+    """A hint about the pointer: gesture and effect as one text, and the key to hold."""
 
-    how: str
-    what: str
+    text: str
     key: Literal["", "ctrl", "shift", "alt", "ctrl+shift"] = ""
 
 

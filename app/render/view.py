@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from app.errors import LissomError
+from app.texts import _
 from engine.arrays import Complexes
 
 
@@ -18,10 +19,13 @@ class View:
     def __post_init__(self) -> None:
         if min(self.size) < 1:
             raise LissomError(
-                f"a frame needs at least 1 × 1 pixels, not {self.size[0]} × {self.size[1]}"
+                _("a frame needs at least 1 × 1 pixels, not {width} × {height}").format(
+                    width=self.size[0], height=self.size[1]
+                )
             )
         if not self.scale > 0:
-            raise LissomError(f"the scale of a view must be positive, not {self.scale}")
+            text = _("the scale of a view must be positive, not {scale}")
+            raise LissomError(text.format(scale=self.scale))
 
     @property
     def transform(self) -> tuple[float, float, float, float]:

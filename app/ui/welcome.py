@@ -13,7 +13,8 @@ from imgui_bundle import (
 )
 
 from app.editor import Action, Session, do
-from app.editor.actions import files, tutorials
+from app.editor.actions import tutorials
+from app.editor.actions.project_files import files
 from app.errors import display_name
 from app.render import Thumbnail
 from app.texts import _
@@ -94,7 +95,7 @@ def _greeting(session: Session, look: Look) -> list[Action]:
 
 def _first(look: Look, pictures: Previews) -> list[Action]:
     """Draw the cards that begin a first animation, with the giraffe or with an own drawing."""
-    sample = next((each for each in files.sample_files() if each.name == TUTORIAL_SAMPLE), None)
+    sample = next((each for each in tutorials.sample_files() if each.name == TUTORIAL_SAMPLE), None)
     if sample is None:
         return []
     actions: list[Action] = []
@@ -128,7 +129,7 @@ def _samples(look: Look, pictures: Previews) -> list[Action]:
     actions: list[Action] = []
     bold_text(look, _("Try one of these"))
     imgui.dummy(ImVec2(0, 0.2 * look.em))
-    for index, sample in enumerate(files.sample_files()):
+    for index, sample in enumerate(tutorials.sample_files()):
         if index % 4:
             imgui.same_line(0, GAP * look.em)
         elif index:
@@ -138,7 +139,7 @@ def _samples(look: Look, pictures: Previews) -> list[Action]:
     return actions
 
 
-def _card(look: Look, sample: files.SampleFile, pictures: Previews) -> bool:
+def _card(look: Look, sample: tutorials.SampleFile, pictures: Previews) -> bool:
     palette, em = look.palette, look.em
     corner, size = imgui.get_cursor_screen_pos(), ImVec2(CARD * em, TALL * em)
     pressed = imgui.invisible_button(f"sample {sample.name}", size)
@@ -166,7 +167,7 @@ def _frame(look: Look, corner: ImVec2, size: ImVec2, *, is_hot: bool) -> None:
 
 
 def _show_sample(
-    sample: files.SampleFile, pictures: Previews, corner: ImVec2, room: ImVec2
+    sample: tutorials.SampleFile, pictures: Previews, corner: ImVec2, room: ImVec2
 ) -> None:
     """Draw a sample. It moves while the pointer is on its card, which is the last item."""
     began, now = imgui.get_id(f"{sample.name} since"), imgui.get_time()

@@ -15,7 +15,7 @@ from PIL import Image, ImageDraw
 
 from app.document import Document, Layer, Meshing, PictureFile, Pose, Variant, clip_of
 from app.editor import LayerRuntime
-from app.editor.actions import files
+from app.editor.actions.project_files import files
 from app.storage import Picture, decode_picture, load_project, open_layered, sample_images
 from engine.arrays import Complexes
 from engine.domain import Domain, MeshedDomain

@@ -13,7 +13,8 @@ import numpy as np
 from app.cli.process import set_switch_interval
 from app.document import Meshing, Target, Variant, clip_of
 from app.editor import LayerRuntime, Project
-from app.editor.actions import files, playback
+from app.editor.actions import playback
+from app.editor.actions.project_files import files
 from app.storage import decode_picture, load_project, sample_images
 from app.ui.window.memory import limit_arenas
 from app.ui.window.window import SIZE

@@ -24,7 +24,7 @@ from app.cli.main import main
 from app.document import Document, History, Variant
 from app.document.commands import scene_commands
 from app.document.settings import Marker
-from app.editor.actions import saving
+from app.editor.actions.project_files import autosaving
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
@@ -203,7 +203,7 @@ def _edit_on(tell: Callable[[int, float], None], folder: Path, document: Documen
     session.project.history.do(scene_commands.add_marker(0, "0"))
     while True:
         tell(number, clock())
-        saving.write_due_files(session)
+        autosaving.write_due_files(session)
         session.jobs.deliver()
         time.sleep(0.004)
         number += 1

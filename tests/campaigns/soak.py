@@ -20,9 +20,10 @@ from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, FrameRange, Meshing
-from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import attach_layer
 from app.export_formats import EXPORT_FORMATS, MeshOptions
@@ -215,7 +216,7 @@ def export(window: Harness, folder: Path, name: str) -> None:
         frames=FrameRange(0, 5),
         shapes=MeshOptions(triangles=200),
     )
-    exporting.set_export_settings(session, settings)
+    export_settings.set_export_settings(session, settings)
     suffixes = EXPORT_FORMATS[name].suffixes
     exporting.start_export(session, place / f"a{suffixes[0]}" if suffixes else place)
     while session.export is not None or session.jobs.kinds:

@@ -43,7 +43,7 @@ from app.cli import window_process
 from app.cli.main import main
 from app.document.commands import scene_commands
 from app.editor import do
-from app.editor.actions import files, saving
+from app.editor.actions.project_files import files, saving
 from app.editor.dialogs import Question
 
 saving.SECONDS = float(sys.argv[1])

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from app.cli.main import COMMANDS, build_parser
 from app.document import BLENDS, LIMIT_PRESETS, PRESETS, SPRING_PRESETS, WEIGHT_PRESETS
-from app.editor.actions import files
+from app.editor.actions import tutorials
 from app.export_formats import EXPORT_FORMATS
 from app.ui.shortcuts.keys import (
     ALT,
@@ -151,7 +151,7 @@ def _subparser(parser: argparse.ArgumentParser, command: str) -> argparse.Argume
 def _is_known(part: str) -> bool:
     tables: set[str] = {binding.label for binding in BINDINGS.values()} | set(PAGES) | set(MENUS)
     tables |= {format_.label for format_ in EXPORT_FORMATS.values()} | {
-        sample.name for sample in files.sample_files()
+        sample.name for sample in tutorials.sample_files()
     }
     tables |= {format_.group for format_ in EXPORT_FORMATS.values()}
     words = [

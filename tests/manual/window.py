@@ -5,7 +5,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.editor.actions import saving
+from app.editor.actions.project_files import saving
 from tests.manual.film import Film
 from tests.manual.films import FILMS
 from tests.manual.stage import SIZE

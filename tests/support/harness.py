@@ -17,7 +17,7 @@ from PIL import Image
 from app.document import History
 from app.document.settings import Meshing
 from app.editor.action import do
-from app.editor.actions import files, saving
+from app.editor.actions.project_files import files, saving
 from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs

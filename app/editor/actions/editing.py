@@ -1,22 +1,17 @@
 """Changes of the document: commands, undo and the selection."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from itertools import count
 from typing import Concatenate, NamedTuple, ParamSpec
 
 from app.document import (
     Command,
     Document,
     FrameRange,
-    Handle,
     PreviewPose,
     changed_ranges,
     clip_of,
-    handle_commands,
     key_commands,
-    layer_commands,
-    mirrored_handles_by_name,
     track_commands,
 )
 from app.editor import pending_changes
@@ -30,6 +25,7 @@ from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeyRow, KeysByRow, TrackRow, frames_in, layer_of
 from app.editor.work.layer_runtime import LayerRuntime
 from app.storage import decode_picture
+from app.texts import N_, _
 
 Arguments = ParamSpec("Arguments")
 
@@ -49,7 +45,8 @@ class KeyVerb(NamedTuple):
         return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
 
 
-FIRST_KEY_STAYS = "The first key of {layers} stays: a layer has at least one key."
+FIRST_KEY_STAYS = N_("The first key of {layers} stays: a layer has at least one key.")
+UNDONE, REDONE = _("Undone: {step}"), _("Done again: {step}")
 DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 
@@ -96,12 +93,12 @@ def undo(session: Session, project: Project) -> None:
         return
     if project.motion_job is not None:
         apply_motion.cancel_motion_job(session)
-        _show_step_notice(session, "Undone", "Give a motion")
+        _show_step_notice(session, UNDONE, _("Apply motion preset"))
         return
     is_held = any(pull.is_held for pull in project.pulls)
     waiting = None if is_held else pending_changes.cancel_deferred_action(project)
     if waiting is not None:
-        _show_step_notice(session, "Undone", waiting)
+        _show_step_notice(session, UNDONE, waiting)
         return
     before, unkeyed, label = (
         project.document,
@@ -122,7 +119,7 @@ def undo(session: Session, project: Project) -> None:
                 project.history.revert(gesture)
     else:
         project.history.undo()
-        _show_step_notice(session, "Undone", label)
+        _show_step_notice(session, UNDONE, label)
     _forget_what_is_gone(project)
     _go_to_change(session, project, before, unkeyed)
 
@@ -138,15 +135,15 @@ def revert_gesture(session: Session, project: Project, gesture: object) -> None:
 @with_project
 def redo(session: Session, project: Project) -> None:
     before, unkeyed = project.document, project.history.preview_pose
-    _show_step_notice(session, "Done again", project.history.redo_label)
+    _show_step_notice(session, REDONE, project.history.redo_label)
     project.history.redo()
     _forget_what_is_gone(project)
     _go_to_change(session, project, before, unkeyed)
 
 
-def _show_step_notice(session: Session, what: str, label: str | None) -> None:
+def _show_step_notice(session: Session, text: str, label: str | None) -> None:
     if label is not None:
-        session.show_notice(f"{what}: {label}", topic="undo")
+        session.show_notice(text.format(step=label), topic="undo")
 
 
 def _go_to_change(
@@ -192,46 +189,6 @@ def deselect_all(_: Session, project: Project) -> None:
 def deselect_keys(_: Session, project: Project) -> None:
     """Deselect all keys; the handle selection stays."""
     project.selected_keys = {}
-
-
-@with_project
-def select_mirrored(session: Session, project: Project) -> None:
-    """Select the handles on the other side whose names match the selected ones."""
-    pairs = mirrored_handles_by_name(project.layer.handles, project.document.pairs)
-    partners = frozenset(pairs[handle] for handle in project.selected_handles if handle in pairs)
-    if partners:
-        select_handles(session, partners)
-    else:
-        session.show_notice(
-            "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
-            "“foot_l” and “foot_r”, or “left ear” and “right ear”."
-        )
-
-
-@with_project
-def toggle_handles_locked(session: Session, project: Project) -> None:
-    """Lock the selected handles, or unlock them if all are locked."""
-    if project.selected_handles:
-        chosen = [
-            handle for handle in project.layer.handles if handle.id in project.selected_handles
-        ]
-        locked = not all(handle.locked for handle in chosen)
-        edit_layer(session, handle_commands.lock_handles, project.selected_handles, locked=locked)
-
-
-@with_project
-def group_handles(session: Session, project: Project) -> None:
-    if len(project.selected_handles) > 1:
-        taken = {handle.group for handle in project.layer.handles}
-        name = next(f"group {n}" for n in count(1) if f"group {n}" not in taken)
-        edit_layer(session, handle_commands.group_handles, project.selected_handles, name)
-
-
-@with_project
-def ungroup_handles(session: Session, project: Project) -> None:
-    """Dissolve the groups of the selected handles."""
-    fellows = frozenset[int]().union(*map(project.layer.grouped_handles, project.selected_handles))
-    edit_layer(session, handle_commands.group_handles, fellows, "")
 
 
 @with_project
@@ -286,7 +243,7 @@ def _delete_keys(session: Session, project: Project) -> None:
     left = {row: frames for row, frames in chosen_of.items() if frames}
     edit_document(session, change_keys(DELETE, left or project.selected_keys))
     if keeping:
-        session.show_notice(FIRST_KEY_STAYS.format(layers=", ".join(keeping)))
+        session.show_notice(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
 
 
 def update_layer_runtimes(project: Project) -> None:
@@ -300,9 +257,9 @@ def update_layer_runtimes(project: Project) -> None:
     for file in spare - project.history.picture_files if spare else ():
         del project.pictures[file]
     for layer in document.layers:
-        puppet = project.layer_runtimes.get(layer.id)
-        if puppet is not None and puppet.file is layer.picture:
-            project.pictures[layer.picture] = puppet.picture
+        runtime = project.layer_runtimes.get(layer.id)
+        if runtime is not None and runtime.file is layer.picture:
+            project.pictures[layer.picture] = runtime.picture
             continue
         if layer.picture not in project.pictures:
             decoded = decode_picture(layer.picture.data, layer.name)
@@ -328,25 +285,3 @@ def _forget_what_is_gone(project: Project) -> None:
     if project.playhead.frame not in document.frames:
         frame = document.frames.clamp(project.playhead.frame)
         project.playhead = replace(project.playhead, frame=frame)
-
-
-def depth_at_playhead(session: Session, project: Project, handle: Handle) -> float:
-    """Return the depth of a handle at the present frame, −1 (back) to 1 (front)."""
-    return _depth_points_at_playhead(session, project).get(handle.id, handle.depth)
-
-
-@with_project
-def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
-    """Set the depth of a handle: in the present key if that has the depth, or else for all keys."""
-    if identity in _depth_points_at_playhead(session, project):
-        frame = playback.edited_frame(session, project)
-        edit_layer(session, layer_commands.key_depth, frame, identity, front)
-    else:
-        extent = project.layer.handle(identity).extent
-        edit_layer(session, layer_commands.set_depth, identity, front, extent)
-
-
-def _depth_points_at_playhead(session: Session, project: Project) -> Mapping[int, float]:
-    """Return the depth points of the key at the present frame; empty without one."""
-    frame, layer = playback.edited_frame(session, project), project.layer
-    return layer.key(frame).depths if frame in layer.key_frames else {}

@@ -1,22 +1,23 @@
-"""The tutorial: a first animation in five steps. Document and session decide the next step."""
+"""The samples, and the tutorial: a first animation in five steps.
+
+Document and session decide the next step of the tutorial.
+"""
 
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
 
-from app.document import (
-    Document,
-    FrameRange,
-    Layer,
-    handle_commands,
-    key_commands,
-    scene_commands,
-)
+from app.document import Document, FrameRange, Layer, handle_commands, key_commands, scene_commands
 from app.editor.action import do
-from app.editor.actions import files, saving
+from app.editor.actions.project_files import files, saving
+from app.editor.actions.project_files.saving import PROJECT
 from app.editor.error_reports import run_job
 from app.editor.project import Project
 from app.editor.session import Session, TutorialStage, TutorialState
 from app.editor.work.jobs import JobKind
 from app.storage import load_project, sample_images
+from app.texts import N_, _
 from engine.maps import HarmonicMap
 
 STEPS: tuple[TutorialStage, ...] = ("handle", "time", "pose", "play", "export")
@@ -26,7 +27,18 @@ LED = "nose"  # the sample's handle that the person adds again
 HELD = ("withers", "chest", "rump", "hoof")  # endings of the names of handles that stay
 LAST, SIZE = 48, (480, 480)  # last frame of the sample's loop; size of its GIF in pixels
 HOLDS_AND_MOVES = 2  # number of handles that the person's own drawing needs
-OPENING = JobKind("Opening the giraffe", "The giraffe cannot be opened")
+OPENING = JobKind(_("Opening the giraffe"), _("The giraffe cannot be opened"))
+# Short descriptions of the samples by their names, as long as a card has room for.
+STORIES = {
+    N_("Bar"): _("A bar to bend as you like"),
+    N_("Character"): _("Waves a hand"),
+    N_("Dragon"): _("Nods and sweeps its tail"),
+    N_("Friend"): _("Layers that wave and laugh"),
+    N_("Giraffe"): _("Bends down and comes up"),
+    N_("Octopus"): _("Arms that curl without end"),
+    N_("Ring"): _("A hole that opens and closes"),
+    N_("S"): _("A spine to curl or straighten"),
+}
 
 
 def begin_tutorial(session: Session) -> None:
@@ -40,7 +52,7 @@ def begin_tutorial(session: Session) -> None:
 
 def begin_tutorial_with_own_drawing(session: Session) -> None:
     """Ask for a drawing, and guide the person through its first animation."""
-    session.ask_file("Open a drawing", files.OPENABLE, lambda path: do(files.open_file, path))
+    session.ask_file(_("Open a drawing"), files.OPENABLE, lambda path: do(files.open_file, path))
     session.tutorial = TutorialState()
 
 
@@ -156,3 +168,37 @@ def _moves(layer: Layer) -> bool:
         return True
     first = layer.map_of(layer.keys[0].pose)
     return any(not layer.map_of(key.pose).is_same(first) for key in layer.keys[1:])
+
+
+class SampleFile(NamedTuple):
+    """A picture, or a project with its picture, that ships with Lissom."""
+
+    name: str
+    file: Path
+    picture: Path
+    what: str
+    story: str
+    moving: Path  # a small animation; the file may be missing
+
+
+@cache
+def sample_files() -> tuple[SampleFile, ...]:
+    """Return the samples, animated ones first."""
+    found = []
+    projects = {path.stem: path for path in sample_images().glob(f"*{PROJECT}")}
+    pictures = {path.stem: path for path in sample_images().glob("*.png")}
+    # A layered drawing has no picture but the thumbnail in its project.
+    for name in sorted(projects.keys() | pictures.keys()):
+        picture = pictures.get(name, projects.get(name, Path()))
+        is_animated = name in projects
+        found.append(
+            SampleFile(
+                name=picture.stem.capitalize(),
+                file=projects.get(name, picture),
+                picture=picture,
+                what=_("animated") if is_animated else _("picture"),
+                story=STORIES.get(picture.stem.capitalize(), ""),
+                moving=sample_images() / "moving" / f"{name}.webp",
+            )
+        )
+    return tuple(sorted(found, key=lambda sample: sample.file.suffix != PROJECT))

@@ -43,23 +43,24 @@ from app.motion import (
 )
 from app.reports import CorrectedSample, measure_curves
 from app.storage import cut_picture, shrink_picture
+from app.texts import _
 
 STILL = 0.15  # seconds after which the playhead counts as resting
 MOST_UNASKED = 1000  # frames whose extent is measured unasked
 SMALL_SIDE = 96  # pixels of a picture in the list of layers
-UNMADE = "The in-betweens of these keys cannot be made"
+UNMADE = _("The in-betweens of these keys cannot be made")
 # Awaited jobs and jobs of a few milliseconds run on the "hand" lane, ahead of long in-betweens.
-GLIMPSING = JobKind("In-between", UNMADE, "hand")
-SKETCHING = JobKind("In-betweens", UNMADE)
-COMPARING = JobKind("Other in-betweens", "The in-betweens to compare with cannot be made")
-REFINING = JobKind("Finer in-betweens", "The in-betweens cannot be made in full detail")
-STREAMING = JobKind("Smooth playback", "Playback cannot be made smooth")
-CUTTING = JobKind("Cutting out", "The picture cannot be cut out so")
-SHRINKING = JobKind("Small pictures", "The picture of a layer cannot be made small", "hand")
-HANGING = JobKind("Joints", "The joints cannot be followed between the keys")
-TRACING = JobKind("Motion paths", "The paths of the handles cannot be traced")
-MEASURING = JobKind("Measuring", "The distortion could not be measured")
-SPANNING = JobKind("Measuring the motion", "The extent of the motion could not be measured")
+GLIMPSING = JobKind(_("In-between"), UNMADE, "hand")
+SKETCHING = JobKind(_("In-betweens"), UNMADE)
+COMPARING = JobKind(_("Other in-betweens"), _("The in-betweens to compare with cannot be made"))
+REFINING = JobKind(_("Finer in-betweens"), _("The in-betweens cannot be made in full detail"))
+STREAMING = JobKind(_("Smooth playback"), _("Playback cannot be made smooth"))
+CUTTING = JobKind(_("Cutting out"), _("The picture cannot be cut out so"))
+SHRINKING = JobKind(_("Small pictures"), _("The picture of a layer cannot be made small"), "hand")
+ATTACHING = JobKind(_("Joints"), _("The joints cannot be followed between the keys"))
+TRACING = JobKind(_("Motion paths"), _("The paths of the handles cannot be traced"))
+MEASURING = JobKind(_("Measuring"), _("The distortion could not be measured"))
+SPANNING = JobKind(_("Measuring the motion"), _("The extent of the motion could not be measured"))
 
 Source = TypeVar("Source")
 Value = TypeVar("Value")
@@ -89,10 +90,10 @@ def ask_for_missing(session: Session, project: Project) -> None:
         for job in missing(session, project):
             if job.kind not in session.jobs.kinds:
                 session.jobs.put(job)
-    shortfalls, layer = project.timeline.target_errors, project.layer
-    if not shortfalls.follows(layer):
+    target_errors, layer = project.timeline.target_errors, project.layer
+    if not target_errors.follows(layer):
         # Cheap: only new poses are measured, and they come one at a time.
-        shortfalls.set(layer, measure_key_errors(layer, shortfalls))
+        target_errors.set(layer, measure_key_errors(layer, target_errors))
 
 
 @with_project
@@ -141,16 +142,16 @@ def _inputs(session: Session, project: Project) -> tuple[object, ...]:
         *(session.export_frame, project.awaits_extent, session.active_tool, session.records),
         *(project.selected_track, take, take and (take.is_over, len(take.samples))),
         *(project.unkeyed_pose, tuple(project.pending), tuple(map(_stage, project.pulls))),
-        tuple(puppet.store for puppet in project.layer_runtimes.values()),
+        tuple(runtime.store for runtime in project.layer_runtimes.values()),
     )
 
 
 def _drawn_of(session: Session, project: Project) -> tuple[object, ...]:
     """Return all values that decide the shown frame, and the shown frame itself."""
-    puppets = project.layer_runtimes.values()
+    runtimes = project.layer_runtimes.values()
     return (
         *(_inputs(session, project), _is_moving(session, project)),
-        *((each.shown, each.fine, each.corrected, each.comparison) for each in puppets),
+        *((each.shown, each.fine, each.corrected, each.comparison) for each in runtimes),
     )
 
 
@@ -161,8 +162,8 @@ def _stage(pull: Pull) -> tuple[object, ...]:
 
 def _follow_document(session: Session, project: Project) -> None:
     """Update or recall derived values after a change of the document."""
-    for identity, puppet in project.layer_runtimes.items():
-        puppet.corrected = reuse_corrections(project.document, identity, puppet.corrected)
+    for identity, runtime in project.layer_runtimes.items():
+        runtime.corrected = reuse_corrections(project.document, identity, runtime.corrected)
     project.extent.recall(extent_key(project.document))
     project.update_comparisons(session.compare_view.method if session.compare_view else None)
     _pin(session, project)
@@ -176,18 +177,18 @@ def give_up(session: Session, kind: JobKind) -> None:
 def _pin(session: Session, project: Project) -> None:
     """Note in all caches the present clips, and the clips that undo and redo lead to."""
     frame, tried = playback.current_frame(session, project), candidate_clips(project)
-    for clip, puppet in _clips(project):
-        layer, twin = clip.layer.id, puppet.comparison
+    for clip, runtime in _clips(project):
+        layer, comparison = clip.layer.id, runtime.comparison
         others = [each for each in tried if each.layer.id == layer]
-        others += [] if twin is None else [twin.clip(project.document)]
+        others += [] if comparison is None else [comparison.clip(project.document)]
         nearby = [
             clip_of(document, layer)
             for document in project.history.nearby
             if layer in [other.id for other in document.layers]
         ]
-        puppet.store.set_needed_clips([clip, *others], nearby, frame)
-        if puppet.fine is not None:
-            puppet.fine.set_needed_clips([clip], nearby, frame)
+        runtime.store.set_needed_clips([clip, *others], nearby, frame)
+        if runtime.fine is not None:
+            runtime.fine.set_needed_clips([clip], nearby, frame)
 
 
 def missing(session: Session, project: Project) -> Iterator[Job]:
@@ -202,12 +203,12 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if _awaits_frame(session, project):
         # On few cores other jobs would delay this frame.
         return
-    for kind, puppet, clip in _wanted(session, project):
-        if not puppet.store.has_failed(clip, _part(kind)):
-            job = _prepare(session, project, kind, puppet, clip)
+    for kind, runtime, clip in _wanted(session, project):
+        if not runtime.store.has_failed(clip, _part(kind)):
+            job = _prepare(session, project, kind, runtime, clip)
             if job is not None:
                 room = None
-                if puppet is not project.layer_runtime and project.is_crowded:
+                if runtime is not project.layer_runtime and project.is_crowded:
                     if STREAMING in session.jobs.kinds:
                         return
                     room = next(_stream(session, project), None)
@@ -220,7 +221,7 @@ def missing(session: Session, project: Project) -> Iterator[Job]:
     if project.is_posing:
         # The jobs below take longer than a pause of the drag.
         return
-    yield from _hang(session, project)
+    yield from _compute_joints(session, project)
     if not session.prepares_ahead:
         return
     yield from _stream(session, project)
@@ -248,14 +249,14 @@ def _clips(project: Project) -> list[tuple[Clip, LayerRuntime]]:
 def _make_frames(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for the in-between at the playhead, ahead of the rest of its segment."""
     frame = playback.current_frame(session, project)
-    for clip, puppet in _clips(project):
+    for clip, runtime in _clips(project):
         is_posed = clip.layer.id == project.active and project.unkeyed_pose is not None
         # A failure at one frame would repeat at others; it is reported once.
-        if not is_posed and not puppet.store.has_failed(clip, "frame"):
-            work = puppet.store.frame_job(clip, frame)
+        if not is_posed and not runtime.store.has_failed(clip, "frame"):
+            work = runtime.store.frame_job(clip, frame)
             if work is not None:
-                done = puppet.store.add
-                yield _interval_job(session, GLIMPSING, puppet, clip, work=work, done=done)
+                done = runtime.store.add
+                yield _interval_job(session, GLIMPSING, runtime, clip, work=work, done=done)
 
 
 def _awaits_frame(session: Session, project: Project) -> bool:
@@ -263,19 +264,19 @@ def _awaits_frame(session: Session, project: Project) -> bool:
     if GLIMPSING not in session.jobs.kinds:
         return False
     frame = playback.current_frame(session, project)
-    moments = ((segment_time_at(clip, frame), clip, puppet) for clip, puppet in _clips(project))
+    moments = ((segment_time_at(clip, frame), clip, runtime) for clip, runtime in _clips(project))
     return any(
         keyed_pose_at(clip, moment) is None
-        and not puppet.store.is_exact(clip, frame)
-        and puppet.store.segment(clip, moment.segment) is None
-        for moment, clip, puppet in moments
+        and not runtime.store.is_exact(clip, frame)
+        and runtime.store.segment(clip, moment.segment) is None
+        for moment, clip, runtime in moments
     )
 
 
 def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, LayerRuntime, Clip]]:
     """Yield the clips that need in-betweens, the most urgent first."""
     frame, clips = playback.current_frame(session, project), _clips(project)
-    clips = [(clip, puppet) for clip, puppet in clips if not puppet.store.has_failed(clip)]
+    clips = [(clip, runtime) for clip, runtime in clips if not runtime.store.has_failed(clip)]
     prepares_all = _prepares_all(session, project)
 
     def is_wanted(clip: Clip, store: InbetweenCache) -> bool:
@@ -285,40 +286,40 @@ def _wanted(session: Session, project: Project) -> Iterator[tuple[JobKind, Layer
     is_seen = session.overlays.onion or project.pull is None
     if is_seen or POSING not in session.jobs.kinds:
         # Clips whose shown frame is an approximation come first.
-        for clip, puppet in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
-            if is_wanted(clip, puppet.store):
-                yield SKETCHING, puppet, clip
+        for clip, runtime in sorted(clips, key=lambda each: each[1].store.is_exact(each[0], frame)):
+            if is_wanted(clip, runtime.store):
+                yield SKETCHING, runtime, clip
     for clip in candidate_clips(project, left=not prepares_all):
         yield SKETCHING, project.layer_runtimes[clip.layer.id], clip
     if project.is_posing:
         return
-    for puppet in project.layer_runtimes.values():
-        if puppet.comparison is not None:
-            twin = puppet.comparison.clip(project.document)
-            if is_wanted(twin, puppet.store):
-                yield COMPARING, puppet, twin
-    for clip, puppet in clips:
-        if puppet.store.mesh.domain is not clip.layer.domain and (
-            puppet.fine is None or is_wanted(clip, puppet.fine)
+    for runtime in project.layer_runtimes.values():
+        if runtime.comparison is not None:
+            comparison = runtime.comparison.clip(project.document)
+            if is_wanted(comparison, runtime.store):
+                yield COMPARING, runtime, comparison
+    for clip, runtime in clips:
+        if runtime.store.mesh.domain is not clip.layer.domain and (
+            runtime.fine is None or is_wanted(clip, runtime.fine)
         ):
-            yield REFINING, puppet, clip
+            yield REFINING, runtime, clip
 
 
 def _prepare(
-    session: Session, project: Project, kind: JobKind, puppet: LayerRuntime, clip: Clip
+    session: Session, project: Project, kind: JobKind, runtime: LayerRuntime, clip: Clip
 ) -> Job | None:
     """Return the job for the nearest in-betweens that a clip lacks, or for its mesh."""
     domain, among = clip.layer.domain, len(project.layer_runtimes)
     is_fine, frame = kind == REFINING, playback.current_frame(session, project)
-    store = puppet.fine if is_fine else puppet.store
+    store = runtime.fine if is_fine else runtime.store
     if store is None or store.mesh.source is not domain:
         make = DeformMesh.fine if is_fine else partial(DeformMesh.coarse, among=among)
 
         def begin(mesh: DeformMesh) -> None:
-            setattr(puppet, "fine" if is_fine else "store", InbetweenCache(mesh=mesh))
+            setattr(runtime, "fine" if is_fine else "store", InbetweenCache(mesh=mesh))
 
-        return _interval_job(session, kind, puppet, clip, work=partial(make, domain), done=begin)
-    is_edited = puppet is project.layer_runtime and not is_fine
+        return _interval_job(session, kind, runtime, clip, work=partial(make, domain), done=begin)
+    is_edited = runtime is project.layer_runtime and not is_fine
     lacking = store.missing_segments(clip, frame, is_edited=is_edited)
     if store.lacks_sampler(clip):
         # A correction of a frame at a key needs no in-betweens.
@@ -331,21 +332,23 @@ def _prepare(
     # Otherwise one at a time, so that more urgent jobs do not wait long.
     if not (session.overlays.onion and project.pull is not None):
         lacking = lacking[:1]
-    prepare = store.segments_job(clip, lacking, puppet.store.sampler)
-    return _interval_job(session, kind, puppet, clip, work=prepare, done=store.add)
+    prepare = store.segments_job(clip, lacking, runtime.store.sampler)
+    return _interval_job(session, kind, runtime, clip, work=prepare, done=store.add)
 
 
 def _stream(session: Session, project: Project) -> Iterator[Job]:
     """Yield some steps of a series in progress or of the next series."""
     frame, heat = playback.current_frame(session, project), session.overlays.heat_map != "none"
-    for clip, puppet in _clips(project):
-        for store in filter(None, (puppet.store, puppet.fine)):
-            if STREAMING in session.jobs.kinds or puppet.store.has_failed(clip, "series"):
+    for clip, runtime in _clips(project):
+        for store in filter(None, (runtime.store, runtime.fine)):
+            if STREAMING in session.jobs.kinds or runtime.store.has_failed(clip, "series"):
                 break
             build = store.next_build(clip, frame, heat=heat)
             if build is not None:
                 done = partial(_take_build, project, store)
-                yield _interval_job(session, STREAMING, puppet, clip, work=build.advance, done=done)
+                yield _interval_job(
+                    session, STREAMING, runtime, clip, work=build.advance, done=done
+                )
 
 
 def _take_build(project: Project, store: InbetweenCache, build: SeriesBuild) -> None:
@@ -366,14 +369,14 @@ def _part(kind: JobKind) -> InbetweenPart:
 def _interval_job(
     session: Session,
     kind: JobKind,
-    puppet: LayerRuntime,
+    runtime: LayerRuntime,
     clip: Clip,
     *,
     work: Callable[[], Value],
     done: Callable[[Value], None],
 ) -> Job:
     """Return a job for in-betweens; a failed job is not repeated for the same keys."""
-    return _job(session, kind, work, done, lambda: puppet.store.mark_failed(_part(kind), clip))
+    return _job(session, kind, work, done, lambda: runtime.store.mark_failed(_part(kind), clip))
 
 
 def _job(
@@ -405,12 +408,12 @@ def _derive(
 def _cut(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs for new cut-outs, and for the small pictures of the list of layers."""
     for layer in project.document.layers:
-        puppet, cut_out = project.layer_runtimes[layer.id], layer.cut_out
-        cut = partial(cut_picture, puppet.picture, cut_out)
-        yield from _derive(session, CUTTING, puppet.cut, cut_out, cut)
-        whole = puppet.cut.value
+        runtime, cut_out = project.layer_runtimes[layer.id], layer.cut_out
+        cut = partial(cut_picture, runtime.picture, cut_out)
+        yield from _derive(session, CUTTING, runtime.cut, cut_out, cut)
+        whole = runtime.cut.value
         small = partial(shrink_picture, whole.texture, SMALL_SIDE)
-        yield from _derive(session, SHRINKING, puppet.small, whole, small)
+        yield from _derive(session, SHRINKING, runtime.small, whole, small)
 
 
 def _trace(session: Session, project: Project) -> Iterator[Job]:
@@ -427,11 +430,11 @@ def _trace(session: Session, project: Project) -> Iterator[Job]:
         yield from _derive(session, TRACING, paths, clip, trace)
 
 
-def _hang(session: Session, project: Project) -> Iterator[Job]:
+def _compute_joints(session: Session, project: Project) -> Iterator[Job]:
     """Yield a job for some frames of the joints of attached layers."""
     joints, source = project.parent_transforms, parenting_key(project.document)
     is_settled = not source or joints.follows(source) or joints.has_failed(source)
-    if is_settled or HANGING in session.jobs.kinds:
+    if is_settled or ATTACHING in session.jobs.kinds:
         return
     begun_of, begun = joints.begun or (None, joints.value)
     if begun is None or begun_of != source:
@@ -442,14 +445,14 @@ def _hang(session: Session, project: Project) -> Iterator[Job]:
         if advanced.is_whole:
             joints.set(source, advanced)
 
-    yield _job(session, HANGING, begun.advance, done, partial(joints.fail, source))
+    yield _job(session, ATTACHING, begun.advance, done, partial(joints.fail, source))
 
 
 def _measure(session: Session, project: Project) -> Iterator[Job]:
     """Yield jobs that measure the distortion of the in-betweens."""
-    twin, wanted = project.layer_runtime.comparison, [(project.clip, project.curves)]
-    if twin is not None:
-        wanted.append((twin.clip(project.document), project.comparison_curves))
+    comparison, wanted = project.layer_runtime.comparison, [(project.clip, project.curves)]
+    if comparison is not None:
+        wanted.append((comparison.clip(project.document), project.comparison_curves))
     store, corrected = project.layer_runtime.store, project.layer_runtime.corrected
     for clip, curves in wanted:
         inbetweens = store.prepared(clip)
@@ -471,7 +474,7 @@ def _span(session: Session, project: Project) -> Iterator[Job]:
     corrected = {clip.layer.id: each.corrected for clip, each in clips if each.corrected}
     if not all(each.is_whole for each in corrected.values()):
         return
-    stores = {layer: puppet.store.snapshot() for layer, puppet in project.layer_runtimes.items()}
+    stores = {layer: runtime.store.snapshot() for layer, runtime in project.layer_runtimes.items()}
     span = partial(measure_extent, document, stores, project.parent_transforms.value, corrected)
     yield from _derive(session, SPANNING, extent, source, span)
 
@@ -489,31 +492,31 @@ def _show(session: Session, project: Project) -> None:
     frame, document = playback.current_frame(session, project), project.document
     if project.recording is not None and project.layer_runtime.corrected is not None:
         project.layer_runtime.corrected.lead(frame)
-    shown, twins, poses = {}, {}, {}
+    shown, comparisons, poses = {}, {}, {}
     if any(each.shown and each.shown.frame != frame for each in project.layer_runtimes.values()):
         project.moved_at = session.clock()
     is_moving = _is_moving(session, project)
-    for clip, puppet in _clips(project):
-        layer, twin = clip.layer.id, puppet.comparison
+    for clip, runtime in _clips(project):
+        layer, comparison = clip.layer.id, runtime.comparison
         pose = project.unkeyed_pose if layer == project.active else None
         if pose is not None:
             poses[layer] = pose
-        fine = [puppet.fine] if puppet.fine is not None and not is_moving else []
-        stores = [*fine, puppet.store]
-        shown[layer] = show(clip, frame, pose, stores, puppet.shown, puppet.corrected)
-        if twin is not None:
-            earlier, other = twin.shown or shown[layer], twin.clip(document)
+        fine = [runtime.fine] if runtime.fine is not None and not is_moving else []
+        stores = [*fine, runtime.store]
+        shown[layer] = show(clip, frame, pose, stores, runtime.shown, runtime.corrected)
+        if comparison is not None:
+            earlier, other = comparison.shown or shown[layer], comparison.clip(document)
             # An unkeyed pose is the same in both methods.
-            twins[layer] = show(other, frame, pose, [puppet.store], earlier)
+            comparisons[layer] = show(other, frame, pose, [runtime.store], earlier)
     known = project.parent_transforms.value
-    for layer, hung in place_displayed_frames(
+    for layer, attached in place_displayed_frames(
         document, shown, project.current_parent_transforms, poses, known
     ).items():
-        project.layer_runtimes[layer].shown = hung
+        project.layer_runtimes[layer].shown = attached
     # This uses the meshes alone, since the exact joints belong to the layers' own methods.
-    for layer, hung in place_displayed_frames(document, twins, None, {}, known).items():
-        if (twin := project.layer_runtimes[layer].comparison) is not None:
-            twin.shown = hung
+    for layer, attached in place_displayed_frames(document, comparisons, None, {}, known).items():
+        if (comparison := project.layer_runtimes[layer].comparison) is not None:
+            comparison.shown = attached
 
 
 def _is_moving(session: Session, project: Project) -> bool:

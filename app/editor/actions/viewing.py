@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, Literal
 
 from app.document import Baseline, Meshing, Variant
-from app.editor.action import Action
+from app.editor.action import Action, do
 from app.editor.dialogs import Dialog, FileDialog, ProblemReport, ShortcutSheet
 from app.editor.project import Project, fit_view_around
 from app.editor.session import CurveKind, HeatMap, Session, Tint, Toast, with_project
-from app.errors import LissomError
+from app.errors import ImportLog, LissomError
 from app.motion import BoundingBox, bounding_box
 from app.render import View
 from app.storage import (
@@ -23,6 +23,7 @@ from app.storage import (
     ThemeName,
     manual_page,
 )
+from app.texts import _, ngettext
 
 SCALE_STEP = 0.25
 LEAST_PART = 0.05  # of the viewport's width; each method keeps at least this share
@@ -40,7 +41,7 @@ def set_view(_: Session, project: Project, camera: View | None) -> None:
 
 @with_project
 def zoom_to_pose(session: Session, project: Project) -> None:
-    shown = [puppet.shown for puppet in project.layer_runtimes.values()]
+    shown = [runtime.shown for runtime in project.layer_runtimes.values()]
     boxes = [
         bounding_box(each.placement.apply(each.positions)) for each in shown if each is not None
     ]
@@ -237,9 +238,10 @@ def open_manual(session: Session, page: str) -> None:
     except (webbrowser.Error, OSError):
         is_open = False
     if not is_open:
-        raise LissomError(f"no browser was found; the manual is {path}")
+        raise LissomError(_("no browser was found; the manual is {path}").format(path=path))
     # The program that starts the browser may fail later, without an error here.
-    session.show_notice(f"The manual opens in the browser. It lies in {path}.", topic="manual")
+    text = _("The manual opens in the browser. Its file is {path}.")
+    session.show_notice(text.format(path=path), topic="manual")
 
 
 def close_dialog(session: Session) -> None:
@@ -261,3 +263,34 @@ def dismiss_toast(session: Session, toast: Toast) -> None:
 def set_tint(session: Session, by: Tint | None) -> None:
     """Colour the drawing by depth or by stiffness; None shows its own colours."""
     session.tint = by
+
+
+def show_import_notice(session: Session, project: Project, summary: ImportLog) -> None:
+    """Show a notice about effects of a drawing that its import lost."""
+    if not summary.warnings:
+        return
+    project.is_import_log_open = True
+    count = len(summary.warnings)
+    session.show_notice(
+        ngettext(
+            "One thing looks different here; the tab Layers lists it.",
+            "{count} things look different here; the tab Layers lists them.",
+            count,
+        ).format(count=count),
+        topic="import",
+        label=_("Show"),
+        action=do(show_import_log),
+    )
+
+
+@with_project
+def show_import_log(session: Session, project: Project) -> None:
+    """Show the import log in the panel of layers."""
+    project.is_import_log_open = True
+    session.panel_to_focus = "Layers"
+
+
+@with_project
+def toggle_import_log(_: Session, project: Project) -> None:
+    """Show or hide the import log in the panel of layers."""
+    project.is_import_log_open = not project.is_import_log_open

@@ -96,8 +96,8 @@ def key_draw_order(
 ) -> None:
     """Key a layer's draw order at the playhead: beside another layer, or at its own place."""
     frame = playback.current_frame(session, project)
-    placing = DrawOrderKey(frame, beside, in_front)
-    editing.edit_document(session, filming_commands.place_at(identity, placing))
+    key = DrawOrderKey(frame, beside, in_front)
+    editing.edit_document(session, filming_commands.place_at(identity, key))
 
 
 @with_project

@@ -20,6 +20,7 @@ from app.editor.actions import editing, playback
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.project import Project
 from app.editor.session import Session, with_project
+from app.texts import ngettext
 from engine.geometry import contains
 
 
@@ -108,7 +109,8 @@ def move_layers_beside(
         index = order.index(moved[count - 1] if count else beside) + (count > 0 or in_front)
         order.insert(index, each)
         commands.append(layer_commands.move_layer(each, index))
-    editing.edit_document(session, combine_commands(_of("Move", moved), commands))
+    label = ngettext("Move layer", "Move {count} layers", len(moved)).format(count=len(moved))
+    editing.edit_document(session, combine_commands(label, commands))
 
 
 @with_project
@@ -116,9 +118,12 @@ def toggle_layers_hidden(session: Session, project: Project, *identities: int) -
     """Hide or show layers: the opposite of the first layer's state."""
     hidden = not project.document.layer(identities[0]).hidden
     commands = [layer_commands.set_hidden(each, hidden=hidden) for each in identities]
-    editing.edit_document(
-        session, combine_commands(_of("Hide" if hidden else "Show", identities), commands)
-    )
+    count = len(identities)
+    if hidden:
+        label = ngettext("Hide layer", "Hide {count} layers", count)
+    else:
+        label = ngettext("Show layer", "Show {count} layers", count)
+    editing.edit_document(session, combine_commands(label.format(count=count), commands))
 
 
 @with_project
@@ -126,9 +131,12 @@ def toggle_layers_locked(session: Session, project: Project, *identities: int) -
     """Lock or unlock layers against clicks: the opposite of the first layer's state."""
     locked = not project.document.layer(identities[0]).locked
     commands = [layer_commands.set_locked(each, locked=locked) for each in identities]
-    editing.edit_document(
-        session, combine_commands(_of("Lock" if locked else "Unlock", identities), commands)
-    )
+    count = len(identities)
+    if locked:
+        label = ngettext("Lock layer", "Lock {count} layers", count)
+    else:
+        label = ngettext("Unlock layer", "Unlock {count} layers", count)
+    editing.edit_document(session, combine_commands(label.format(count=count), commands))
 
 
 def put_layers_in_group(session: Session, path: str, *identities: int) -> None:
@@ -172,10 +180,6 @@ def ungroup_layers(session: Session, path: str) -> None:
 
 def rename_group(session: Session, path: str, name: str) -> None:
     editing.edit_document(session, group_commands.rename_group(path, name))
-
-
-def _of(verb: str, identities: Sequence[int]) -> str:
-    return f"{verb} {'layer' if len(identities) == 1 else f'{len(identities)} layers'}"
 
 
 @with_project

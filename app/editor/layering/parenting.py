@@ -23,19 +23,20 @@ from app.motion import (
     attach_in_place as joint_at_rest,
     reparent_in_place as joint_that_keeps,
 )
+from app.texts import N_, _, ngettext
 from engine.geometry import RigidMotion
 
-HANGING = JobKind("Hanging a layer", "The layers cannot be joined")
-PARENT_IS_DESCENDANT = (
-    "{name} hangs on {parent}, so that {other} cannot hang on it: that would be a circle. Let "
-    "{hung} hang on nothing first."
+ATTACHING = JobKind(_("Attaching a layer"), _("The layer cannot be attached"))
+PARENT_IS_DESCENDANT = N_(
+    "{name} is attached to {parent}, so {parent} cannot be attached to {name}: that would be a "
+    "circle. Detach {name} first."
 )
 
 
-def is_same_or_descendant(project: Project, identity: int, carrier: int) -> bool:
+def is_same_or_descendant(project: Project, identity: int, ancestor: int) -> bool:
     """Return whether a layer is another layer, or its descendant at any time."""
     others = project.document.all_ancestors(identity)
-    return identity == carrier or any(each.id == carrier for each in others)
+    return identity == ancestor or any(each.id == ancestor for each in others)
 
 
 @with_project
@@ -59,9 +60,7 @@ def attach_layer(
     if is_same_or_descendant(project, parent, child):
         names = [project.document.layer(identity).name for identity in (parent, child)]
         session.show_notice(
-            PARENT_IS_DESCENDANT.format(
-                name=names[0], parent=names[1], other=names[1], hung=names[0]
-            ),
+            _(PARENT_IS_DESCENDANT).format(name=names[0], parent=names[1]),
             tone="error",
             topic="joint",
         )
@@ -73,7 +72,7 @@ def attach_layer(
         return layer_commands.attach_layer(child, *held)
 
     joining = do(_attach, (child, parent), find)
-    pending_changes.run_when_idle(session, joining, "Hang the layer")
+    pending_changes.run_when_idle(session, joining, _("Attach layer"))
 
 
 @with_project
@@ -95,10 +94,11 @@ def attach_layers(session: Session, project: Project, parent: int, *children: in
     def find(joints: ParentTransforms) -> Command:
         held = [(child, joint_at_rest(joints, child, parent, frame, turns=True)) for child in free]
         attached = [layer_commands.attach_layer(child, *joint) for child, joint in held]
-        return combine_commands(f"Attach {len(free)} layers", attached)
+        label = ngettext("Attach {count} layer", "Attach {count} layers", len(free))
+        return combine_commands(label.format(count=len(free)), attached)
 
     joining = do(_attach, (*free, parent), find)
-    pending_changes.run_when_idle(session, joining, "Hang the layers")
+    pending_changes.run_when_idle(session, joining, _("Attach layers"))
 
 
 @with_project
@@ -118,12 +118,14 @@ def _attach(
         if project.document is document:
             editing.edit_document(session, command)
         else:
-            session.show_notice("The layer was not hung: the project changed meanwhile. Try again.")
+            session.show_notice(
+                _("The layer was not attached: the project changed meanwhile. Try again.")
+            )
 
     pending_changes.begin_pending_change(
         session,
         project,
-        HANGING,
+        ATTACHING,
         lambda: find(ParentTransforms(document, siblings)),
         done,
     )
@@ -177,7 +179,7 @@ def reparent_layer(session: Session, project: Project, child: int, parent: int |
         return layer_commands.attach_layer(child, anchor_or_default(layer), joint)
 
     joining = do(_attach, (child, parent), find)
-    pending_changes.run_when_idle(session, joining, "Hand the layer over")
+    pending_changes.run_when_idle(session, joining, _("Reparent layer"))
 
 
 @with_project
@@ -191,10 +193,11 @@ def delete_layers(session: Session, project: Project, *identities: int) -> None:
     """Delete layers; their children attach to their parents, and nothing moves now."""
     gone, layers = set(identities), project.document.layers
     if len(gone) == len(layers):
-        session.show_notice("A scene has at least one layer. Add another one first.", tone="error")
+        text = _("A scene has at least one layer. Add another layer first.")
+        session.show_notice(text, tone="error")
     elif any(joint.parent in gone for layer in layers for joint in layer.attachments):
         pending_changes.run_when_idle(
-            session, do(_reparent_children, *identities), "Delete the layer"
+            session, do(_reparent_children, *identities), _("Delete layer")
         )
     else:
         _delete(session, identities, [])
@@ -215,9 +218,9 @@ def _reparent_children(session: Session, project: Project, *identities: int) -> 
         if project.document is document:
             _delete(session, identities, inherited)
         else:
-            session.show_notice("Nothing was deleted: the project changed meanwhile. Try again.")
+            session.show_notice(_("Nothing was deleted: the project changed meanwhile. Try again."))
 
-    pending_changes.begin_pending_change(session, project, HANGING, find, done)
+    pending_changes.begin_pending_change(session, project, ATTACHING, find, done)
 
 
 def _reparent_child_command(
@@ -231,12 +234,12 @@ def _reparent_child_command(
     layer, here = document.layer(child), document.layer(child).attachment_key_at(frame)
     lost = [joint for joint in layer.attachments if joint.parent in gone]
     found: list[Command] = []
-    hangs = len(lost) < len(layer.attachments)
+    has_parent = len(lost) < len(layer.attachments)
     for joint in lost:
         at = frame if joint is here else joint.frame
-        carriers = document.parent_chain(child, at)[1:]
-        heir = next((each.id for each in carriers if each.id not in gone), None)
-        hangs |= heir is not None
+        parents = document.parent_chain(child, at)[1:]
+        heir = next((each.id for each in parents if each.id not in gone), None)
+        has_parent |= heir is not None
         held = (
             anchor_or_default(layer),
             Attachment(parent=None, frame=joint.frame, keep_world_transform=True),
@@ -246,9 +249,9 @@ def _reparent_child_command(
         elif heir is not None:
             held = joint_at_rest(joints, child, heir, at, turns=joint.inherits_rotation)
         found.append(layer_commands.attach_layer(child, *held))
-    if lost and not hangs:
+    if lost and not has_parent:
         return _detach_command(document, child, frame, joints.placement(child, frame))
-    return combine_commands("Attach", found)
+    return combine_commands(_("Attach"), found)
 
 
 def _detach_command(document: Document, child: int, frame: int, placement: RigidMotion) -> Command:
@@ -266,7 +269,8 @@ def _delete(
 ) -> None:
     order = [layer.id for layer in project.document.layers]
     removals = [layer_commands.remove_layer(identity) for identity in identities]
-    label = "Delete layer" if len(identities) == 1 else f"Delete {len(identities)} layers"
+    count = len(identities)
+    label = ngettext("Delete layer", "Delete {count} layers", count).format(count=count)
     was_active, index = project.active in identities, order.index(project.active)
     editing.edit_document(session, combine_commands(label, [*inherited, *removals]))
     if was_active:

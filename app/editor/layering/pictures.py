@@ -5,19 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import (
-    Document,
-    Group,
-    Layer,
-    Meshing,
-    clip_of,
-    group_commands,
-    layer_commands,
-)
+from app.document import Document, Group, Layer, Meshing, clip_of, group_commands, layer_commands
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing, files
+from app.editor.actions import editing, viewing
 from app.editor.actions.layer_setup import resolving
+from app.editor.actions.project_files import files
 from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence
 from app.editor.layering.layer_selection import set_active_layer
@@ -41,8 +34,9 @@ from app.storage import (
     read_layered,
     require_memory,
 )
+from app.texts import _, message_of, ngettext
 
-ADDING = JobKind("Adding a layer", "The layer cannot be added")
+ADDING = JobKind(_("Adding a layer"), _("The layer cannot be added"))
 LONGEST = 28  # most characters of a name on a button
 
 
@@ -60,7 +54,7 @@ def make_still(session: Session, project: Project, identity: int) -> None:
     """Turn a layer into a still picture, without handles and keys."""
     still = make_still_layer(project.document.layer(identity))
     command = layer_commands.replace_layer(identity, still)
-    editing.edit_document(session, replace(command, label="Make still"))
+    editing.edit_document(session, replace(command, label=_("Make still picture")))
 
 
 @with_project
@@ -77,10 +71,10 @@ def make_posable(session: Session, project: Project, identity: int) -> None:
 
     def done(made: Layer) -> None:
         command = layer_commands.replace_layer(identity, made)
-        editing.edit_document(session, replace(command, label="Let be posed"))
+        editing.edit_document(session, replace(command, label=_("Make posable")))
         set_active_layer(session, identity)
 
-    kind = JobKind("Finding a shape", f"{layer.name} cannot be posed")
+    kind = JobKind(_("Finding a shape"), _("{layer} cannot be posed").format(layer=layer.name))
     pending_changes.begin_pending_change(session, project, kind, work, done)
 
 
@@ -90,14 +84,15 @@ def _shape(imported: ImportedLayer, identity: int, meshing: Meshing) -> _LoadedL
     is_cut_out = bool((imported.picture.rgba[..., 3] == 0).any())
     made, notices = make_posable_layer(imported, identity, meshing, is_cut_out=is_cut_out)
     if made.still:
-        raise LissomError(f"there is no shape on it ({'; '.join(notices)})")
+        reasons = "; ".join(map(message_of, notices))
+        raise LissomError(_("there is no shape on it ({reasons})").format(reasons=reasons))
     return _LoadedLayer(made, imported.picture, (*imported.picture.notices, *notices))
 
 
 def replace_picture(session: Session, identity: int, path: Path) -> None:
     """Replace a layer's picture; its handles, keys and joints stay."""
     pending_changes.run_when_idle(
-        session, do(_replace_picture, identity, path), "Replace the picture"
+        session, do(_replace_picture, identity, path), _("Replace the picture")
     )
 
 
@@ -120,16 +115,19 @@ def _replace_picture(session: Session, project: Project, identity: int, path: Pa
         return start_picture_replacement(before, made.layer, canvas), made
 
     def done(begun: tuple[KeyResolver, _LoadedLayer]) -> None:
-        renewal, made = begun
+        resolver, made = begun
         project.drawings.add(path)
         project.pictures[made.layer.picture] = made.picture
-        resolving.begin_solving_keys(session, renewal)
-        if renewal.before in project.document.layers:
+        resolving.begin_solving_keys(session, resolver)
+        if resolver.before in project.document.layers:
             set_active_layer(session, identity)
             for notice in made.notices:
                 session.show_notice(as_sentence(notice))
 
-    kind = JobKind("Replacing a picture", f"The picture of {before.name} was not replaced")
+    kind = JobKind(
+        _("Replacing a picture"),
+        _("The picture of {layer} was not replaced").format(layer=before.name),
+    )
     pending_changes.begin_pending_change(session, project, kind, work, done)
 
 
@@ -140,7 +138,7 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
     canvas = before.canvas
 
     def work() -> tuple[list[_LoadedLayer], ImportLog, Sequence[Group]]:
-        document, summary, told = before, EMPTY_IMPORT_LOG, NoticeCollector()
+        document, summary, notices_by_layer = before, EMPTY_IMPORT_LOG, NoticeCollector()
         made: list[_LoadedLayer] = []
         for path in paths:
             drawing = _with_free_groups(_drawing(path), document)
@@ -156,11 +154,11 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
                 )
                 document = layer_commands.add_layer(layer)(document)
                 # This takes a tenth of a second, so it runs on the worker and not in the window.
-                puppet = LayerRuntime.of(clip_of(document, identity), imported.picture)
+                runtime = LayerRuntime.of(clip_of(document, identity), imported.picture)
                 for notice in imported.picture.notices + notices:
-                    told.add_note(document.layers[-1].name, notice)
-                made.append(_LoadedLayer(layer, imported.picture, (), puppet))
-        return made, summary + told.import_log, document.groups[len(before.groups) :]
+                    notices_by_layer.add_note(document.layers[-1].name, notice)
+                made.append(_LoadedLayer(layer, imported.picture, (), runtime))
+        return made, summary + notices_by_layer.import_log, document.groups[len(before.groups) :]
 
     def done(read: tuple[list[_LoadedLayer], ImportLog, Sequence[Group]]) -> None:
         made, summary, groups = read
@@ -168,16 +166,16 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
         gesture = object()
         project.history.do(layer_commands.append_import_log(summary), gesture=gesture)
         project.history.do(group_commands.add_groups(groups), gesture=gesture)
-        for layer, picture, _, puppet in made:
+        for layer, picture, _notices, runtime in made:
             identity = layer_commands.next_layer_id(project.document)
             project.pictures[layer.picture] = picture
             command = layer_commands.add_layer(replace(layer, id=identity))
             project.history.do(command, gesture=gesture)
-            if puppet is not None and identity == layer.id:
-                project.layer_runtimes[identity] = puppet
+            if runtime is not None and identity == layer.id:
+                project.layer_runtimes[identity] = runtime
         editing.update_layer_runtimes(project)
         set_active_layer(session, identity)
-        files.show_import_notice(session, project, summary)
+        viewing.show_import_notice(session, project, summary)
 
     pending_changes.begin_pending_change(session, project, ADDING, work, done)
 
@@ -217,12 +215,13 @@ def _drawing(path: Path) -> LayeredPicture:
 
 def ask_pictures_to_add(session: Session) -> None:
     suffixes = (*files.PICTURES, *files.LAYERED)
-    session.ask_file("Add a picture as a layer", suffixes, lambda path: do(add_layers, [path]))
+    session.ask_file(_("Add a picture as a layer"), suffixes, lambda path: do(add_layers, [path]))
 
 
 @with_project
 def ask_replacement_picture(session: Session, project: Project, identity: int) -> None:
-    title = f"Replace the picture of {project.document.layer(identity).name}"
+    layer = project.document.layer(identity).name
+    title = _("Replace the picture of {layer}").format(layer=layer)
     session.ask_file(title, files.PICTURES, lambda path: do(replace_picture, identity, path))
 
 
@@ -240,21 +239,29 @@ def drop_files(session: Session, paths: Sequence[Path]) -> None:
         files.open_dropped_files(session, paths)
         return
     (first, *others) = pictures
-    what = f"{len(pictures)} pictures" if others else first.name
     is_one = not others and not is_layered(first)
     answers: list[tuple[str, Action]] = [
-        ("New layer" if is_one else "New layers", do(add_layers, pictures)),
-        ("New scene", do(files.open_dropped_files, pictures)),
+        (_("New layer") if is_one else _("New layers"), do(add_layers, pictures)),
+        (_("New scene"), do(files.open_dropped_files, pictures)),
     ]
-    text = "New layers lie in front of the others and share their timeline."
+    text = _("New layers lie in front of the others and share their timeline.")
     if is_one:
         onto = session.pointed_layer
         identity = project.active if onto is None else onto
         name = project.document.layer(identity).name
         name = name if len(name) <= LONGEST else f"{name[: LONGEST - 1].rstrip()}…"
-        answers.insert(onto is None, (f"Replace {name}", do(replace_picture, identity, first)))
-        text = (
+        answer = _("Replace {layer}").format(layer=name)
+        answers.insert(onto is None, (answer, do(replace_picture, identity, first)))
+        text = _(
             "A new layer lies in front of the others and shares their timeline. A layer whose "
             "picture is replaced keeps its handles, keys and joints."
         )
-    session.dialog = Question(title=f"Add {what} to this scene?", text=text, answers=tuple(answers))
+    if others:
+        title = ngettext(
+            "Add {count} picture to this scene?",
+            "Add {count} pictures to this scene?",
+            len(pictures),
+        ).format(count=len(pictures))
+    else:
+        title = _("Add {name} to this scene?").format(name=first.name)
+    session.dialog = Question(title=title, text=text, answers=tuple(answers))

@@ -14,8 +14,9 @@ from app.editor.timeline_view import TrackRow, layer_of
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler
 from app.solving import Rig, fit_shown_pose
+from app.texts import _, ngettext
 
-COPYING = JobKind("Copying a pose", "The pose could not be copied", "hand")
+COPYING = JobKind(_("Copying a pose"), _("The pose could not be copied"), "hand")
 KEYS_COPIED = "{count} keys copied."
 
 
@@ -53,13 +54,13 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     known: dict[int, Pose] = {}
     works = {}
     for layer in layers:
-        clip, puppet = clip_of(document, layer.id), project.layer_runtimes[layer.id]
+        clip, runtime = clip_of(document, layer.id), project.layer_runtimes[layer.id]
         is_active = layer.id == project.active
         pose = pose_at_playhead(session, project) if is_active else None
         pose = pose or keyed_pose_at(clip, segment_time_at(clip, frame))
         if pose is None:
-            rig = partial(Rig.of, layer, puppet.rig)
-            works[layer.id] = partial(_between, rig, clip, frame, puppet.store.sampler)
+            rig = partial(Rig.of, layer, runtime.rig)
+            works[layer.id] = partial(_between, rig, clip, frame, runtime.store.sampler)
         else:
             known[layer.id] = pose
 
@@ -68,7 +69,12 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
         keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in layers]
         session.copied = tuple(CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys)
         session.copied_tracks = ()
-        session.show_notice(f"Poses of {len(keys)} layers at frame {frame} copied.", topic="copy")
+        text = ngettext(
+            "Pose of {count} layer at frame {frame} copied.",
+            "Poses of {count} layers at frame {frame} copied.",
+            len(keys),
+        )
+        session.show_notice(text.format(count=len(keys), frame=frame), topic="copy")
 
     if works:
         pending_changes.begin_pending_change(
@@ -77,7 +83,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     elif layers:
         take({})
     else:
-        session.show_notice("No layer has a handle or a second key: there are no poses to copy.")
+        session.show_notice(_("No layer has a handle or a second key: there are no poses to copy."))
 
 
 def is_copying_keys(session: Session, project: Project) -> bool:
@@ -113,7 +119,11 @@ def _take(
     session.copied, session.copied_tracks = tuple(copied), tuple(tracks)
     poses = [key.frame for each in copied for key in each.keys]
     first, *more = poses + [key.frame for each in tracks for key in each.keys]
-    single = f"Pose at frame {first}" if poses else f"Key of the track at frame {first}"
-    session.show_notice(
-        KEYS_COPIED.format(count=1 + len(more)) if more else f"{single} copied.", topic="copy"
-    )
+    if more:
+        count = 1 + len(more)
+        text = ngettext("{count} key copied.", KEYS_COPIED, count).format(count=count)
+    elif poses:
+        text = _("Pose at frame {frame} copied.").format(frame=first)
+    else:
+        text = _("Key of the track at frame {frame} copied.").format(frame=first)
+    session.show_notice(text, topic="copy")

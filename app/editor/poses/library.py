@@ -14,8 +14,9 @@ from app.editor.project import BlendPreview, Project
 from app.editor.session import CopiedKeys, Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.pull import DragStart
+from app.texts import _
 
-KEEPING = JobKind("Keeping a pose", "The pose could not be kept", "hand")
+KEEPING = JobKind(_("Keeping a pose"), _("The pose could not be kept"), "hand")
 
 
 @with_project
@@ -28,7 +29,7 @@ def save_pose_to_library(session: Session, project: Project) -> None:
 
 def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
     if layer.domain is not project.layer.domain:
-        session.show_notice("The pose was not kept: the shape changed meanwhile.")
+        session.show_notice(_("The pose was not kept: the shape changed meanwhile."))
         return
     taken = [Keyframe(frame=0, pose=pose)]
     (key,) = pose_insertion.fit_keys_to_layer(project, project.active, taken, layer.bounds)
@@ -98,7 +99,7 @@ def _put(session: Session, project: Project, offer: PoseOffer, frame: int) -> No
         session.show_notice(landing.disabled_reason)
         return
     project.picked_pose = (offer.owner.id, offer.kept.name)
-    pasting.paste_poses(session, project, [landing], "as it is", frame, label="Use pose")
+    pasting.paste_poses(session, project, [landing], "as it is", frame, label=_("Use pose"))
 
 
 @with_project
@@ -122,12 +123,12 @@ def blend_library_pose(
             name=name, owner=offer.owner.id, gesture=object()
         )
     project.blend_preview = replace(begun, share=share)
-    wishes = pasting.pasted_targets(project, _paste_destination(project, offer), "as it is")
+    targets = pasting.pasted_targets(project, _paste_destination(project, offer), "as it is")
 
     def mix(start: DragStart, _: Mapping[int, Target]) -> Mapping[int, Target]:
         return {
             identity: _between(start.targets[identity], target, share)
-            for identity, target in wishes.items()
+            for identity, target in targets.items()
             if identity in start.targets
         }
 

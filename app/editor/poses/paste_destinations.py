@@ -10,10 +10,11 @@ from app.document import Document, Layer, SidePairs, mirrored_name
 from app.editor.project import Project
 from app.editor.session import CopiedKeys, Session
 from app.solving import PoseTransfer, SimilarityTransform
+from app.texts import _, ngettext
 
 # Unchanged; with partner layers and handles swapped; or swapped and mirrored.
 PasteMode = Literal["as it is", "swapped", "flipped"]
-NOTHING_COPIED = "Copy a pose or keys first."
+NOTHING_COPIED = _("Copy a pose or keys first.")
 MOST_NAMED = 3  # most names in a sentence
 
 
@@ -39,20 +40,26 @@ class PasteDestination:
         """The reason why the layer cannot take the keys, as a sentence; empty if it can."""
         layer, source = self.layer, self.copied.layer
         if layer.still:
-            return f"“{layer.name}” is a still picture, which has no poses."
+            text = _("“{layer}” is a still picture, which has no poses.")
+            return text.format(layer=layer.name)
         if self.is_own or self.pairs:
             return ""
         if not source.handles:
-            return (
-                f"“{source.name}” was copied, which has no handles; by their names poses come to "
-                "other layers."
+            text = _(
+                "“{layer}” was copied, which has no handles; poses go to other layers by the names "
+                "of their handles."
             )
+            return text.format(layer=source.name)
         names = [handle.name for handle in source.handles]
         if len(names) > MOST_NAMED + 1:
-            names = [*names[:MOST_NAMED], f"{len(names) - MOST_NAMED} others"]
+            count = len(names) - MOST_NAMED
+            others = ngettext("{count} other", "{count} others", count).format(count=count)
+            names = [*names[:MOST_NAMED], others]
         *some, last = names
-        listed = f"{', '.join(some)} or {last}" if some else last
-        return f"“{layer.name}” has no handle called {listed}."
+        if some:
+            text = _("“{layer}” has no handle called {names} or {last}.")
+            return text.format(layer=layer.name, names=", ".join(some), last=last)
+        return _("“{layer}” has no handle called {name}.").format(layer=layer.name, name=last)
 
     def is_direct(self, way: PasteMode) -> bool:
         """Return whether the poses are pasted unchanged."""
@@ -61,18 +68,18 @@ class PasteDestination:
 
     def pose_transfer(self, way: PasteMode) -> PoseTransfer:
         """Return the transfer of copied poses to this layer."""
-        source, likeness = self.copied.layer, SimilarityTransform()
+        source, similarity = self.copied.layer, SimilarityTransform()
         if self.is_own and way == "flipped":
-            likeness = SimilarityTransform.reflection(self.layer.axis)
+            similarity = SimilarityTransform.reflection(self.layer.axis)
         elif not self.is_own:
             handles = self.pairs.items()
             places = np.array([source.handle(other).position for _, other in handles])
             images = np.array([self.layer.handle(identity).position for identity, _ in handles])
-            likeness = SimilarityTransform.fit(
+            similarity = SimilarityTransform.fit(
                 places, images, mirrors=True if way == "flipped" else None
             )
         return PoseTransfer(
-            source=source, pairs=self.pairs, similarity=likeness, is_within_layer=self.is_own
+            source=source, pairs=self.pairs, similarity=similarity, is_within_layer=self.is_own
         )
 
 
@@ -108,16 +115,17 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
     found = _find_paste_destinations(session, project, way)
     if not found:
         names = ", ".join(f"“{each.layer.name}”" for each in copied[:MOST_NAMED])
-        return f"No layer of this drawing is called {names}, as those that were copied are."
+        text = _("No layer of this drawing is called {names}, as the copied layers are.")
+        return text.format(names=names)
     reasons = [landing.disabled_reason for landing in found]
     if all(reasons):
         return reasons[0]
     if way == "swapped" and all(
         each.is_direct(way) for each, reason in zip(found, reasons, strict=True) if not reason
     ):
-        return (
+        return _(
             "Nothing changes sides: no layer and no handle that was copied has a partner by its "
-            "name. The Poses tab tells which names are pairs."
+            "name. The Poses tab lists the pairs of names."
         )
     return ""
 

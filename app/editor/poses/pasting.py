@@ -31,11 +31,15 @@ from app.editor.session import Session, with_project
 from app.editor.timeline_view import display_frame
 from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose, flip_poses, flip_targets
+from app.texts import _, ngettext
 
-LABELS: Mapping[PasteMode, str] = {"swapped": "Paste swapped", "flipped": "Paste flipped"}
-PASTING = JobKind("Pasting", "The poses could not be pasted", "hand")
-FLIPPING = JobKind("Flipping", "The pose could not be flipped", "hand")
-NOT_PASTED = "The pose was not pasted: a layer, its shape or its handles changed. Paste again."
+LABELS: Mapping[PasteMode, str] = {
+    "swapped": _("Paste swapped"),
+    "flipped": _("Paste flipped"),
+}
+PASTING = JobKind(_("Pasting"), _("The poses could not be pasted"), "hand")
+FLIPPING = JobKind(_("Flipping"), _("The pose could not be flipped"), "hand")
+NOT_PASTED = _("The pose was not pasted: a layer, its shape or its handles changed. Paste again.")
 
 
 def paste_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
@@ -48,12 +52,11 @@ def paste_on_selected_disabled_reason(session: Session, project: Project, way: P
     """Return why nothing can be pasted on the selected handles; empty if it can."""
     landing = find_active_paste_destination(session, project, way)
     if landing is None:
-        return (
-            paste_keys_disabled_reason(session, project, way)
-            or "Choose a layer first that was copied."
+        return paste_keys_disabled_reason(session, project, way) or _(
+            "Select a copied layer first."
         )
     if not project.selected_handles:
-        return "Select the handles first that are to take it over."
+        return _("Select the handles to paste on first.")
     return landing.disabled_reason
 
 
@@ -61,7 +64,7 @@ def paste_on_selected_disabled_reason(session: Session, project: Project, way: P
 def paste_copied(session: Session, project: Project, way: PasteMode = "as it is") -> None:
     """Paste the copied keys at the present frame; the first key is there."""
     frame = pose_insertion.stop_and_get_frame(session, project)
-    pending_changes.run_when_idle(session, do(_paste, frame, way), LABELS.get(way, "Paste"))
+    pending_changes.run_when_idle(session, do(_paste, frame, way), LABELS.get(way, _("Paste")))
 
 
 @with_project
@@ -75,17 +78,23 @@ def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> No
         display_frame(project.document, c.track, k.frame) for c in tracks.values() for k in c.keys
     ]
     by, gesture = frame - min(starts), object()
-    told = skipped_layers_reasons(session, project, way)
+    reasons = skipped_layers_reasons(session, project, way)
 
     def then() -> None:
         for row, each in tracks.items():
             paste_track(session, project, row, each, by, gesture)
-        for reason in told:
+        for reason in reasons:
             session.show_notice(reason)
         names = [each.layer.name for each in found]
         if any(each.layer.id != project.active for each in found):
-            whose = f"{len(names)} layers" if len(names) > 1 else names[0]
-            session.show_notice(f"Pasted onto {whose}.", topic="paste")
+            if len(names) > 1:
+                text = ngettext(
+                    "Pasted onto {count} layer.", "Pasted onto {count} layers.", len(names)
+                )
+                text = text.format(count=len(names))
+            else:
+                text = _("Pasted onto {layer}.").format(layer=names[0])
+            session.show_notice(text, topic="paste")
 
     project.selected_keys = {}
     if found:
@@ -165,8 +174,8 @@ def paste_on_selected(session: Session, project: Project, way: PasteMode = "as i
     if not paste_on_selected_disabled_reason(session, project, way):
         landing = find_active_paste_destination(session, project, way)
         if landing is not None:
-            wishes = pasted_targets(project, landing, way)
-            set_targets(session, {i: wishes[i] for i in project.selected_handles if i in wishes})
+            targets = pasted_targets(project, landing, way)
+            set_targets(session, {i: targets[i] for i in project.selected_handles if i in targets})
 
 
 def pasted_targets(
@@ -202,8 +211,8 @@ def _solving(
     project: Project, landing: PasteDestination, way: PasteMode, by: int
 ) -> Callable[[], Sequence[Keyframe]]:
     """Return the function that solves the poses for a layer, on the worker's thread."""
-    layer, puppet = landing.layer, project.layer_runtimes[landing.layer.id]
-    earlier, sibling = puppet.rig, puppet.store.sampler
+    layer, runtime = landing.layer, project.layer_runtimes[landing.layer.id]
+    earlier, sibling = runtime.rig, runtime.store.sampler
     if landing.is_own and way == "flipped":
         keys, pairs = _fitted(project, landing), project.document.pairs
 

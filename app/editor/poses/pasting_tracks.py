@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from app.document import Track, track_commands
+from app.document import track_commands
 from app.editor.poses.paste_destinations import PasteDestination, PasteMode, find_paste_destinations
 from app.editor.project import Project
 from app.editor.session import CopiedTrack, Session
 from app.editor.timeline_view import TrackRow
+from app.texts import _
 
 
 def pasteable_tracks(
@@ -35,21 +36,23 @@ def _transferred_track(
     landing: PasteDestination, copied: CopiedTrack, way: PasteMode, handles: tuple[int, ...]
 ) -> CopiedTrack:
     """Return a copied track for other handles of a layer."""
-    likeness = landing.pose_transfer(way).similarity
+    similarity = landing.pose_transfer(way).similarity
     old = landing.copied.layer.handle(copied.track.handles[0]).position
     new = landing.layer.handle(handles[0]).position
     # Keys relative to the pose are offsets. Keys in the scene are places, with the handle's offset.
     start = (
-        -likeness.shift if not copied.track.is_scene_space else new - likeness.apply_to_point(old)
+        -similarity.shift
+        if not copied.track.is_scene_space
+        else new - similarity.apply_to_point(old)
     )
     keys = tuple(
         replace(
             key,
-            place=likeness.apply_to_point(key.place) + start,
-            turn=-key.turn if likeness.mirrors else key.turn,
+            place=similarity.apply_to_point(key.place) + start,
+            turn=-key.turn if similarity.mirrors else key.turn,
             velocity=None
             if key.velocity is None
-            else likeness.apply_to_point(key.velocity) - likeness.shift,
+            else similarity.apply_to_point(key.velocity) - similarity.shift,
         )
         for key in copied.keys
     )
@@ -65,15 +68,23 @@ def paste_track(
     layer = project.document.layer(row.layer)
     track, name = layer.track_of(row.handle), layer.handle(row.handle).name
     if track is not None and track.is_scene_space != copied.track.is_scene_space:
-        session.show_notice(
-            f"The keys that were copied are {_kind(copied.track)}, those of {name} are "
-            f"{_kind(track)}. Set both alike in the Handle tab, then copy again."
-        )
+        if copied.track.is_scene_space:
+            text = _(
+                "The copied keys are planted, the keys of {handle} go with the pose. Set both "
+                "alike in the Handle tab, then copy again."
+            )
+        else:
+            text = _(
+                "The copied keys go with the pose, the keys of {handle} are planted. Set both "
+                "alike in the Handle tab, then copy again."
+            )
+        session.show_notice(text.format(handle=name))
         return
     by += copied.track.delay - (0 if track is None else track.delay)
     keys = tuple(replace(key, frame=key.frame + by) for key in copied.keys)
     if keys[0].frame < 0:
-        session.show_notice(f"The track of {name} is too late for a key at this frame.")
+        text = _("The track of {handle} is too late for a key at this frame.")
+        session.show_notice(text.format(handle=name))
         return
     if track is None:
         handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
@@ -87,7 +98,3 @@ def paste_track(
         frozenset(),
         {**project.selected_keys, row: frames},
     )
-
-
-def _kind(track: Track) -> str:
-    return "planted" if track.is_scene_space else "with the pose"

@@ -7,6 +7,7 @@ from app.editor.actions.posing.handles import set_anchor, toggle_anchor_at_handl
 from app.editor.project import Project
 from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
+from app.texts import _
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -14,13 +15,13 @@ class AnchorTool(Tool):
     """A press sets the anchor; until the release it can be cancelled."""
 
     @classmethod
-    def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, _session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.on_ring:
             return ()
         if spot.handle is not None:
-            return (Hint("click", "for the anchor", "ctrl"),)
+            return (Hint(_("click for the anchor"), "ctrl"),)
         return (
-            (Hint("click", "for the anchor, which stays calm between keys", "ctrl"),)
+            (Hint(_("click for the anchor, which stays calm between keys"), "ctrl"),)
             if spot.on_shape
             else ()
         )

@@ -12,6 +12,7 @@ from app.editor.tools.anchor_tool import AnchorTool
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.select_tools import PickLayerTool
 from app.editor.tools.tool import PointerHit, Tool, to_scene
+from app.texts import _
 
 FREE_HAND = (PickLayerTool, PoseTool, AnchorTool)
 
@@ -32,8 +33,8 @@ class AttachTool(Tool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if not _takes_anchor(session, project, spot):
             return ()
-        what = "to hang it on another layer"
-        return (Hint("drag", what) if spot.handle is None else Hint("drag", what, "ctrl"),)
+        text = _("drag to attach it to another layer")
+        return (Hint(text) if spot.handle is None else Hint(text, "ctrl"),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -75,9 +76,8 @@ class AttachTool(Tool):
             is_on_both = is_layer_at(project, self.child, there)
             attach_layer(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
-            session.show_notice(
-                "Let the anchor go over another layer to hang it there.", topic="joint"
-            )
+            text = _("Release the anchor over another layer to attach this layer to it.")
+            session.show_notice(text, topic="joint")
 
     @property
     def tool_overlays(self) -> tuple[Mark, ...]:
@@ -96,12 +96,12 @@ class AttachTool(Tool):
     @property
     def active_hints(self) -> tuple[Hint, ...]:
         if self.parent is None:
-            return (Hint("go", "over the layer to hang it on"),)
+            return (Hint(_("go over the layer to attach it to")),)
+        text = _("let go to attach {child} to {parent}")
         if self.is_circle:
-            what = f"hangs on {self.names[self.child]} itself, so that it cannot carry it"
-            return (Hint(self.names[self.parent], what),)
-        what = f"to hang {self.names[self.child]} on {self.names[self.parent]}"
-        return (Hint("let go", what),)
+            text = _("{parent} is attached to {child} itself and cannot be its parent")
+        names = {"child": self.names[self.child], "parent": self.names[self.parent]}
+        return (Hint(text.format(**names)),)
 
 
 def _takes_anchor(session: Session, project: Project, spot: PointerHit) -> bool:

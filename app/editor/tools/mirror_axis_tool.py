@@ -8,6 +8,7 @@ from app.editor.project import Project
 from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
+from app.texts import _
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -20,8 +21,8 @@ class MirrorAxisTool(Tool):
     typed: NumericEntry = field(default_factory=NumericEntry)
 
     @classmethod
-    def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        return (Hint("drag", "to flip poses at another place"),) if spot.on_axis else ()
+    def hints(cls, _session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+        return (Hint(_("drag to flip poses at another place")),) if spot.on_axis else ()
 
     @classmethod
     def press(cls, _: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -61,4 +62,4 @@ class MirrorAxisTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint("type", "a number of pixels"),)
+        return (Hint(_("type a number of pixels")),)

@@ -12,6 +12,7 @@ from app.editor.project import Project
 from app.editor.session import Hint, Session, with_project
 from app.editor.tools.pose_tool import PoseTool
 from app.editor.tools.tool import PointerHit, to_scene
+from app.texts import _
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -24,10 +25,9 @@ class MoveTool(PoseTool):
     @classmethod
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if session.moves:
-            return (
-                Hint("drag", f"to move all of {_root_parent(session, project, spot.layer).name}"),
-            )
-        return (Hint("drag", "to move all of it", "ctrl+shift"),) if _is_beside(spot) else ()
+            root = _root_parent(session, project, spot.layer)
+            return (Hint(_("drag to move all of {layer}").format(layer=root.name)),)
+        return (Hint(_("drag to move all of it"), "ctrl+shift"),) if _is_beside(spot) else ()
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -50,7 +50,7 @@ class MoveTool(PoseTool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+        return (Hint(_("type a number of pixels")), Hint(_("X or Y to keep to an axis")))
 
 
 @with_project
@@ -92,12 +92,14 @@ def _root_parent(session: Session, project: Project, layer: int | None) -> Layer
 
 def _set_root_parent_active(session: Session, project: Project, layer: int | None) -> bool:
     """Make a layer's topmost parent active; if it cannot move, show why and return False."""
-    carrier = _root_parent(session, project, layer)
-    if carrier.still or carrier.locked:
-        what = "a still picture" if carrier.still else "locked"
-        session.show_notice(
-            f"{carrier.name} is {what}: it stays where it is, with all that hangs on it."
-        )
+    root = _root_parent(session, project, layer)
+    if root.still or root.locked:
+        text = _("{layer} is locked: it stays where it is, with all layers attached to it.")
+        if root.still:
+            text = _(
+                "{layer} is a still picture: it stays where it is, with all layers attached to it."
+            )
+        session.show_notice(text.format(layer=root.name))
         return False
-    set_active_layer(session, carrier.id)
+    set_active_layer(session, root.id)
     return True

@@ -28,6 +28,7 @@ from app.editor.session import Hint, Mark, NumericEntryOverlay, Session
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool, to_scene
 from app.editor.work.pull import DragStart
+from app.texts import _
 from engine.deform import BoundedPull
 
 
@@ -53,15 +54,16 @@ class PoseTool(Tool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.handle is not None:
             if project.layer.is_locked(spot.handle):
-                return (Hint("click", "to select; it is locked"),)
+                return (Hint(_("click to select; it is locked")),)
             if session.records:
-                return (Hint("drag", "to record how it moves"),)
+                return (Hint(_("drag to record how it moves")),)
             on_track = draggable_track(project, spot.handle) is not None
-            return (Hint("drag", "to key it alone" if on_track else "to pose"),)
+            return (Hint(_("drag to key it alone") if on_track else _("drag to pose")),)
         if spot.track_key is not None:
-            return (Hint("drag", f"to move the key at frame {spot.track_key}"),)
+            text = _("drag to move the key at frame {frame}")
+            return (Hint(text.format(frame=spot.track_key)),)
         if spot.on_shape and session.overlays.handles and not (spot.on_ring or session.records):
-            return (Hint("click", "to add a handle"),)
+            return (Hint(_("click to add a handle")),)
         return ()
 
     @classmethod
@@ -202,11 +204,11 @@ class PoseTool(Tool):
     @property
     def active_hints(self) -> tuple[Hint, ...]:
         if self.records:
-            return (Hint("let go", "to end the recording"),)
-        typed = (Hint("type", "a number of pixels"), Hint("X or Y", "to keep to an axis"))
+            return (Hint(_("let go to end the recording")),)
+        typed = (Hint(_("type a number of pixels")), Hint(_("X or Y to keep to an axis")))
         if self.tracked is not None:
             return typed
-        return (*typed, Hint("let go", "to keep the wish beyond its reach", "alt"))
+        return (*typed, Hint(_("let go to keep the target beyond its reach"), "alt"))
 
 
 def _movable_handles(project: Project) -> frozenset[int]:

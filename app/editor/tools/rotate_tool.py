@@ -24,6 +24,7 @@ from app.editor.session import Hint, Mark, NumericEntryOverlay, RotationOverlay,
 from app.editor.tools.numeric_entry import NumericEntry
 from app.editor.tools.tool import PointerHit, Tool
 from app.editor.work.pull import DragStart
+from app.texts import _
 
 STEP = math.radians(15.0)  # step of a rotation that snaps
 LEAST_ARM = 12.0  # screen pixels around a handle; a press within has no direction
@@ -44,16 +45,16 @@ class RotateTool(Tool):
     moved: bool = False
 
     @classmethod
-    def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, _session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.on_ring:
             (handle,) = project.selected_handles
             is_alone = draggable_track(project, handle) is not None
-            what = "to key its turn alone" if is_alone else "to turn the shape around the handle"
-            return (Hint("drag", what),)
+            text = _("drag to turn the shape around the handle")
+            return (Hint(_("drag to key its turn alone") if is_alone else text),)
         if spot.handle is None or project.layer.is_locked(spot.handle):
             return ()
         # The hint names the ring, since many window managers take Alt+drag.
-        return (Hint("drag its ring", "to turn"),)
+        return (Hint(_("drag its ring to turn")),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -70,13 +71,13 @@ class RotateTool(Tool):
         index = identities.index(handle)
         on_track = draggable_track(project, handle) is not None
         frame = playback.current_frame(session, project)
-        wished = track_target_angle(project, handle, frame) if on_track else None
+        target_angle = track_target_angle(project, handle, frame) if on_track else None
         turning = cls(
             project=project,
             handle=handle,
             centre=complex(shown.handle_positions[index]),
             start=spot.place,
-            turn=shown.handle_rotations[index] if wished is None else wished,
+            turn=shown.handle_rotations[index] if target_angle is None else target_angle,
             on_track=on_track,
             deletes=is_by_key,
         )
@@ -150,4 +151,4 @@ class RotateTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint("turn", "by steps of 15°", "ctrl"), Hint("type", "a number of degrees"))
+        return (Hint(_("turn by steps of 15°"), "ctrl"), Hint(_("type a number of degrees")))

@@ -9,6 +9,7 @@ from app.editor.project import Project
 from app.editor.session import BoxOverlay, Hint, Mark, Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.motion import BoundingBox
+from app.texts import _
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -21,9 +22,9 @@ class SelectTool(Tool):
     has_box: bool
 
     @classmethod
-    def hints(cls, _: Session, __: Project, spot: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, _session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         is_free = spot.handle is None and not spot.on_shape and not spot.on_ring
-        return (Hint("drag", "to select"),) if is_free else ()
+        return (Hint(_("drag to select")),) if is_free else ()
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -74,11 +75,12 @@ class PickLayerTool(Tool):
     last: int
 
     @classmethod
-    def hints(cls, _: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, _session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         layer = _pressed_other_layer(project, spot)
         if layer is None:
             return ()
-        return (Hint("click", f"to pose {project.document.layer(layer).name}"),)
+        name = project.document.layer(layer).name
+        return (Hint(_("click to pose {layer}").format(layer=name)),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:

@@ -38,18 +38,18 @@ def type_in_tool(session: Session, characters: str) -> None:
 
 def release_pointer(session: Session, place: complex) -> None:
     """End the active tool."""
-    _release_pointer(session, place, insists=False)
+    _release_pointer(session, place, forces_targets=False)
 
 
 def release_pointer_forced(session: Session, place: complex) -> None:
     """End the active tool; targets stay even if the handles cannot reach them."""
-    _release_pointer(session, place, insists=True)
+    _release_pointer(session, place, forces_targets=True)
 
 
-def _release_pointer(session: Session, place: complex, *, insists: bool) -> None:
+def _release_pointer(session: Session, place: complex, *, forces_targets: bool) -> None:
     gesture, session.active_tool = session.active_tool, None
     if gesture:
-        session.is_forcing_targets = insists
+        session.is_forcing_targets = forces_targets
         gesture.end(session, place)
 
 

@@ -27,8 +27,6 @@ class JobKind:
 
     label: str  # shown in the status bar
     complaint: str = ""  # shown if the job fails
-    # The thread of the job: "hand" for drags, "export" for exports, "display" for shown values, or
-    # "keep" for writing to disk.
     lane: LaneName = "display"
 
 
@@ -69,7 +67,6 @@ class Jobs:
 
     A job is unfinished until its result is delivered. A job becomes stale if its kind is put again
     or dropped: it never starts, or its result is dropped. Jobs queued by `add` are all done.
-    `clock` gives seconds, for the running time of jobs.
     """
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
@@ -237,16 +234,14 @@ class Jobs:
         """Start the thread of a lane."""
         lane = self._lanes[name]
         if lane.thread is None:
-            work = partial(self._work, lane, name)
-            thread = threading.Thread(target=work, name=name, daemon=True)
+            thread = threading.Thread(target=self._work, args=(lane, name), name=name, daemon=True)
             thread.start()
             # Set after the start: if the system refuses the thread, the next job asks for it again.
             lane.thread = thread
 
     def _fail(self, jobs: list[Job]) -> None:
         """Report jobs as failed."""
-        failed = [(job.kind, partial(job.failed, LissomError(CANCELLED))) for job in jobs]
-        self._finished.extend(failed)
+        self._finished += [(job.kind, partial(job.failed, LissomError(CANCELLED))) for job in jobs]
 
     def _is_waiting(self, name: LaneName) -> bool:
         return any(job.kind.lane == name for job in self._waiting)

@@ -7,6 +7,7 @@ from typing import Self
 from app.document import AppliedMotion, Document, Layer
 from app.rigging import MOTIONS, BodyKind, Motion, Parameters, find_kind, other_side
 from app.solving import MotionSolve
+from app.texts import _
 from engine.domain import MeshedDomain
 
 JointPlaces = Mapping[str, complex]  # of joints by their names, at rest
@@ -93,4 +94,4 @@ class MotionJob:
     @property
     def step_label(self) -> str:
         """Description of the next step."""
-        return "Reading the joints" if self.solve is None else self.solve.status_text
+        return _("Reading the joints") if self.solve is None else self.solve.status_text

@@ -10,6 +10,7 @@ from app.document import Clip, Document, History, Layer, Pose, PoseReplacement, 
 from app.editor.work.derived import Derived
 from app.editor.work.promise import Promise
 from app.solving import DragSolver
+from app.texts import _
 from engine.deform import BoundedPull
 
 # Newton steps towards one target; a drag comes to rest in far fewer.
@@ -110,7 +111,7 @@ class Pull(Promise):
         Whether the playhead is elsewhere.
     """
 
-    label: str = "Posing"
+    label: str = _("Posing")
     clip: Clip
     frame: int
     gesture: object
@@ -139,10 +140,10 @@ class Pull(Promise):
     is_left: bool = False
 
     def change_targets(
-        self, gesture: object, wish: TargetChange, hand: BoundedPull | None = None
+        self, gesture: object, change: TargetChange, hand: BoundedPull | None = None
     ) -> None:
         """Set a gesture's change of targets, in place of its earlier one."""
-        self.target_changes[gesture] = wish
+        self.target_changes[gesture] = change
         if hand is not None:
             self.dragged_targets[gesture] = hand
         self.update_targets()
@@ -281,14 +282,14 @@ class Pull(Promise):
 
 
 def _moved(
-    wish: TargetChange,
+    change: TargetChange,
     moves: Mapping[int, complex],
     start: DragStart,
     targets: Mapping[int, Target],
 ) -> Mapping[int, Target]:
     """Return the targets of a change, moved to the places that the drag reached."""
     joints = {i: targets[i] for i in moves if i in targets}
-    return _moved_targets({**joints, **wish(start, targets)}, moves)
+    return _moved_targets({**joints, **change(start, targets)}, moves)
 
 
 def _moved_targets(
@@ -312,22 +313,22 @@ def _nothing(_: DragStart, __: Mapping[int, Target]) -> Mapping[int, Target]:
 
 
 def absolute_targets(
-    wishes: Mapping[int, Target], _: DragStart, targets: Mapping[int, Target]
+    wanted: Mapping[int, Target], _: DragStart, targets: Mapping[int, Target]
 ) -> Mapping[int, Target]:
     """Return targets that are independent of the drag's start."""
-    return {i: wish for i, wish in wishes.items() if i in targets}
+    return {i: target for i, target in wanted.items() if i in targets}
 
 
-def combine_targets(start: DragStart, wishes: Iterable[TargetChange]) -> Mapping[int, Target]:
+def combine_targets(start: DragStart, changes: Iterable[TargetChange]) -> Mapping[int, Target]:
     """Return the targets after all changes in order."""
     targets = dict(start.targets)
-    for wish in wishes:
-        for identity, wished in wish(start, targets).items():
+    for change in changes:
+        for identity, target in change(start, targets).items():
             # Unknown fields of a target, written by a later version, stay.
-            targets[identity] = replace(wished, unknown=targets[identity].unknown)
+            targets[identity] = replace(target, unknown=targets[identity].unknown)
     return targets
 
 
-def find_changed_handles(start: DragStart, wishes: Iterable[TargetChange]) -> frozenset[int]:
+def find_changed_handles(start: DragStart, changes: Iterable[TargetChange]) -> frozenset[int]:
     """Return the ids of the handles with changed targets."""
-    return frozenset(identity for wish in wishes for identity in wish(start, start.targets))
+    return frozenset(identity for change in changes for identity in change(start, start.targets))

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from app.document import Document, Playhead, Track
 from app.editor.work.promise import Promise
+from app.texts import _
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
@@ -28,7 +29,7 @@ class TrackDrag(Promise):
         present place of the handle.
     """
 
-    label: str = "Keys of a handle"
+    label: str = _("Keys of a handle")
     layer: int
     handle: int
     frame: int

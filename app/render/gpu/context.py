@@ -11,6 +11,7 @@ from typing import Any, Final, Literal
 import moderngl
 
 from app.errors import LissomError
+from app.texts import _
 
 if sys.platform != "win32":
     import resource
@@ -29,9 +30,13 @@ LIBGL: Final = "libGL.so.1"
 LEAST_MEMORY: Final = 1_500_000_000
 OPENGL: Final = 330  # the version of every shader
 REMEDIES: Final[dict[Backend, str]] = {
-    "egl": "install EGL: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
-    "osmesa": "install OSMesa, where Mesa still has it: sudo apt install libosmesa6",
-    "native": "install a graphics driver with OpenGL 3.3, and run it where there is a display",
+    "egl": _("install EGL: {command}").format(
+        command="sudo apt install libegl1 libgl1 libgl1-mesa-dri"
+    ),
+    "osmesa": _("install OSMesa, where Mesa still has it: {command}").format(
+        command="sudo apt install libosmesa6"
+    ),
+    "native": _("install a graphics driver with OpenGL 3.3, and run it where there is a display"),
 }
 
 
@@ -70,7 +75,8 @@ def create_context(backend: Backend | None = None) -> moderngl.Context:
             return _create(name)
         except LissomError as error:
             problems.append(str(error))
-    raise LissomError("cannot draw on this machine: " + "; or ".join(problems))
+    reasons = _("; or ").join(problems)
+    raise LissomError(_("cannot draw on this machine: {reasons}").format(reasons=reasons))
 
 
 def window_context() -> moderngl.Context:
@@ -84,8 +90,10 @@ def window_context() -> moderngl.Context:
         return moderngl.create_context(require=OPENGL)
     except Exception as error:  # moderngl's loaders raise nothing more specific
         raise LissomError(
-            f"the window has no OpenGL to draw with: {error} ({REMEDIES['native']}); the command "
-            "line works without a window"
+            _(
+                "the window has no OpenGL to draw with: {error} ({remedy}); the command line works "
+                "without a window"
+            ).format(error=error, remedy=REMEDIES["native"])
         ) from error
 
 
@@ -198,14 +206,14 @@ class _OSMesa:
         pairs = [number for pair in wanted.items() for number in pair]
         attributes = (ctypes.c_int * (len(pairs) + 1))(*pairs, 0)
         if not _survives(self._library._name, tuple(pairs)):  # noqa: SLF001 - by which it was found
-            raise LissomError("it crashes on this machine")
+            raise LissomError(_("it crashes on this machine"))
         self._context = self._library.OSMesaCreateContextAttribs(attributes, None)
         if not self._context:
-            raise LissomError("no context with OpenGL 3.3")
+            raise LissomError(_("no context with OpenGL 3.3"))
         # All drawing goes to our own framebuffers, but OSMesa requires a buffer of one pixel.
         self._pixel = (ctypes.c_ubyte * 4)()
         if not self._make_current():
-            raise LissomError("its context cannot be made current")
+            raise LissomError(_("its context cannot be made current"))
 
     def _make_current(self) -> bool:
         return bool(
@@ -226,7 +234,7 @@ class _OSMesa:
             library.OSMesaGetProcAddress.restype = pointer
             library.OSMesaGetProcAddress.argtypes = [ctypes.c_char_p]
             return library
-        raise LissomError(f"{self._NAMES[0]} not loaded")
+        raise LissomError(_("{library} not loaded").format(library=self._NAMES[0]))
 
     def load_opengl_function(self, name: str) -> int:
         """Return the address of an OpenGL function, or 0."""

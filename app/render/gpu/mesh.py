@@ -9,6 +9,7 @@ import numpy as np
 from app.errors import LissomError
 from app.render.gpu.picture import GpuPicture
 from app.render.gpu.programs import Programs, ShaderFiles, set_uniforms
+from app.texts import _
 from engine.arrays import Complexes, Integers, Singles, readonly
 from engine.domain import ClosedCuts
 
@@ -75,10 +76,11 @@ class PositionBuffer(VertexSource):
         frame would be empty without an error.
         """
         if positions.shape != self._shape:
-            raise LissomError(f"a frame needs {self._shape} positions, not {positions.shape}")
+            text = _("a frame needs {needed} positions, not {shape}")
+            raise LissomError(text.format(needed=self._shape, shape=positions.shape))
         # Any infinite or undefined entry makes the sum so; far cheaper than testing each entry.
         if not np.isfinite(positions.sum()):
-            raise LissomError("the frame has vertices that are not finite; it cannot be drawn")
+            raise LissomError(_("the frame has vertices that are not finite; it cannot be drawn"))
         self._buffer.write(np.ascontiguousarray(positions, dtype=np.float32).data)
 
 
@@ -152,7 +154,8 @@ class PosedMesh:
     def write_heat(self, values: Singles) -> None:
         """Upload the quantity (v,) of the heat map."""
         if values.shape != (self._mesh.count,):
-            raise LissomError(f"a heat map needs {self._mesh.count} values, not {values.shape}")
+            text = _("a heat map needs {needed} values, not {shape}")
+            raise LissomError(text.format(needed=self._mesh.count, shape=values.shape))
         if self._heat is None:
             self._heat = self._mesh.programs.context.buffer(reserve=values.nbytes, dynamic=True)
         self._heat.write(np.ascontiguousarray(values, dtype=np.float32).data)
@@ -166,7 +169,8 @@ class PosedMesh:
             return
         most = len(self._mesh.triangles)
         if len(triangles) > most:
-            raise LissomError(f"the mesh has {most} triangles to be painted, not {len(triangles)}")
+            text = _("the mesh has {most} triangles to be painted, not {count}")
+            raise LissomError(text.format(most=most, count=len(triangles)))
         self._order.write(_indices(triangles))
         self._triangles = triangles
 

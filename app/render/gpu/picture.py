@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from app.errors import LissomError
 from app.render.gpu.context import largest_size
+from app.texts import _
 from engine.arrays import Bytes
 
 # Colour times alpha for each pair [alpha, colour] of bytes. Half floats keep 11 bits of a value at
@@ -40,12 +41,14 @@ class GpuPicture:
     def __init__(
         self, context: moderngl.Context, straight: Bytes, *, is_for_screen: bool = False
     ) -> None:
-        height, width, _ = straight.shape
+        height, width = straight.shape[:2]
         limit = largest_size(context)
         if max(width, height) > limit:
             raise LissomError(
-                f"the picture has {width} × {height} pixels, but the graphics of this machine hold "
-                f"{limit} × {limit} at most; scale it down first"
+                _(
+                    "the picture has {width} × {height} pixels, but the graphics of this machine "
+                    "hold {limit} × {limit} at most; scale it down first"
+                ).format(width=width, height=height, limit=limit)
             )
         self.size = (width, height)
         self._products = _BYTES if is_for_screen else _PRODUCTS
@@ -61,7 +64,7 @@ class GpuPicture:
         """Upload another picture of the same size; unchanged rows are skipped."""
         if straight is self._written:
             return
-        height, width, _ = straight.shape
+        height, width = straight.shape[:2]
         changed = np.ones(height, dtype=np.bool_)
         if self._written is not None:
             changed = (straight != self._written).any(axis=(1, 2))

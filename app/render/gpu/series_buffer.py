@@ -8,11 +8,12 @@ import numpy as np
 
 from app.errors import LissomError
 from app.render.gpu.mesh import VertexSource
+from app.texts import N_, _
 from engine.domain import ClosedCuts
 from engine.streaming import Series, SeriesPiece
 
 _RESERVED: Final = 2  # attributes of a mesh outside the series
-SERIES_PIECE = (
+SERIES_PIECE = N_(
     "a piece of {rows} rows and {values} values does not fit {own_rows} rows of {own_values} values"
 )
 
@@ -42,8 +43,9 @@ class SeriesBuffer(VertexSource):
     ) -> None:
         if rows > max_series_rows(context):
             raise LissomError(
-                f"this machine's graphics take {max_series_rows(context)} rows of a series, not "
-                f"{rows}"
+                _("this machine's graphics take {most} rows of a series, not {rows}").format(
+                    most=max_series_rows(context), rows=rows
+                )
             )
         pairs = (rows + 1) // 2
         buffer = context.buffer(reserve=16 * pairs * count, dynamic=True)
@@ -71,7 +73,7 @@ class SeriesBuffer(VertexSource):
         count, rows = self._count, len(piece.rows)
         if piece.rows.shape[1] != 2 * count or rows > 2 * self._pairs:
             raise LissomError(
-                SERIES_PIECE.format(
+                _(SERIES_PIECE).format(
                     rows=rows,
                     values=piece.rows.shape[1],
                     own_rows=2 * self._pairs,

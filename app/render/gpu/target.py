@@ -6,6 +6,7 @@ import numpy as np
 from app.errors import LissomError
 from app.render.gpu.context import finish_drawing, largest_size
 from app.render.gpu.programs import Programs, ShaderFiles
+from app.texts import _
 from engine.arrays import Bytes
 
 Rectangle = tuple[int, int, int, int]
@@ -33,8 +34,10 @@ class RenderTarget:
         limit = largest_size(context) // oversampling
         if max(size) > limit:
             raise LissomError(
-                f"a frame of {size[0]} × {size[1]} pixels is too large for the graphics of this "
-                f"machine, which hold {limit} × {limit} at most; choose a smaller size"
+                _(
+                    "a frame of {width} × {height} pixels is too large for the graphics of this "
+                    "machine, which hold {limit} × {limit} at most; choose a smaller size"
+                ).format(width=size[0], height=size[1], limit=limit)
             )
         self.size = size
         self.oversampling = oversampling

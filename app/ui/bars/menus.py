@@ -6,7 +6,8 @@ from imgui_bundle import imgui
 
 from app.document import PRESETS
 from app.editor import Action, Session, do
-from app.editor.actions import files, viewing
+from app.editor.actions import viewing
+from app.editor.actions.project_files import files
 from app.editor.actions.timing import keys
 from app.errors import display_name
 from app.storage import CHECKER

@@ -3,7 +3,7 @@
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Action, RecoverableFile, RecoveryDialog, do, error_reports
-from app.editor.actions import files
+from app.editor.actions.project_files import recovery
 from app.editor.actions.viewing import answer_dialog, close_dialog
 from app.errors import display_name
 from app.texts import _
@@ -56,10 +56,10 @@ def _row(leftover: RecoverableFile, look: Look, *, is_main: bool) -> list[Action
     imgui.text_disabled(f"{entry.changed_in_words}   {entry.size_in_words}   ")
     imgui.same_line(BUTTONS_AT * look.em)
     if main_button(look, _("Open")) if is_main else imgui.button(_("Open")):
-        actions.append(do(answer_dialog, do(files.recover_file, leftover.path)))
+        actions.append(do(answer_dialog, do(recovery.recover_file, leftover.path)))
     if is_main:
         imgui.set_item_default_focus()
     imgui.same_line()
     if imgui.button(_("Discard")):
-        actions.append(do(answer_dialog, do(files.discard_recoverable_file, leftover.path)))
+        actions.append(do(answer_dialog, do(recovery.discard_recoverable_file, leftover.path)))
     return actions

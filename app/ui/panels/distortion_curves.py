@@ -8,7 +8,8 @@ import numpy as np
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui, implot
 
 from app.editor import Action, ComparisonRuntime, CurveKind, Project, Session, do
-from app.editor.actions import playback, saving, viewing
+from app.editor.actions import playback, viewing
+from app.editor.actions.project_files import saving_curves
 from app.reports import TIMES, Curves, split_at_keys
 from app.texts import _
 from app.ui.methods import METHODS
@@ -61,9 +62,9 @@ def draw_distortion_curves(session: Session, look: Look, project: Project) -> li
     png = f"{icons.ICON_FA_IMAGE}  {_('Save as PNG…')}"
     csv = f"{icons.ICON_FA_TABLE}  {_('Save as CSV…')}"
     if text_button(f"{png}###png", next(halves), enabled=is_new):
-        actions.append(do(saving.ask_curves_png))
+        actions.append(do(saving_curves.ask_curves_png))
     if text_button(f"{csv}###csv", next(halves), enabled=is_new):
-        actions.append(do(saving.ask_curves_csv))
+        actions.append(do(saving_curves.ask_curves_csv))
     return actions
 
 

@@ -6,7 +6,8 @@ from imgui_bundle import icons_fontawesome_6 as icons, imgui
 
 from app.document import ExportSettings, FrameRange, export_frame_range, scene_commands
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, exporting
+from app.editor.actions import editing
+from app.editor.actions.project_files import export_settings, exporting
 from app.errors import LIBRARIES, LissomError, display_name, install_hint
 from app.export import find_shown_box, frame_view
 from app.export_formats import EXPORT_FORMATS
@@ -49,7 +50,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     view = frame_view(settings, project.document, motion)
     box = find_shown_box(view)
     # The camera's frame is always visible.
-    actions = [] if project.document.camera else [do(exporting.preview_export_frame, box)]
+    actions = [] if project.document.camera else [do(export_settings.preview_export_frame, box)]
     heading(look, _("Picture"))
     chosen = _format(look, settings)
     if EXPORT_FORMATS[settings.format].has_frame:
@@ -69,7 +70,7 @@ def draw_export_panel(session: Session, look: Look, project: Project) -> list[Ac
     else:
         chosen = _frames(look, project, chosen)
     if chosen != settings:
-        actions.append(do(exporting.set_export_settings, chosen))
+        actions.append(do(export_settings.set_export_settings, chosen))
     heading(look, _("Output"))
     return actions + _output(session, look, project)
 
@@ -178,7 +179,7 @@ def _size(
     keeps = session.is_aspect_locked
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
     if icon_button(look, icon, "keep ratio", _("Keep the ratio of width and height"), active=keeps):
-        actions.append(do(exporting.set_aspect_locked, not keeps))
+        actions.append(do(export_settings.set_aspect_locked, not keeps))
     imgui.same_line(0, gap)
     if icon_button(
         look,
@@ -255,7 +256,7 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
 
 def _output(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
-    out = exporting.export_destination(project)
+    out = export_settings.export_destination(project)
     label(
         look, _("File") if EXPORT_FORMATS[project.document.export.format].suffixes else _("Folder")
     )
@@ -268,7 +269,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     draw_tooltip(display_name(out) if out else _("Choose the output"))
     imgui.same_line(0, gap)
     if icon_button(look, icons.ICON_FA_FOLDER_OPEN, "choose output", _("Choose the output…")):
-        actions.append(do(exporting.ask_export_destination))
+        actions.append(do(export_settings.ask_export_destination))
     run = session.export
     if exporting.is_export_under_way(session):
         # A negative share animates the bar without a value.
@@ -283,7 +284,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
             )
         return [*actions, do(exporting.cancel_export)] if progress_bar(share, text) else actions
     if main_button(look, f"{icons.ICON_FA_FILE_EXPORT}  {_('Export')}###start", FILL):
-        actions.append(do(exporting.repeat_export))
+        actions.append(do(export_settings.repeat_export))
     look.note_place("start export")
     draw_tooltip(_("Export now"), BINDINGS["export again"].shown_keys)
     if EXPORT_FORMATS[project.document.export.format].is_still:

@@ -7,19 +7,12 @@ from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
 from app.document import LINEAR, PRESETS
 from app.editor import Project, Session, do, error_reports, with_project
-from app.editor.actions import (
-    editing,
-    exporting,
-    files,
-    playback,
-    saving,
-    tutorials,
-    viewing,
-)
-from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
+from app.editor.actions import editing, playback, tutorials, viewing
+from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stiffness_editing
 from app.editor.actions.posing.handles import mirror_handles, suggest_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.actions.posing.pose_drag import pin_selected_handles
+from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import cycles, keys, timeline_drag, tracks
 from app.editor.actions.tracking.recording import discard_recording, toggle_recording_armed
 from app.editor.actions.viewing import OverlayName
@@ -179,7 +172,7 @@ def _rename_layer(session: Session, project: Project) -> None:
 def _export(session: Session) -> None:
     """Show the export panel. If it is in front already, ask for the file and begin."""
     if bring_to_front("Export"):
-        exporting.ask_destination_and_export(session)
+        export_settings.ask_destination_and_export(session)
 
 
 def _overlay(label: str, name: OverlayName, keys: str, **more: Any) -> ActionSpec:
@@ -199,10 +192,12 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "save": ActionSpec(_("Save"), do(saving.save), "Ctrl+S", has_separator=True),
         "save as": ActionSpec(_("Save as…"), do(saving.save_as), "Ctrl+Shift+S"),
         "export": ActionSpec(_("Export…"), do(_export), "Ctrl+E", has_separator=True),
-        "export again": ActionSpec(_("Export again"), do(exporting.repeat_export), "Ctrl+Shift+E"),
+        "export again": ActionSpec(
+            _("Export again"), do(export_settings.repeat_export), "Ctrl+Shift+E"
+        ),
         "copy picture": ActionSpec(_("Copy picture"), do(exporting.copy_picture), "Ctrl+Shift+C"),
         "unsaved work": ActionSpec(
-            _("Unsaved work…"), do(files.show_recovery), has_separator=True, needs_project=False
+            _("Unsaved work…"), do(recovery.show_recovery), has_separator=True, needs_project=False
         ),
         "close": ActionSpec(_("Close"), do(saving.close_project), "Ctrl+W", has_separator=True),
         "quit": ActionSpec(_("Quit"), do(saving.request_quit), "Ctrl+Q", needs_project=False),
@@ -352,7 +347,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "lock": ActionSpec(
             _("Lock"),
-            do(editing.toggle_handles_locked),
+            do(handle_editing.toggle_handles_locked),
             "Shift+L",
             icon=icons.ICON_FA_LOCK,
             hint=_("Locked handles keep their places and cannot be dragged"),
@@ -392,7 +387,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "group": ActionSpec(
             _("Group"),
-            do(editing.group_handles),
+            do(handle_editing.group_handles),
             "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
             hint=_("Select and drag these handles together from now on"),
@@ -401,7 +396,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "ungroup": ActionSpec(
             _("Ungroup"),
-            do(editing.ungroup_handles),
+            do(handle_editing.ungroup_handles),
             "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
             hint=_("Drag each of these handles alone again"),
@@ -417,7 +412,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         ),
         "mirrored": ActionSpec(
             _("Select partners"),
-            do(editing.select_mirrored),
+            do(handle_editing.select_mirrored),
             "Shift+M",
             icon=icons.ICON_FA_RIGHT_LEFT,
             hint=_("Select the handles with the same names on the other side"),
@@ -720,7 +715,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
         "report": ActionSpec(
             _("Report a problem…"), do(error_reports.show_kept_or_new_report), needs_project=False
         ),
-        "import": ActionSpec(_("Import log"), do(files.show_import_log), condition=_has_summary),
+        "import": ActionSpec(_("Import log"), do(viewing.show_import_log), condition=_has_summary),
     },
 }
 BINDINGS = {name: binding for menu in MENUS.values() for name, binding in menu.items()}

@@ -9,6 +9,7 @@ from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 from app.document import WEIGHT_PRESETS, Handle, handle_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, viewing
+from app.editor.actions.layer_setup import handle_editing
 from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
 from app.editor.actions.posing.pose_drag import free_rotation
 from app.editor.layering.layer_selection import reset_tree_rows
@@ -274,9 +275,9 @@ def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Acti
     """Draw the handle's depth: in front or behind where the drawing overlaps itself."""
     if not imgui.begin_menu(_("Depth")):
         return []
-    front = editing.depth_at_playhead(session, screen.project, handle)
+    front = handle_editing.depth_at_playhead(session, screen.project, handle)
     actions = [
-        do(editing.set_depth, handle.id, depth)
+        do(handle_editing.set_depth, handle.id, depth)
         for word, depth in DEPTHS.items()
         if imgui.menu_item(word, "", front == depth)[0]
     ]

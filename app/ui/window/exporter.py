@@ -3,7 +3,7 @@
 from collections.abc import Generator
 
 from app.editor import ExportRun, Session
-from app.editor.actions import exporting
+from app.editor.actions.project_files import exporting
 from app.export import FrameRenderer, MeshExport
 from app.export_formats import EXPORT_FORMATS
 from app.render import Renderer

@@ -20,7 +20,7 @@ import glfw  # isort: skip
 
 from app.document import Pose
 from app.editor import Action, FileDialog, Project, Session, do, error_reports
-from app.editor.actions import exporting, saving
+from app.editor.actions.project_files import autosaving, exporting, saving
 from app.errors import EXPECTED_ERRORS, LissomError, display_name
 from app.render import LayerPictures, Renderer, Thumbnail, Thumbnails
 from app.render.gpu.context import describe_graphics, is_software
@@ -197,7 +197,7 @@ class Window:
         sentences = [_("The picture cannot be drawn: {error}.").format(error=error)]
         if project is not None and saving.has_unsaved_changes(project):
             try:
-                saving.autosave_now(session)
+                autosaving.autosave_now(session)
                 sentences.append(_("The unsaved work was kept."))
             except EXPECTED_ERRORS as reason:
                 sentences.append(

@@ -15,7 +15,8 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import editing, exporting, playback, saving, tutorials, upkeep, viewing
+from app.editor.actions import editing, playback, tutorials, upkeep, viewing
+from app.editor.actions.project_files import autosaving, export_settings, saving
 from app.editor.actions.timing import timeline_drag
 from app.editor.actions.viewing import close_dialog, dismiss_toast
 from app.editor.tools import tool_pointer
@@ -45,7 +46,7 @@ MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The 
 UNLOGGED = {
     dismiss_toast,
     editing.note_widget_in_use,
-    exporting.preview_export_frame,
+    export_settings.preview_export_frame,
     tool_pointer.show_hint,
     tool_pointer.hover_handle,
     timeline_drag.scroll_to_playhead,
@@ -118,7 +119,7 @@ class WindowFrame:
             for each in (
                 pending_changes.run_deferred_actions,
                 *upkeep.STEPS,
-                saving.write_due_files,
+                autosaving.write_due_files,
                 tutorials.update_tutorial,
             )
         ]

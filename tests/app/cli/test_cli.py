@@ -15,7 +15,7 @@ from app.cli.commands import pose
 from app.cli.main import COMMANDS, EXIT_PIPE_CLOSED, main
 from app.cut_out import CutOut
 from app.document import FRAMINGS, SPRING_PRESETS, VARIANTS, Meshing
-from app.editor.actions import saving
+from app.editor.actions.project_files import autosaving, saving
 from app.editor.work.jobs import Job
 from app.storage import SourceInfo
 from app.storage.assets import sample_images
@@ -218,7 +218,7 @@ def test_an_autosave_that_is_written_while_the_person_leaves_is_not_offered(tmp_
                 left.wait()
                 session.autosave.write(disc_document(), SourceInfo("disc", None))
 
-            session.jobs.put(Job(kind=saving.AUTOSAVING, work=keep, done=print, failed=print))
+            session.jobs.put(Job(kind=autosaving.AUTOSAVING, work=keep, done=print, failed=print))
             begun.wait()
             saving.close_window(session)
             left.set()

@@ -17,7 +17,7 @@ from app.cli.process import STILL_AT_WORK
 from app.document import History
 from app.document.commands import scene_commands
 from app.editor import error_reports
-from app.editor.actions import saving
+from app.editor.actions.project_files import saving
 from app.editor.dialogs import ProblemReport
 from app.editor.project import Project
 from app.editor.session import Session

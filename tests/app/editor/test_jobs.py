@@ -21,7 +21,7 @@ def job(kind, work, results, *, lane="display"):
     )
 
 
-HANGS = 300.0  # seconds after which a worker is taken to hang; no result depends on it
+STUCK = 300.0  # seconds after which a worker counts as stuck; no result depends on it
 HAND = {name: JobKind(name, lane="hand") for name in ("stuck", "pose")}
 
 
@@ -36,10 +36,10 @@ def busy():
 
     def wait():
         begun.set()
-        gate.wait(HANGS)
+        gate.wait(STUCK)
 
     jobs.put(job("gate", wait, []))
-    assert begun.wait(HANGS)
+    assert begun.wait(STUCK)
     yield jobs, gate
     gate.set()
     assert jobs.wait_until_idle()
@@ -106,11 +106,11 @@ def test_running_job_that_was_replaced_is_stale():
 
     def slow():
         begun.set()
-        gate.wait(HANGS)
+        gate.wait(STUCK)
         return "old"
 
     jobs.put(job("pose", slow, results))
-    assert begun.wait(HANGS)
+    assert begun.wait(STUCK)
     jobs.put(job("pose", lambda: "new", results))
     gate.set()
     assert jobs.wait_until_idle()
@@ -202,7 +202,7 @@ def test_urgent_jobs_do_not_wait_for_others(busy, lane):
     results, ready = [], threading.Event()
     jobs.put(job("in-betweens", lambda: 1, results))
     jobs.put(job("pose", ready.set, results, lane=lane))
-    assert ready.wait(HANGS)
+    assert ready.wait(STUCK)
     while "pose" in labels(jobs.kinds):
         jobs.deliver()
     assert results == [("pose", None)]
@@ -215,10 +215,10 @@ def test_urgent_jobs_come_one_after_the_other():
 
     def wait():
         begun.set()
-        gate.wait(HANGS)
+        gate.wait(STUCK)
 
     jobs.put(job("pose", wait, results, lane="hand"))
-    assert begun.wait(HANGS)
+    assert begun.wait(STUCK)
     jobs.put(job("save", lambda: 1, results, lane="hand"))
     assert labels(jobs.kinds) == ("pose", "save")
     gate.set()
@@ -233,10 +233,10 @@ def test_jobs_tell_how_long_they_run():
 
     def wait():
         begun.set()
-        gate.wait(HANGS)
+        gate.wait(STUCK)
 
     jobs.put(job("factors", wait, []))
-    assert begun.wait(HANGS)
+    assert begun.wait(STUCK)
     jobs.put(job("in-betweens", int, []))
     assert labels(jobs.running_for(0.3)) == ()
     now[0] = 10.4
@@ -338,9 +338,9 @@ def test_closing_does_not_wait_for_what_was_left(stuck):
     jobs.put(job("stuck", work, []))
     has_begun()
     jobs.abandon(JobKind("stuck"))
-    closing = threading.Thread(target=jobs.close, args=(2 * HANGS,), daemon=True)
+    closing = threading.Thread(target=jobs.close, args=(2 * STUCK,), daemon=True)
     closing.start()
-    closing.join(HANGS)
+    closing.join(STUCK)
     assert not closing.is_alive()
 
 
@@ -350,20 +350,20 @@ def test_closing_waits_for_what_runs_and_drops_what_waits():
 
     def finish():
         begun.set()
-        gate.wait(HANGS)
+        gate.wait(STUCK)
         results.append("ran")
 
     jobs.put(job("factors", finish, []))
     jobs.put(job("in-betweens", lambda: results.append("waited"), []))
     jobs.put(job("pose", int, [], lane="hand"))
-    assert begun.wait(HANGS)
+    assert begun.wait(STUCK)
     closing = threading.Thread(target=jobs.close)
     closing.start()
     while not jobs.is_closed:
         pass
     assert closing.is_alive()
     gate.set()
-    closing.join(HANGS)
+    closing.join(STUCK)
     assert results == ["ran"]
     assert labels(jobs.kinds) in {("factors",), ("pose", "factors"), ("factors", "pose")}
 
@@ -402,20 +402,20 @@ def test_a_program_may_end_while_a_job_runs():
 
 def test_a_job_that_tells_how_far_it_is_ends_when_it_is_given_up():
     jobs, results, over = Jobs(), [], []
-    told, left = threading.Event(), threading.Event()
+    reported, left = threading.Event(), threading.Event()
 
     def work():
         try:
             report_progress(0.25)
-            told.set()
-            left.wait(HANGS)
+            reported.set()
+            left.wait(STUCK)
             report_progress(0.5)
             over.append("went on")
         finally:
             over.append("ended")
 
     jobs.put(job("slow", work, results))
-    assert told.wait(HANGS)
+    assert reported.wait(STUCK)
     assert jobs.share_of(JobKind("slow")) == 0.25
     assert jobs.share_of(JobKind("other")) is None
     jobs.abandon(JobKind("slow"))
@@ -431,15 +431,15 @@ def test_a_job_that_tells_how_far_it_is_ends_when_it_is_given_up():
 
 
 def test_what_tells_how_far_it_is_does_not_hold_up_the_end_of_the_program():
-    jobs, told = Jobs(), threading.Event()
+    jobs, reported = Jobs(), threading.Event()
 
     def work():
         while True:
             report_progress(0.5)
-            told.set()
+            reported.set()
 
     jobs.put(job("endless", work, []))
-    assert told.wait(HANGS)
+    assert reported.wait(STUCK)
     assert jobs.close()
 
 

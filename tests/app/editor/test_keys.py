@@ -74,11 +74,11 @@ def test_handle_falls_short_no_longer_when_it_gets_a_spring():
     document = altered(
         document, keys=(replace(layer.keys[0], pose=replace(pose, targets={0: away})),)
     )
-    layer, shortfalls = document.layers[0], Derived({})
-    shortfalls.set(layer, measure_key_errors(layer, shortfalls))
-    (lags,) = shortfalls.value.values()
+    layer, target_errors = document.layers[0], Derived({})
+    target_errors.set(layer, measure_key_errors(layer, target_errors))
+    (lags,) = target_errors.value.values()
     assert lags == {0: pytest.approx(60)}
     spring = Spring(handle=0, frequency=2, damping=0.3)
     follower = track_commands.put_spring(0, spring)(document).layers[0]
-    (lags,) = measure_key_errors(follower, shortfalls).values()
+    (lags,) = measure_key_errors(follower, target_errors).values()
     assert lags == {}

@@ -1,4 +1,4 @@
-"""What is on its way to the document is over where the document refuses it, and is told once."""
+"""A pending change of the document ends when the document refuses it, and is reported once."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ def session(tmp_path):
     return session_of(posed(2), tmp_path)
 
 
-def test_refused_pose_is_told_once_and_hides_nothing(session):
+def test_refused_pose_is_reported_once(session):
     project = session.project
     last = project.layer.keys[-1].frame
     frames = replace(project.document.frames, last=last + 20)
@@ -115,8 +115,8 @@ def test_turn_of_a_handle_that_came_later_is_left_out(session):
     playback.scrub(session, 5)
     with session.jobs.held():
         handle = project.layer.handles[0]
-        wishes = {handle.id: Target(position=handle.position + 9)}
-        drag_handles(session, wishes, gesture="drag")
+        targets = {handle.id: Target(position=handle.position + 9)}
+        drag_handles(session, targets, gesture="drag")
         add_handle(session, complex(project.layer.domain.mesh.vertices[0]))
         free_rotation(session, project.layer.handles[-1].id)
     settle(session)

@@ -33,7 +33,7 @@ VIEW = View(centre=MIDDLE, scale=1.0, size=(SIZE, SIZE))
 
 @dataclass(frozen=True, kw_only=True)
 class Star:
-    """A body with straight arms, the first of which is told apart by its colour from a place on.
+    """A body with straight arms, the first of which is of another colour from a place on.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Star:
 
 @cache
 def star_and_clip(seed):
-    """The arm that is told apart behind all else at first, and from a key on in front."""
+    """The arm of another colour behind all else at first, and from a key on in front."""
     star = Star.drawn_by(np.random.default_rng(seed))
     document = star.document((star.tip, -1.0, star.extent))
     layer = document.layers[0]

@@ -175,7 +175,7 @@ def test_later_meshes_lie_on_top_of_a_scene_and_of_a_ghost(easel):
 
 
 @pytest.mark.parametrize("over", [0, 1, 2])
-def test_ghosts_lie_over_as_many_of_the_meshes_as_is_told(easel, over):
+def test_ghosts_cover_the_given_number_of_meshes(easel, over):
     """A red ghost that half covers is behind both, between a wall and the drawing, or in front."""
     corners = np.array([0, 20, 20 + 20j, 20j])
     quad = np.array([[0, 1, 2], [0, 2, 3]], np.int32)

@@ -7,7 +7,7 @@ from numpy.testing import assert_array_equal
 from PIL import Image
 
 from app.document import Meshing
-from app.editor.actions import files
+from app.editor.actions.project_files import files
 from app.storage import decode_picture, load_project, open_layered, save_project
 
 SIZE = (400, 300)

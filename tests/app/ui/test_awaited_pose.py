@@ -7,9 +7,10 @@ import pytest
 from bars import HALF, LAST, bend_bar
 
 from app.document.commands import key_commands
-from app.editor.actions import editing, exporting, playback
+from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.project_files import export_settings
 from app.editor.actions.timing import keys
 from app.motion import Animation
 
@@ -165,7 +166,7 @@ def test_it_is_taken_back_before_it_began(window, bent, come):
     [
         lambda session: playback.scrub(session, 2),
         playback.toggle_play,
-        exporting.ask_destination_and_export,
+        export_settings.ask_destination_and_export,
         insert_key,
     ],
 )

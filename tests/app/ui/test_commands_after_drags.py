@@ -7,7 +7,8 @@ from bars import BENT, check_at_rest, drag_bar
 from invariants import check_invariants
 
 from app.document.commands import scene_commands
-from app.editor.actions import editing, exporting, playback, saving
+from app.editor.actions import editing, playback
+from app.editor.actions.project_files import exporting, saving
 from app.editor.dialogs import Question
 from app.editor.poses import copying
 from app.storage import load_project
@@ -38,8 +39,12 @@ FURTHER = {"paste on selected", "flip on selected"}
 @pytest.fixture
 def ready(window, loose, tmp_path, monkeypatch):
     """That bar with all that commands may need: a file, a place for exports, a copied pose."""
-    monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ("true",))
-    monkeypatch.setattr("app.editor.actions.exporting.put_on_clipboard", lambda _: None)
+    monkeypatch.setattr(
+        "app.editor.actions.project_files.exporting.clipboard_program", lambda: ("true",)
+    )
+    monkeypatch.setattr(
+        "app.editor.actions.project_files.exporting.put_on_clipboard", lambda _: None
+    )
     export = replace(loose.document.export, format="picture", framing="canvas")
     editing.edit_document(window.session, scene_commands.set_export(export))
     loose.export_destinations["picture"] = tmp_path / "picture.png"

@@ -12,7 +12,8 @@ from scenes import PICTURE, drawn
 from app.document import layer_commands
 from app.document.keyframe import Target
 from app.document.layer import Handle
-from app.editor.actions import editing, saving, upkeep
+from app.editor.actions import editing, upkeep
+from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
 from app.editor.timeline_view import TimeRangeView
 

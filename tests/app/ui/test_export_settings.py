@@ -6,7 +6,7 @@ import pytest
 from imgui_bundle import imgui
 
 from app.document.settings import ExportSettings
-from app.editor.actions import exporting, saving
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import FileDialog
 from app.export_formats import EXPORT_FORMATS
@@ -48,7 +48,7 @@ def choose(window, loose, monkeypatch):
 def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path):
     session = window.session
     keys.set_last_frame(session, 24)
-    exporting.set_export_settings(session, ExportSettings(format="gif", size=SIZE))
+    export_settings.set_export_settings(session, ExportSettings(format="gif", size=SIZE))
     window.show_tab("Handle")
     seen = []
 
@@ -79,12 +79,12 @@ def test_the_format_is_seen_before_a_place_is_asked_for(window, loose, tmp_path)
 
 def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, choose):
     settings = replace(loose.document.export, size=SIZE)
-    exporting.set_export_settings(window.session, settings)
+    export_settings.set_export_settings(window.session, settings)
     assert choose("mp4").background == "#ffffff"
     # Chosen for the first time: as large as what was chosen before.
     assert loose.document.export.size == SIZE
     film = replace(loose.document.export, size=(128, 64), background="#203040")
-    exporting.set_export_settings(window.session, film)
+    export_settings.set_export_settings(window.session, film)
     assert choose("webm").background == "transparent", "only MP4 needs one"
     for name, size, background in (
         ("png", SIZE, "transparent"),
@@ -99,15 +99,15 @@ def test_each_format_has_the_pictures_that_it_had_last(window, loose, tmp_path, 
     assert again == loose.document.export
     assert again.in_format("mp4").background == "#203040"
     # A background that was chosen where it need not be goes along.
-    exporting.set_export_settings(
+    export_settings.set_export_settings(
         window.session, replace(loose.document.export, background="#ff0000")
     )
     assert choose("mov").background == "#ff0000"
 
 
 def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose):
-    exporting.set_export_settings(window.session, ExportSettings(size=SIZE))
-    exporting.set_export_destination(window.session, tmp_path / "walk frames")
+    export_settings.set_export_settings(window.session, ExportSettings(size=SIZE))
+    export_settings.set_export_destination(window.session, tmp_path / "walk frames")
     for name, file in (
         ("mp4", "walk.mp4"),
         ("png", "walk frames"),
@@ -117,23 +117,25 @@ def test_names_do_not_grow_from_format_to_format(window, loose, tmp_path, choose
         ("spritesheet", "walk.png"),
     ):
         choose(name)
-        out = exporting.export_destination(loose)
+        out = export_settings.export_destination(loose)
         assert out == tmp_path / file
-        exporting.set_export_destination(window.session, out)
+        export_settings.set_export_destination(window.session, out)
     # A name of one's own is that format's alone.
     choose("gif")
-    exporting.set_export_destination(window.session, tmp_path / "wave.gif")
+    export_settings.set_export_destination(window.session, tmp_path / "wave.gif")
     choose("mp4")
-    assert exporting.export_destination(loose) == tmp_path / "walk.mp4"
+    assert export_settings.export_destination(loose) == tmp_path / "walk.mp4"
     choose("webp")
-    assert exporting.export_destination(loose) == tmp_path / "wave.webp", "beside the newest one"
+    assert export_settings.export_destination(loose) == tmp_path / "wave.webp", (
+        "beside the newest one"
+    )
 
 
 def test_another_format_of_the_same_name_asks_before_it_replaces(window, tmp_path, choose):
     session = window.session
     keys.set_last_frame(session, 24)
-    exporting.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
-    window.act(exporting.start_export_at, tmp_path / "walk.png")
+    export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    window.act(export_settings.start_export_at, tmp_path / "walk.png")
     window.until(lambda: (tmp_path / "walk.json").exists() and session.export is None)
     sheet = (tmp_path / "walk.png").read_bytes()
     choose("apng")
@@ -158,7 +160,7 @@ def test_the_status_bar_tells_how_far_an_export_is_whatever_tab_is_in_front(
     monkeypatch.setattr(imgui, "text_unformatted", lambda text: (written.append(text), draw(text)))
     monkeypatch.setattr(imgui, "text_colored", see_fact)
     window.frames()
-    exporting.set_export_settings(session, ExportSettings(size=SIZE))
+    export_settings.set_export_settings(session, ExportSettings(size=SIZE))
     window.show_tab("Handle")
     window.clock.cost = 0.02
     try:

@@ -9,11 +9,12 @@ from harness import Harness
 from app.document import UnreadMotion
 from app.document.commands import handle_commands
 from app.document.keyframe import Target
-from app.editor.actions import editing, files, saving, viewing
+from app.editor.actions import editing, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import autosaving, files, recovery, saving
 from app.editor.dialogs import Question
 from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
@@ -73,7 +74,7 @@ def test_a_dropped_project_opens(window, project, drop, tmp_path):
     assert window.session.preferences.recent[0] == path
 
 
-def test_a_motion_that_is_not_known_here_is_told(window, project, tmp_path):
+def test_unknown_motion_is_reported(window, project, tmp_path):
     unread = UnreadMotion(index=0, content={"motion": "nosuch"}, reason="it is not known")
     layer = replace(project.layer, unread_motions=(unread,))
     path = tmp_path / "later.lissom"
@@ -176,7 +177,7 @@ def test_changes_made_while_unsaved_work_is_read_are_asked_about(window, project
     path = tmp_path / "unsaved.lissom"
     save_project(path, project.document)
     with window.session.jobs.held():
-        window.act(files.recover_file, path)
+        window.act(recovery.recover_file, path)
         window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     assert window.session.project is project
@@ -251,19 +252,19 @@ def test_more_changes_are_kept_in_its_place(window, project, kept):
     assert kept() == 2
 
 
-def test_refused_autosave_keeps_the_earlier_and_is_told_once(window, project, kept, monkeypatch):
+def test_refused_autosave_is_reported_once(window, project, kept, monkeypatch):
     project.autosaved_at = window.clock.now
     change(window, project)
     pass_time(window, SECONDS)
     assert kept() == 1
     with monkeypatch.context() as patched:
         patched.setattr(project_file, "MOST_VALUES", 3)
-        for is_told in (True, False, False):
+        for has_notice in (True, False, False):
             change(window, project)
             pass_time(window, SECONDS)
             window.settle()
-            told = [text for text in texts(window) if "could not open it again" in text]
-            assert len(told) == is_told
+            notices = [text for text in texts(window) if "could not open it again" in text]
+            assert len(notices) == has_notice
     assert kept() == 1
     pass_time(window, SECONDS)
     assert kept() == 4
@@ -334,11 +335,11 @@ def test_the_autosave_goes_with_work_that_is_given_up(window, project, kept, ver
 
 @pytest.mark.parametrize("verb", [saving.discard_project, editing.undo])
 def test_nothing_stays_of_work_that_is_given_up_meanwhile(window, project, verb):
-    with window.session.jobs.held(saving.AUTOSAVING):
+    with window.session.jobs.held(autosaving.AUTOSAVING):
         project.autosaved_at = window.clock.now
         change(window, project)
         pass_time(window, SECONDS)
-        assert saving.AUTOSAVING in window.session.jobs.kinds
+        assert autosaving.AUTOSAVING in window.session.jobs.kinds
         window.act(verb)
     window.settle()
     assert list(window.folder.glob("unsaved-*")) == []
@@ -368,8 +369,8 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     change(window, project)
     path = tmp_path / "bar.lissom"
     (key,) = project.layer.keys
-    told = MappingProxyType({"from the future": 1})
-    targets = {i: replace(target, unknown=told) for i, target in key.pose.targets.items()}
+    unknown = MappingProxyType({"from the future": 1})
+    targets = {i: replace(target, unknown=unknown) for i, target in key.pose.targets.items()}
     key = replace(key, pose=replace(key.pose, targets=targets))
     layer = replace(project.layer, keys=(key,))
     save_project(path, replace(project.document, layers=(layer,)))
@@ -380,9 +381,9 @@ def test_a_drag_keeps_what_a_later_version_wrote_about_its_target(window, projec
     window.settle()
     target = opened.layer.keys[0].pose.targets[0]
     assert target.position == place + 20j
-    assert target.unknown == told
+    assert target.unknown == unknown
     window.act(editing.edit_document, handle_commands.move_handle(opened.active, 0, place - 5))
-    assert opened.layer.keys[0].pose.targets[0].unknown == told
+    assert opened.layer.keys[0].pose.targets[0].unknown == unknown
 
 
 def test_preferences_are_kept_as_soon_as_they_change(window):

@@ -8,10 +8,11 @@ from app.document.commands.shape_commands import set_anchor
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings, Meshing
 from app.editor.action import do
-from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle, remove_handles, toggle_anchor_at_handle
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag, set_targets
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.render.view import View
 from app.storage.assets import sample_images
@@ -97,7 +98,7 @@ def test_a_person_makes_an_animation_and_takes_it_back(window, tmp_path):
     window.settle()
     assert project.history.is_saved
     out = tmp_path / "frames"
-    exporting.set_export_settings(session, ExportSettings(framing="canvas"))
+    export_settings.set_export_settings(session, ExportSettings(framing="canvas"))
     exporting.start_export(session, out)
     while session.export is not None or session.jobs.kinds:
         window.settle()
@@ -366,7 +367,7 @@ def test_a_box_selects_the_handles_in_it(window, bar):
 
 
 def turned(bar, identity=1):
-    """Return the turn that the pose wishes at a handle, in degrees."""
+    """Return the target angle of a pose at a handle, in degrees."""
     return np.degrees(bar.layer.keys[0].pose.targets[identity].rotation)
 
 

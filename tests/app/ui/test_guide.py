@@ -8,18 +8,11 @@ from PIL import Image
 
 from app.document.keyframe import Target
 from app.document.settings import ExportSettings
-from app.editor.actions import (
-    editing,
-    exporting,
-    files,
-    playback,
-    saving,
-    tutorials,
-    viewing,
-)
+from app.editor.actions import editing, playback, tutorials, viewing
 from app.editor.actions.layer_setup import stiffness_editing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import export_settings, exporting, saving
 from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
 from app.ui.window.tutorial.card import NAME
@@ -156,7 +149,7 @@ def test_the_same_steps_lead_through_an_own_drawing(window, led, tmp_path):
     led.show_tab("Export")
     assert "Choose GIF" in words(window)
     window.act(
-        exporting.set_export_settings, ExportSettings(format=tutorials.FORMAT, size=(120, 40))
+        export_settings.set_export_settings, ExportSettings(format=tutorials.FORMAT, size=(120, 40))
     )
     window.frames(2)
     assert "Click Export" in words(window)
@@ -248,7 +241,7 @@ def test_a_drawing_that_is_not_chosen_is_not_waited_for(window, pupil):
 
 
 def test_samples_have_stories_and_move_under_the_pointer(window):
-    for sample in files.sample_files():
+    for sample in tutorials.sample_files():
         assert sample.story, f"{sample.name} has no story"
         assert sample.moving.exists() == (sample.what == "animated"), sample.name
     window.frames(20)

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from app.document.commands import key_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback
+from app.editor.actions.layer_setup import handle_editing
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import nudge_handles, pin_selected_handles, set_targets
 
@@ -88,7 +89,7 @@ def test_suggestions_are_taken_back_after_other_steps(window, bar, play):
     suggested = {handle.id for handle in bar.layer.handles} - {0, 1}
     assert len(suggested) == 1, "there are handles at both ends already"
     editing.select_handles(window.session, frozenset({0}))
-    editing.toggle_handles_locked(window.session)
+    handle_editing.toggle_handles_locked(window.session)
     window.run(lambda robot: robot.item_click("**/Take back"))
     assert [(handle.id, handle.locked) for handle in bar.layer.handles] == [(0, True), (1, False)]
 
@@ -212,7 +213,7 @@ def test_a_click_on_one_of_several_selected_leaves_it_alone_selected(window, loo
 
 def test_a_click_on_one_of_several_selected_selects_its_group(window, loose):
     editing.select_handles(window.session, frozenset({0, 1}))
-    editing.group_handles(window.session)
+    handle_editing.group_handles(window.session)
     click(window, places(loose)[1])
     assert loose.selected_handles == {0, 1}
 

@@ -1,4 +1,4 @@
-"""A handle that is dragged beyond its reach, by the pointer, with what is told and offered then."""
+"""A handle that is dragged beyond its reach, by the pointer, and the notice about it."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def places(bar):
     return np.array(bar.layer_runtime.shown.handle_positions)
 
 
-def told(window):
+def texts(window):
     return [toast.text for toast in window.session.toasts if "stopped" in toast.text]
 
 
@@ -38,7 +38,7 @@ def drag(window, bar, way, *, key=None):
         robot.mouse_move_to_pos(window.point(start + way / 2))
         robot.mouse_move_to_pos(window.point(start + way))
         robot.yield_(2)
-        assert "to keep the wish beyond its reach" in window.session.hint
+        assert "to keep the target beyond its reach" in window.session.hint
         if key is not None:
             robot.key_down(int(key))
         robot.mouse_up(0)
@@ -59,8 +59,8 @@ def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
     assert short > 50
     wanted = bar.layer.keys[0].pose.targets[HAND].position
     assert abs(wanted - reached[HAND]) < 2
-    (text,) = told(window)
-    assert text == STOPPED_AT_LIMIT.format(who=bar.layer.handles[HAND].name, its="its")
+    (text,) = texts(window)
+    assert text == STOPPED_AT_LIMIT.format(handle=bar.layer.handles[HAND].name)
     window.run(lambda robot: robot.item_click("**/Loosen"))
     window.settle()
     assert bar.layer.bounds == RUBBERY.bounds
@@ -74,9 +74,9 @@ def test_the_rest_stays_and_loosen_lets_it_come_nearer(window, bar):
     assert np.abs(places(bar) - start).max() < 1e-6
 
 
-def test_alt_while_releasing_keeps_the_wish(window, bar):
+def test_alt_while_releasing_keeps_the_target(window, bar):
     start = places(bar)
     asked = drag(window, bar, OUT, key=window.Key.mod_alt)
     assert bar.layer.keys[0].pose.targets[HAND].position == pytest.approx(asked, abs=3)
     assert np.abs(places(bar)[1:] - start[1:]).max() > 3
-    assert not told(window)
+    assert not texts(window)

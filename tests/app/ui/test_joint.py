@@ -1,4 +1,4 @@
-"""A layer is hung on another one by a drag from its anchor, with the pointer."""
+"""A layer is attached to another layer by a drag from its anchor, with the pointer."""
 
 import re
 from dataclasses import replace
@@ -23,9 +23,10 @@ from app.document import (
     shape_commands,
     transform_at,
 )
-from app.editor.actions import editing, files, playback, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.project_files import recovery
 from app.editor.layering.layer_list import move_layer
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
@@ -81,17 +82,17 @@ def on_scene(project, name):
 
 @pytest.fixture
 def drag(window, scene):
-    """Drags from the anchor over places of the scene; returns what was told at each."""
+    """Drags from the anchor over places of the scene; returns the hint at each place."""
 
     def drag(*places, key=None, gives_up=False):
-        told = []
+        hints = []
 
         def run(robot):
             shown = scene.layer_runtime.shown
             start = find_anchor(scene, shown)
             start = shown.handle_positions[0] if start is None else start
             robot.mouse_move_to_pos(window.point(complex(start)))
-            told.append(window.session.hint)
+            hints.append(window.session.hint)
             if key is not None:
                 robot.key_down(int(key))
             robot.mouse_down(0)
@@ -100,7 +101,7 @@ def drag(window, scene):
                     window.point(scene.layer_runtime.shown.placement.apply_inverse(place))
                 )
                 robot.yield_(3)
-                told.append(window.session.hint)
+                hints.append(window.session.hint)
             if gives_up:
                 robot.key_press(int(window.Key.escape))
             robot.mouse_up(0)
@@ -109,7 +110,7 @@ def drag(window, scene):
 
         window.run(run)
         window.settle()
-        return told
+        return hints
 
     return drag
 
@@ -125,10 +126,10 @@ def test_the_anchor_is_dragged_onto_another_layer(window, scene, drag):
     window.act(playback.seek, 10)
     window.settle()
     before, was = scene.document, on_scene(scene, "arm")
-    told = drag(BESIDE, SHOULDER)
-    assert "drag to hang it on another layer" in told[0].lower()
-    assert "over the layer to hang it on" in told[1]
-    assert "to hang arm on body" in told[2]
+    hints = drag(BESIDE, SHOULDER)
+    assert "drag to attach it to another layer" in hints[0].lower()
+    assert "over the layer to attach it to" in hints[1]
+    assert "to attach arm to body" in hints[2]
     joint = scene.document.layer(arm).attachments[0]
     assert (joint.parent, joint.inherits_rotation) == (body, True)
     assert abs(joint.parent_point - SHOULDER) < 1
@@ -195,12 +196,12 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     before = scene.document
     window.act(set_active_layer, body)
     window.settle()
-    told = drag(212 + 120j)
-    assert "hangs on body itself" in told[-1]
+    hints = drag(212 + 120j)
+    assert "attached to body itself" in hints[-1]
     assert scene.document is before
     assert window.session.toasts[-1].tone == "error"
     assert re.search(
-        says(PARENT_IS_DESCENDANT, name="hand", parent="body", other="body"),
+        says(PARENT_IS_DESCENDANT, name="hand", parent="body"),
         window.session.toasts[-1].text,
     )
 
@@ -253,7 +254,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     Autosave(tmp_path).write(scene.document, SourceInfo("man", None))
     (kept,) = tmp_path.glob("unsaved-*.lissom")
     window.session.project = None
-    window.act(files.recover_file, kept)
+    window.act(recovery.recover_file, kept)
     window.settle()
     again = window.session.project
     assert not differences(again.document, scene.document)
@@ -267,7 +268,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
 
 @pytest.fixture
 def swung(window, scene):
-    """The arm hangs on the body, which turns; a handle's way is shown, and ghosts."""
+    """The arm is attached to the body, which turns; a motion path and ghosts are shown."""
     arm, body = identity(scene, "arm"), identity(scene, "body")
     layer = scene.document.layer(body)
     pose = layer.keys[0].pose
@@ -321,7 +322,7 @@ def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(wind
 
 
 @pytest.mark.usefixtures("everything")
-def test_where_layers_hang_is_not_told_by_joints_of_an_earlier_document(window, swung):
+def test_joints_of_an_earlier_document_are_not_used(window, swung):
     (way,) = ways(window, swung)
     joints = swung.parent_transforms.value
     layer = swung.document.layer(identity(swung, "body"))
@@ -402,7 +403,7 @@ def placed(project, name, frame, place):
 
 def test_ghosts_are_of_all_layers_where_their_joints_have_them_then(window, nodding):
     plain, ghosts = ghosts_of(window)
-    # Edges of the arm, which hangs on the body, and of the body: nothing is there at frame 12.
+    # Edges of the arm, whose parent is the body, and of the body: both are empty at frame 12.
     edges = {
         "arm": {0: 168 + 108j, 24: 180 + 126j},
         "body": {0: 105 + 60j, 24: 66 + 168j},
@@ -415,7 +416,7 @@ def test_ghosts_are_of_all_layers_where_their_joints_have_them_then(window, nodd
             assert tint > 20 if frame == 0 else tint < -20, (name, frame)
 
 
-def test_ghosts_are_in_front_where_that_is_wished(window, nodding):
+def test_ghosts_are_in_front_when_the_person_asks(window, nodding):
     plain, behind = ghosts_of(window)
     at = placed(nodding, "body", 12, 85 + 100j)  # within the body, now and then
     np.testing.assert_array_equal(around(window, behind, at), around(window, plain, at))
@@ -434,9 +435,7 @@ def test_ghosts_are_in_front_where_that_is_wished(window, nodding):
 
 
 @pytest.mark.usefixtures("everything")
-def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_where(
-    window, nodding
-):
+def test_attached_layer_has_no_ghost_until_its_place_is_known(window, nodding):
     ghosts_of(window)
     layer = nodding.document.layer(identity(nodding, "body"))
     pose = replace(layer.keys[0].pose, phi=layer.domain.cage + 40j)
@@ -448,7 +447,7 @@ def test_what_hangs_on_something_moved_just_now_has_no_ghost_until_it_is_known_w
     assert there.apply(np.array([SHOULDER]))[0] == pytest.approx(SHOULDER + 40j, abs=1e-6)
 
 
-def test_while_a_layer_is_posed_itself_its_way_stays_where_it_hangs(window, swung):
+def test_motion_path_stays_at_its_parent_during_a_drag(window, swung):
     window.act(playback.seek, 24)
     window.settle()
     (way,) = ways(window, swung)
@@ -480,7 +479,7 @@ def test_ways_are_of_what_plays_or_of_some_frames_around_the_playhead(window, sw
     np.testing.assert_allclose(near, whole[12:21], rtol=0, atol=1e-9)
 
 
-def test_the_cage_is_drawn_where_its_layer_hangs(window, swung):
+def test_cage_is_drawn_at_its_attached_layer(window, swung):
     window.act(viewing.toggle_overlay, "paths")
     window.act(viewing.toggle_overlay, "cage")
     window.settle()

@@ -22,9 +22,10 @@ from app.document import (
 )
 from app.document.keyframe import Target
 from app.editor import do
-from app.editor.actions import editing, files, playback, saving
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import saving
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.actions.viewing import close_dialog
 from app.editor.layering.layer_list import (
@@ -1041,7 +1042,7 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
     arm = identity(project, "arm")
     window.act(set_active_layer, arm)
     window.show_tab("Layers")
-    window.act(files.toggle_import_log)
+    window.act(viewing.toggle_import_log)
 
     def play(robot):
         robot.set_ref("Layers")

@@ -8,10 +8,11 @@ from silhouettes import paint
 
 from app.document import is_motion_unedited
 from app.editor import pending_changes
-from app.editor.actions import editing, playback, saving
+from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import remove_handles, suggest_handles
 from app.editor.actions.posing.motion_presets import apply_motion, joint_placement, preset_setup
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import saving
 from app.storage.project_file import load_project
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.table import BINDINGS

@@ -11,7 +11,8 @@ import pytest
 
 from app.document.settings import ExportSettings
 from app.editor.action import do
-from app.editor.actions import exporting, files, saving, viewing
+from app.editor.actions import viewing
+from app.editor.actions.project_files import export_settings, files, recovery, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import FileDialog
 from app.storage.assets import sample_images
@@ -104,7 +105,7 @@ def test_unsaved_work_is_offered_under_the_name(window, opened, folder):
     left.write(opened.document, SourceInfo(NAME, folder / f"{NAME}.lissom"))
     os.close(left._lock)  # as the system does when its process ends
     window.act(saving.discard_project)
-    window.act(files.ask_recovery)
+    window.act(recovery.ask_recovery)
     (candidate,) = window.session.dialog.candidates
     assert candidate.origin == SourceInfo(SHOWN, folder / f"{NAME}.lissom")
     assert messages(window) == []
@@ -142,9 +143,9 @@ def note(chosen, _, path):
 def test_an_export_goes_there(window, folder, kind, ending):
     name = f"{NAME}{ending}"
     window.act(keys.set_last_frame, 2)
-    window.act(exporting.set_export_settings, ExportSettings(format=kind))
+    window.act(export_settings.set_export_settings, ExportSettings(format=kind))
     window.show_tab("Export")
-    window.act(exporting.start_export_at, folder / name)
+    window.act(export_settings.start_export_at, folder / name)
     window.until(lambda: window.session.toasts)
     assert messages(window)[0].startswith("Exported ")
     assert (folder / name).exists()

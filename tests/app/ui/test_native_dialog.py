@@ -9,8 +9,9 @@ from functools import partial
 import pytest
 
 from app.editor.action import do
-from app.editor.actions import files, saving, viewing
+from app.editor.actions import viewing
 from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.project_files import files, saving
 from app.editor.dialogs import FileDialog, Question
 from app.storage.assets import sample_images
 from app.ui.dialogs import native_dialog

@@ -1,4 +1,4 @@
-"""Whatever follows a drag at once, what comes is the pose in which its wish comes to rest."""
+"""Whatever follows a drag at once, the document gets the pose at rest at the drag's targets."""
 
 import threading
 from dataclasses import replace
@@ -11,12 +11,13 @@ from PIL import Image
 from app.document.commands import key_commands, scene_commands
 from app.document.keyframe import Target
 from app.document.settings import FrameRange
-from app.editor.actions import editing, exporting, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle, mirror_handles, remove_handles
 from app.editor.actions.posing.inserting import INSERTING, insert_key
 from app.editor.actions.posing.pose_drag import cancel_drag, release_drag, set_targets
 from app.editor.actions.posing.pose_solver import POSING, is_display_final
+from app.editor.actions.project_files import exporting, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import Question
 from app.editor.layering.layer_list import duplicate_layer
@@ -199,7 +200,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
 def test_copying_the_picture_leaves_an_export_alone_that_is_prepared(
     window, loose, tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("app.editor.actions.exporting.clipboard_program", lambda: ())
+    monkeypatch.setattr("app.editor.actions.project_files.exporting.clipboard_program", lambda: ())
     few = FrameRange(0, 2)
     export = replace(loose.document.export, format="gif", framing="canvas", frames=few)
     editing.edit_document(window.session, scene_commands.set_export(export))
@@ -270,7 +271,7 @@ def test_closing_asks_about_what_is_on_its_way(window, loose, tmp_path, what):
     assert len(saved.layers[0].library) == len(loose.document.layers[0].library)
 
 
-def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
+def test_second_close_asks_at_once(window, loose, tmp_path):
     saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.settle()
     playback.scrub(window.session, 7)
@@ -280,7 +281,7 @@ def test_whoever_insists_is_asked_at_once(window, loose, tmp_path):
         saving.close_project(window.session)
         assert question(window) is None
         saving.close_project(window.session)
-        assert "Inserting a key is not finished" in question(window).text
+        assert saving.NOT_FINISHED.format(tasks=INSERTING.label) in question(window).text
     window.session.dialog = None
     window.settle()
     assert window.session.project is loose
@@ -317,8 +318,8 @@ def test_two_keys_that_are_inserted_at_once_both_come(window, loose):
             playback.scrub(window.session, frame)
             insert_key(window.session)
     window.settle()
-    told = [toast.text for toast in window.session.toasts]
-    assert loose.layer.key_frames == {0, 7, 14, 24}, told
+    texts = [toast.text for toast in window.session.toasts]
+    assert loose.layer.key_frames == {0, 7, 14, 24}, texts
 
 
 def test_decoded_pictures_go_with_the_steps_that_have_them(window, loose, tmp_path):

@@ -6,9 +6,9 @@ import pytest
 from imgui_bundle import hello_imgui
 
 from app.document.keyframe import Target
-from app.editor.actions import saving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import saving
 from app.editor.dialogs import Question
 from app.storage import NO_FOLDER
 from app.storage.project_file import load_project

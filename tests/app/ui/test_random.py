@@ -22,8 +22,13 @@ from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
 from app.document.timing.easing import PRESETS, Easing
 from app.document.timing.springs import Spring
-from app.editor.actions import editing, exporting, playback, viewing
-from app.editor.actions.layer_setup import cut_out_editing, resolving, stiffness_editing
+from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup import (
+    cut_out_editing,
+    handle_editing,
+    resolving,
+    stiffness_editing,
+)
 from app.editor.actions.posing.handles import (
     add_handle,
     mirror_handles,
@@ -36,6 +41,7 @@ from app.editor.actions.posing.pose_drag import (
     release_drag,
     set_targets,
 )
+from app.editor.actions.project_files import export_settings
 from app.editor.actions.timing import keys, springs, timeline_drag, tracks
 from app.editor.layering.layer_channels import (
     delete_draw_order_key,
@@ -84,7 +90,7 @@ from engine.maps.bounds import Bounds
 SEEDS = (1, 2, *(pytest.param(seed, marks=pytest.mark.long) for seed in (15, 3)))
 FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
-REMEMBERED = 20  # actions that are told where the walk fails
+REMEMBERED = 20  # actions that are reported when the walk fails
 # Steps between two looks at the invariants, between two saves, and until all work is done.
 LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
@@ -209,7 +215,7 @@ class Walk:
         self.path = folder / "walk.lissom"
         self.picture = draw_bone(folder / "bone.png")
         self.rng = np.random.default_rng(seed)
-        self.told = deque(maxlen=REMEMBERED)
+        self.actions = deque(maxlen=REMEMBERED)
         self.is_down = False
         self.modifier = 0
 
@@ -243,11 +249,11 @@ class Walk:
     def pick(self, verbs) -> None:
         odds = np.array([weight for _, weight in verbs], dtype=float)
         verb, _ = verbs[self.rng.choice(len(verbs), p=odds / odds.sum())]
-        self.told.append(verb.__name__)
+        self.actions.append(verb.__name__)
         verb(self)
 
     def note(self, *words: object) -> None:
-        self.told[-1] += " " + " ".join(map(str, words))
+        self.actions[-1] += " " + " ".join(map(str, words))
 
     def choice(self, options):
         """Return one of some options as it is, whatever NumPy would make of it."""
@@ -390,15 +396,15 @@ class Walk:
 
     def pull(self) -> None:
         shown = self.project.layer_runtime.shown
-        wishes = {}
+        targets = {}
         for handle, place in zip(shown.clip.layer.handles, shown.handle_positions, strict=True):
             if handle in self.project.layer.handles and self.chance(0.4):
                 far = 1.0 if self.chance(0.05) else 0.05
                 offset = complex(*self.rng.normal(0, far * self.size, 2))
                 turn = float(self.rng.normal()) if self.chance(0.2) else None
-                wishes[handle.id] = Target(position=complex(place) + offset, rotation=turn)
-        if wishes:
-            self.act(set_targets, wishes)
+                targets[handle.id] = Target(position=complex(place) + offset, rotation=turn)
+        if targets:
+            self.act(set_targets, targets)
 
     def change_handle(self) -> None:
         handles = self.project.layer.handles
@@ -414,9 +420,9 @@ class Walk:
                 self.act(
                     self.choice(
                         (
-                            editing.toggle_handles_locked,
-                            editing.group_handles,
-                            editing.ungroup_handles,
+                            handle_editing.toggle_handles_locked,
+                            handle_editing.group_handles,
+                            handle_editing.ungroup_handles,
                         )
                     )
                 )
@@ -767,7 +773,7 @@ class Walk:
             framing=self.choice(("canvas", "fit")),
             frames=self.choice((None, FrameRange(*frames))),
         )
-        self.act(exporting.set_export_settings, settings)
+        self.act(export_settings.set_export_settings, settings)
 
     def undo(self) -> None:
         for _ in range(self.rng.integers(1, 4)):
@@ -924,7 +930,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
         try:
             walk.step(number)
         except Exception as error:
-            last = "\n".join(walk.told)
+            last = "\n".join(walk.actions)
             raise AssertionError(f"seed {seed}, step {number}: {error}\nafter\n{last}") from error
     walk.release()
     walk.act(release_drag)

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from app.editor import error_reports
-from app.editor.actions import files, viewing
+from app.editor.actions import viewing
+from app.editor.actions.project_files import recovery
 from app.editor.dialogs import FileDialog, ProblemReport, RecoveryDialog
 from app.reports import format_trace
 from app.storage.autosave import Autosave, load_report, write_report
@@ -89,18 +90,18 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     session.project = None
-    files.ask_recovery(session)
+    recovery.ask_recovery(session)
     error_reports.offer_kept_report(session)
     window.frames(3)
-    recovery = session.dialog
-    assert isinstance(recovery, RecoveryDialog)
+    dialog = session.dialog
+    assert isinstance(dialog, RecoveryDialog)
     assert session.toasts == [], "one thing at a time"
     window.run(lambda robot: robot.item_click("//###dialog/Report a problem…"))
     window.frames(2)
     assert session.dialog.text == "It was this."
     window.run(lambda robot: robot.item_click("//###dialog/Close"))
     window.frames(2)
-    assert session.dialog is recovery
+    assert session.dialog is dialog
     window.run(lambda robot: robot.item_click("//###dialog/Later"))
     window.frames(2)
     assert session.dialog is None

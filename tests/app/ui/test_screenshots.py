@@ -45,10 +45,10 @@ def dragon(window, wanted):
     for frame, (head, tail) in MOVES.items():
         playback.seek(session, frame)
         window.settle()
-        wishes = {0: head, 2: tail}
+        moves = {0: head, 2: tail}
         set_targets(
             session,
-            {i: Target(position=rest[i].position + scaled(move)) for i, move in wishes.items()},
+            {i: Target(position=rest[i].position + scaled(move)) for i, move in moves.items()},
         )
         window.settle()
     editing.select_keys(session, frozenset({16}))

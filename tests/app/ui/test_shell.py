@@ -4,8 +4,9 @@ from harness import Harness
 from imgui_bundle import ImVec2, hello_imgui, imgui
 from PIL import Image
 
-from app.editor.actions import editing, playback, saving, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
+from app.editor.actions.project_files import saving
 from app.editor.work.jobs import Job, JobKind
 from app.storage.assets import sample_images
 from app.ui.style.theme import PALETTES

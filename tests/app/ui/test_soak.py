@@ -9,9 +9,10 @@ import pytest
 from held import held, in_use
 
 from app.document.commands.layers import layer_commands
-from app.editor.actions import editing, playback, saving
+from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
+from app.editor.actions.project_files import saving
 from app.editor.actions.timing import keys
 from app.storage.assets import sample_images
 from app.ui.window import memory

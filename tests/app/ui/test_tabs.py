@@ -11,10 +11,11 @@ from app.document.commands import key_commands
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
-from app.editor.actions import editing, exporting, playback, upkeep
+from app.editor.actions import editing, playback, upkeep
 from app.editor.actions.layer_setup.resolving import SOLVING_KEYS
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import set_targets
+from app.editor.actions.project_files import export_settings
 from app.export_formats import MeshOptions, SpriteSheetOptions
 from app.motion.extents.extent import extent_key
 from app.storage import NO_FOLDER
@@ -377,13 +378,15 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
         robot.item_click("**/tolerance/###Own")
         robot.item_input_value("**/##tolerance", 0.25)
 
-    exporting.set_export_settings(
+    export_settings.set_export_settings(
         window.session, replace(project.document.export, format="spritesheet")
     )
     tab("Export", lay_out)
     wanted = SpriteSheetOptions(trimmed=False, padding=256, power_of_two=True)
     assert project.document.export.sheet == wanted
-    exporting.set_export_settings(window.session, replace(project.document.export, format="glb"))
+    export_settings.set_export_settings(
+        window.session, replace(project.document.export, format="glb")
+    )
     tab("Export", detail)
     assert project.document.export.shapes == MeshOptions(triangles=900, tolerance=0.25)
     tab("Export", lambda robot: robot.item_click("**/tolerance/###½ px, 8 shapes"))
@@ -444,7 +447,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
 
 def test_export_starts_repeats_and_reports(window, project, tab, tmp_path):
     session = window.session
-    exporting.set_export_settings(session, replace(project.document.export, size=(80, 60)))
+    export_settings.set_export_settings(session, replace(project.document.export, size=(80, 60)))
 
     def choose(robot):
         robot.item_click("**/range/###own")

@@ -1,4 +1,4 @@
-"""What goes wrong is told in words, and the window lives on."""
+"""Failures are reported in words, and the window lives on."""
 
 import errno
 import os
@@ -10,10 +10,11 @@ import pytest
 from harness import Harness
 
 from app.document.keyframe import Target
-from app.editor.actions import exporting, files, saving, upkeep
+from app.editor.actions import upkeep
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import autosaving, exporting, files, recovery, saving
 from app.editor.dialogs import FileDialog, Question, RecoveryDialog
 from app.editor.work.jobs import Job, JobKind
 from app.errors import CANCELLED
@@ -104,13 +105,13 @@ def crash(window, project):
     """End without a farewell while there is unsaved work, and start again; what it goes by."""
     window.clock.now += SECONDS
     project.autosaved = None
-    saving.autosave(window.session)
+    autosaving.autosave(window.session)
     window.settle()
     window.session.autosave = Autosave(window.folder)
     for lock in window.folder.glob("unsaved-*.lock"):
         lock.unlink()
     window.session.project = None
-    files.ask_recovery(window.session)
+    recovery.ask_recovery(window.session)
     window.frames(3)
     (leftover,) = find_recoverable_files(window.folder)
     return load_recoverable_file(leftover)[1]
@@ -124,11 +125,11 @@ def test_unsaved_work_comes_back_after_a_crash(window, project):
     orphan.with_suffix(".lock").unlink()
     assert find_recoverable_files(window.folder) == [orphan]
     window.session.project = None
-    files.ask_recovery(window.session)
+    recovery.ask_recovery(window.session)
     window.frames(3)
     assert window.session.dialog is not None
     window.session.dialog = None
-    files.recover_file(window.session, orphan)
+    recovery.recover_file(window.session, orphan)
     window.settle()
     recovered = window.session.project
     assert recovered is not None
@@ -256,7 +257,7 @@ def test_a_file_is_held_while_it_is_open_and_no_longer(window, saved, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"a.lissom", "b.lissom"}
 
 
-def test_where_no_lock_can_be_had_the_file_opens_and_that_is_told(window, saved, monkeypatch):
+def test_file_opens_with_a_notice_when_it_cannot_be_locked(window, saved, monkeypatch):
     def no_locks(_):
         raise OSError(errno.ENOLCK, "No locks available")
 
@@ -310,7 +311,7 @@ def test_a_file_that_was_only_copied_or_touched_is_no_other_one(window, project,
     assert len(load_project(saved).layers[0].handles) == 1
 
 
-def test_a_folder_that_was_removed_is_told_and_the_work_stays(window, project, saved):
+def test_removed_folder_is_reported_and_the_work_stays(window, project, saved):
     for path in saved.parent.iterdir():
         path.unlink()
     saved.parent.rmdir()
@@ -345,7 +346,7 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
         window.session.toasts = []
         window.clock.now += SECONDS
         window.settle()
-        assert texts(window) == []  # it was told
+        assert texts(window) == []  # it was reported
     assert list(window.folder.glob("unsaved-*.lissom")) == []
     window.clock.now += SECONDS
     window.settle()
@@ -364,9 +365,9 @@ def test_older_work_that_waits_to_be_kept_does_not_replace_what_was_kept_at_once
     window.session.jobs.put(busy)
     window.clock.now += SECONDS
     window.frames(2)
-    assert saving.AUTOSAVING in window.session.jobs.kinds
+    assert autosaving.AUTOSAVING in window.session.jobs.kinds
     window.act(add_handle, middle + 50)
-    saving.autosave_now(window.session)
+    autosaving.autosave_now(window.session)
     end.set()
     window.settle()
     (kept,) = window.folder.glob("unsaved-*.lissom")
@@ -383,7 +384,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
         with suppress(OSError, OverflowError):
             os.utime(path, (time, time))
     saving.set_project(window.session, None)
-    files.ask_recovery(window.session)
+    recovery.ask_recovery(window.session)
     window.frames(3)
     dialog = window.session.dialog
     assert isinstance(dialog, RecoveryDialog)
@@ -398,7 +399,7 @@ def test_every_unsaved_work_is_offered_whenever_it_was_kept(window, project):
     assert window.session.project is not None
     assert len(find_recoverable_files(window.folder)) == 1
     remove_recoverable_file(find_recoverable_files(window.folder)[0])
-    window.act(files.show_recovery)
+    window.act(recovery.show_recovery)
     assert any("no unsaved work" in text for text in texts(window))
 
 
@@ -406,14 +407,16 @@ def test_a_worker_that_never_ends_can_be_cancelled_and_nothing_waits_for_it(
     window, project, tmp_path, monkeypatch, end
 ):
     monkeypatch.setattr(window.session.jobs, "_clock", window.clock)
-    monkeypatch.setattr("app.editor.actions.files.open_picture", lambda *_: end.wait())
+    monkeypatch.setattr(
+        "app.editor.actions.project_files.files.open_picture", lambda *_: end.wait()
+    )
     files.open_file(window.session, sample_images() / "bar.png")
     window.frames(3)
     # What is kept does not wait for it.
     saving.write_project(window.session, tmp_path / "a.lissom", None)
     window.until(lambda: project.path is not None)
     assert (tmp_path / "a.lissom").exists()
-    window.until(lambda: saving.WRITING not in window.session.jobs.kinds)
+    window.until(lambda: autosaving.WRITING not in window.session.jobs.kinds)
     window.clock.now += ENDLESS
     window.frames(3)
     assert [kind.label for kind in window.session.jobs.running_for(ENDLESS)] == ["Opening bar.png"]
@@ -446,9 +449,7 @@ def test_a_save_does_not_wait_for_ever_for_a_pose_that_never_settles(
 
 
 @pytest.mark.parametrize("has_room", [True, False])
-def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
-    window, project, monkeypatch, has_room
-):
+def test_failing_graphics_driver_is_reported(window, project, monkeypatch, has_room):
     window.act(add_handle, complex(*project.document.canvas) / 2)
     window.settle()
     window.session.autosave.remove()
@@ -465,9 +466,9 @@ def test_a_graphics_driver_that_fails_is_told_and_the_work_is_kept(
         if not has_room:
             patch.setattr("app.storage.files.atomic.os.fsync", full)
         window.frames(3)
-    (told,) = (text for text in texts(window) if "the context was lost" in text)
-    assert ("work was kept" in told) is has_room
-    assert ("work could not be kept" in told) is not has_room
+    (text,) = (text for text in texts(window) if "the context was lost" in text)
+    assert ("work was kept" in text) is has_room
+    assert ("work could not be kept" in text) is not has_room
     window.session.toasts = []
     kept = list(window.folder.glob("unsaved-*.lissom"))
     assert len(kept) == has_room

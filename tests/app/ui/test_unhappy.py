@@ -12,12 +12,13 @@ from app.document.commands import handle_commands, key_commands
 from app.document.keyframe import TangentMode, Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import editing, exporting, files, playback, saving, upkeep, viewing
+from app.editor.actions import editing, playback, upkeep, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.posing.pose_solver import POSING
+from app.editor.actions.project_files import autosaving, export_settings, files, saving
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.timeline_view import KeyBox
 from app.editor.work.derived import Derived
@@ -229,13 +230,13 @@ def test_weights_and_places_that_change_leave_the_solver_at_work(window, loose):
         handle_commands.set_handle_weight(0, {1}, 3.0),
         handle_commands.move_handle(0, 1, rest - 30),
     ):
-        wish = place_of(loose, 1) - 20j
-        set_targets(window.session, {1: Target(position=wish)})
+        target = place_of(loose, 1) - 20j
+        set_targets(window.session, {1: Target(position=target)})
         editing.edit_document(window.session, command)
         window.settle()
         pose = loose.layer.key(24).pose
-        assert abs(loose.layer.map_of(pose)(np.array([rest]))[0] - wish) < 2
-    # Of the point that the handle was put on nothing was wished.
+        assert abs(loose.layer.map_of(pose)(np.array([rest]))[0] - target) < 2
+    # The point under the new handle has no target.
     assert loose.layer.target_errors(pose)[1] < 1e-6
 
 
@@ -313,7 +314,7 @@ def test_loose_pose_over_a_cage_that_is_rebuilt_is_given_up(window, loose):
 
 
 @pytest.mark.usefixtures("painted")
-def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch):
+def test_handle_out_of_reach_is_reported_and_freed(window, loose, monkeypatch):
     session = window.session
     undo_all(window)
     editing.redo(session)
@@ -329,7 +330,7 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
         robot.mouse_down(0)
         for step in range(1, steps + 1):
             robot.mouse_move_to_pos(window.point(start + (end - start) * step / steps))
-        robot.key_down(imgui.Key.mod_alt)  # which keeps a wish that is out of reach
+        robot.key_down(imgui.Key.mod_alt)  # which keeps a target that is out of reach
         robot.mouse_up(0)
         robot.key_up(imgui.Key.mod_alt)
 
@@ -345,26 +346,26 @@ def test_handle_out_of_reach_is_told_and_freed_again(window, loose, monkeypatch)
     np.testing.assert_allclose(pose.targets[1].position, far, rtol=0, atol=10)
     assert measure_target_errors(loose.layer, loose.layer_runtime.shown.pose).errors[1] > 100
 
-    wishes, written = [], []
+    targets, written = [], []
     mark, text = marks.mark_handles, imgui.text_colored
 
     def marked(marks, **options):
-        wishes.extend(mark.target for mark in marks)
+        targets.extend(mark.target for mark in marks)
         return mark(marks, **options)
 
-    def told(colour, words):
+    def colored(colour, words):
         written.append(words)
         text(colour, words)
 
     with monkeypatch.context() as patch:
         patch.setattr(marks, "mark_handles", marked)
-        patch.setattr(imgui, "text_colored", told)
+        patch.setattr(imgui, "text_colored", colored)
         window.show_tab("Handle")
         editing.select_handles(session, frozenset())
         window.frames(2)
         editing.select_handles(session, frozenset({1}))
         window.frames(3)
-    assert wishes[-1] == pose.targets[1].position
+    assert targets[-1] == pose.targets[1].position
     assert any(HELD_BY_LIMITS in words for words in written)
 
     window.run(lambda robot: pull(robot, start))
@@ -469,11 +470,11 @@ FAILURES = {
         lambda session: keys.insert_key_in_row_at(session, 12),
     ),
     "Saving": (
-        "app.editor.actions.saving.save_project",
+        "app.editor.actions.project_files.saving.save_project",
         lambda session: saving.write_project(session, session.folder / "bar.lissom", None),
     ),
     "Opening": (
-        "app.editor.actions.files.open_picture",
+        "app.editor.actions.project_files.files.open_picture",
         lambda session: files.open_file(session, BAR),
     ),
 }
@@ -481,9 +482,7 @@ FAILURES = {
 
 @pytest.mark.parametrize("kind", FAILURES)
 @pytest.mark.usefixtures("everything")
-def test_job_that_raises_is_told_once_and_the_window_lives_on(
-    window, loose, monkeypatch, request, kind
-):
+def test_raising_job_is_reported_once(window, loose, monkeypatch, request, kind):
     where, begin = FAILURES[kind]
     asked = []
 
@@ -543,7 +542,7 @@ WAITING = {
     upkeep.SKETCHING: lambda session: keys.set_inbetween_method(session, "nu"),
     upkeep.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
-        exporting.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
+        export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
         upkeep.maintain(session),
     ),
     resolving.SOLVING_KEYS: resolving.solve_keys_again,
@@ -568,7 +567,7 @@ def test_a_new_key_stands_in_for_in_betweens_that_are_not_prepared(window, loose
             np.testing.assert_array_equal(shown.positions, mesh.pose_vertices(key.pose))
             window.frames(2)
             assert loose.layer_runtime.shown is shown, "nothing is worked out again while it waits"
-        # Where the handles will be is not known yet: what is wished comes once it is.
+        # Where the handles will be is not known yet: the targets come once they are.
         set_targets(window.session, {1: Target(position=complex(0.85 * width, 0.4 * height))})
         window.frames(2)
     window.settle()
@@ -603,10 +602,10 @@ def test_results_for_a_closed_project_go_nowhere(window, loose, kind):
 
 @pytest.mark.usefixtures("loose")
 def test_work_that_is_given_up_while_it_is_kept_does_not_come_back(window):
-    with window.session.jobs.held(saving.AUTOSAVING):
+    with window.session.jobs.held(autosaving.AUTOSAVING):
         window.clock.now += 2 * SECONDS
         window.frames(2)
-        assert saving.AUTOSAVING in window.session.jobs.kinds
+        assert autosaving.AUTOSAVING in window.session.jobs.kinds
         saving.discard_project(window.session)
         window.frames(2)
     window.settle()

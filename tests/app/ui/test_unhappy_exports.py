@@ -20,9 +20,10 @@ from PIL import Image
 
 from app.document import PreviewPose
 from app.document.settings import ExportSettings, FrameRange
-from app.editor.actions import editing, exporting, files, playback, saving
+from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.actions.posing.handles import add_handle, remove_handles
+from app.editor.actions.project_files import autosaving, export_settings, exporting, files, saving
 from app.editor.actions.timing import keys
 from app.editor.dialogs import Question
 from app.editor.layering import pictures
@@ -49,7 +50,7 @@ def project(window):
     project = window.again(Harness.open, BAR)
     add_handle(window.session, complex(*project.document.canvas) / 2)
     keys.set_last_frame(window.session, FRAMES - 1)
-    exporting.set_export_settings(window.session, ExportSettings(size=SIZE))
+    export_settings.set_export_settings(window.session, ExportSettings(size=SIZE))
     window.settle()
     window.clock.cost = 0.6 * exporter.BUDGET
     yield project
@@ -98,7 +99,7 @@ def test_window_gives_an_export_a_share_of_each_frame_and_never_idles_meanwhile(
         if session.export is None:
             break
         if steps:
-            assert set(session.jobs.kinds) <= {saving.WRITING}
+            assert set(session.jobs.kinds) <= {autosaving.WRITING}
             assert awake
         steps.append(session.export.done)
     assert steps[-1] == FRAMES
@@ -143,20 +144,20 @@ def test_frames_that_are_there_are_replaced_only_after_a_question(window, tmp_pa
     assert len(list(out.iterdir())) == FRAMES
     assert all(map(is_whole, out.iterdir()))
     # They are this export's own now.
-    window.act(exporting.repeat_export)
+    window.act(export_settings.repeat_export)
     assert window.session.dialog is None
     window.settle()
     finish(window)
 
 
 def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path):
-    exporting.set_export_settings(window.session, ExportSettings(format="gif", size=SIZE))
-    window.act(exporting.start_export_at, tmp_path / "bar.gif")
+    export_settings.set_export_settings(window.session, ExportSettings(format="gif", size=SIZE))
+    window.act(export_settings.start_export_at, tmp_path / "bar.gif")
     window.settle()
     finish(window)
     (tmp_path / "bar.webp").write_bytes(b"precious")
-    exporting.set_export_settings(window.session, ExportSettings(format="webp", size=SIZE))
-    window.act(exporting.repeat_export)
+    export_settings.set_export_settings(window.session, ExportSettings(format="webp", size=SIZE))
+    window.act(export_settings.repeat_export)
     assert question(window).title == REPLACE
     answer(window, "Cancel")
     assert (tmp_path / "bar.webp").read_bytes() == b"precious"
@@ -164,8 +165,8 @@ def test_another_format_asks_before_it_replaces_a_file(window, project, tmp_path
 
 
 def test_dots_in_the_name_of_a_folder_are_no_endings(window, project, tmp_path):
-    exporting.set_export_destination(window.session, tmp_path / "shot.010")
-    window.act(exporting.repeat_export)
+    export_settings.set_export_destination(window.session, tmp_path / "shot.010")
+    window.act(export_settings.repeat_export)
     window.settle()
     finish(window)
     assert [path.name for path in tmp_path.iterdir()] == ["shot.010"]
@@ -199,7 +200,7 @@ def test_cancelled_frames_are_whole_and_the_next_export_works(window, project, t
 @pytest.mark.parametrize("name", ["film.apng", "film.webp", "sheet.png", "film.webm"])
 def test_cancelled_file_is_not_there(window, tmp_path, name):
     format_ = "spritesheet" if name == "sheet.png" else name.split(".")[1]
-    exporting.set_export_settings(window.session, ExportSettings(format=format_, size=SIZE))
+    export_settings.set_export_settings(window.session, ExportSettings(format=format_, size=SIZE))
     begin(window, tmp_path / name)
     assert list(tmp_path.iterdir()) != []
     window.act(exporting.cancel_export)
@@ -278,7 +279,7 @@ def test_cancel_is_answered_at_once_while_it_is_prepared(window, tmp_path, held,
     format_ = {"frames": "png", "sheet.png": "spritesheet"}.get(name, name[4:])
     few = FrameRange(0, FRAMES - 1)
     settings = ExportSettings(format=format_, size=SIZE, framing="canvas", frames=few)
-    exporting.set_export_settings(session, settings)
+    export_settings.set_export_settings(session, settings)
     window.settle()
     where = {"sites": (exporting, "PoseSampler"), "intervals": (pose_sampler, "prepare_inbetweens")}
     worker = held(*where[stage])
@@ -333,7 +334,7 @@ def test_cancel_is_answered_at_once_whatever_frame_is_made(window, tmp_path, hel
     session, out = window.session, tmp_path / name
     format_ = "png" if name == "frames" else name[4:]
     settings = ExportSettings(format=format_, size=SIZE, background="#ffffff")
-    exporting.set_export_settings(session, settings)
+    export_settings.set_export_settings(session, settings)
     window.settle()
     calls = itertools.count()
     worker = held(WRITERS[format_], verb, lambda: next(calls) == at)
@@ -369,7 +370,7 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
     """Until the disk has all of a file it can be cancelled; then a message says it is there."""
     session, out = window.session, tmp_path / name
     format_ = "picture" if name == "pose.png" else name[4:]
-    exporting.set_export_settings(session, ExportSettings(format=format_, size=SIZE))
+    export_settings.set_export_settings(session, ExportSettings(format=format_, size=SIZE))
     worker = held(os, "fsync", is_of_an_export)
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
@@ -395,7 +396,7 @@ def test_a_late_cancel_says_what_is_so(window, tmp_path, held, name):
 @pytest.mark.usefixtures("project")
 def test_a_sheet_and_its_data_are_both_there_or_neither(window, tmp_path, held):
     session, out = window.session, tmp_path / "sheet.png"
-    exporting.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
     worker = held(Path, "replace", is_of_an_export)
     window.act(exporting.start_export, out)
     window.until(worker.begun.is_set)
@@ -460,7 +461,7 @@ def test_disk_that_gets_full_midway_ends_the_export(window, project, tmp_path, m
     assert all(path.suffix == ".png" for path in left)
     assert all(map(is_whole, left))
     assert window.session.project is project
-    window.act(exporting.repeat_export)
+    window.act(export_settings.repeat_export)
     window.settle()
     finish(window)
     assert len(list(out.iterdir())) == FRAMES
@@ -481,7 +482,7 @@ def test_frame_that_cannot_be_drawn_ends_the_export(window, tmp_path, monkeypatc
     window.session.toasts = []
     assert window.session.export is None
     assert list((tmp_path / "frames").iterdir()) == []
-    window.act(exporting.repeat_export)
+    window.act(export_settings.repeat_export)
     window.settle()
     finish(window)
     assert len(list((tmp_path / "frames").iterdir())) == FRAMES
@@ -554,7 +555,7 @@ def test_picture_may_go_once_it_is_open(window, tmp_path):
 @pytest.mark.parametrize("name", ["bar.glb", "bar.html"])
 def test_models_are_exported_and_cancelled_as_all_else(window, tmp_path, name):
     session = window.session
-    exporting.set_export_settings(session, ExportSettings(format=name[4:], size=SIZE))
+    export_settings.set_export_settings(session, ExportSettings(format=name[4:], size=SIZE))
     window.act(exporting.start_export, tmp_path / name)
     session.jobs.wait_until_idle()
     window.frames()
@@ -586,7 +587,7 @@ def clipboard(tmp_path, monkeypatch):
 
 def test_the_pose_that_is_shown_is_exported_and_copied(window, project, tmp_path, clipboard):
     session = window.session
-    exporting.set_export_settings(
+    export_settings.set_export_settings(
         session, ExportSettings(format="picture", size=SIZE, framing="canvas")
     )
     playback.seek(session, 4)
@@ -653,12 +654,12 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
         )
         assert {path: path.read_bytes() for path in before} == before
 
-    exporting.set_export_settings(session, ExportSettings(format="picture", size=SIZE))
+    export_settings.set_export_settings(session, ExportSettings(format="picture", size=SIZE))
     for out in (drawing, link):
-        refused(exporting.start_export_at, out)
+        refused(export_settings.start_export_at, out)
         refused(cut_out_editing.save_mask, out)
         refused(saving.write_project, out, None)
     refused(cut_out_editing.save_mask, saved)
-    exporting.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
-    refused(exporting.start_export_at, tmp_path / "walk.png")
+    export_settings.set_export_settings(session, ExportSettings(format="spritesheet", size=SIZE))
+    refused(export_settings.start_export_at, tmp_path / "walk.png")
     assert project.path == saved

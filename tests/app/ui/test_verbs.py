@@ -9,7 +9,7 @@ from invariants import check_invariants
 from projects import project_of
 from scenes import PICTURE, random_scene, random_state
 
-from app.editor.actions import saving
+from app.editor.actions.project_files import saving
 from app.errors import EXPECTED_ERRORS
 from app.ui.shortcuts.table import MENUS
 

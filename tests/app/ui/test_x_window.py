@@ -18,7 +18,8 @@ import pytest
 from PIL import ImageGrab
 
 from app.cli.window_process import WORK_KEPT
-from app.editor.actions import saving, viewing
+from app.editor.actions import viewing
+from app.editor.actions.project_files import saving
 from app.storage.assets import sample_images
 from app.storage.autosave import find_recoverable_files, load_recoverable_file
 from app.storage.preferences import load_preferences

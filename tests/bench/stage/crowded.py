@@ -16,7 +16,7 @@ from app.document import (
 )
 from app.document.settings import Marker
 from app.editor import LayerRuntime
-from app.editor.actions import files, saving
+from app.editor.actions.project_files import files, saving
 from app.storage import decode_picture, load_project, sample_images
 from engine.deform import MOST_HANDLES
 from engine.domain import MeshedDomain, mesh_inside

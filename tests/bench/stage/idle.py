@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 from app.editor import Jobs, Session, do
-from app.editor.actions import files
+from app.editor.actions.project_files import files
 from app.render import Renderer
 from app.render.gpu.context import window_context
 from app.storage import sample_images

@@ -7,7 +7,8 @@ import time
 from pathlib import Path
 
 from app.editor import Jobs, Session, do
-from app.editor.actions import files, saving
+from app.editor.actions import tutorials
+from app.editor.actions.project_files import recovery, saving
 from app.render import Renderer
 from app.render.gpu.context import create_context, window_context
 from app.storage import load_preferences
@@ -52,7 +53,7 @@ class Start:
             print(MARKS[0], flush=True)
         thumbnails = self._window.thumbnails
         read = 0 if thumbnails is None else len(thumbnails.files)
-        if self._frames > 2 and read == len(files.sample_files()):
+        if self._frames > 2 and read == len(tutorials.sample_files()):
             print(MARKS[1], flush=True)
             saving.request_quit(session)
         else:
@@ -69,7 +70,7 @@ def main() -> None:
             folder=folder,
             preferences=load_preferences(folder),
         )
-        files.ask_recovery(session)
+        recovery.ask_recovery(session)
         if has_display():
             window = Window(session, lambda: Renderer(window_context()))
             Start(window)

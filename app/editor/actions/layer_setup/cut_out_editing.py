@@ -22,10 +22,11 @@ from app.storage import (
     read_file,
     write_atomically,
 )
+from app.texts import _
 from engine.domain import CUT_WIDTH
 from engine.geometry import box_diagonal, distance_to_segments
 
-WRITING = JobKind("Saving the mask", "The mask was not saved")
+WRITING = JobKind(_("Saving the mask"), _("The mask was not saved"))
 MASKS = (".png",)
 PANEL = "Cut-out"  # the panel with the settings of the brush
 SMALLEST_BRUSH, LARGEST_BRUSH = 1.0, 1000.0  # pixels of the picture
@@ -121,7 +122,9 @@ def cut_with_knife(session: Session, project: Project, slit: CutLine) -> None:
     for handle in layer.handles:
         if _away_from(slit, handle.position - layer.corner) < BESIDE * width:
             session.show_notice(
-                f"The knife's line goes through {handle.name}. Draw it beside, or move the handle.",
+                _(
+                    "The knife's line goes through {handle}. Draw it beside, or move the handle."
+                ).format(handle=handle.name),
                 tone="error",
             )
             return
@@ -163,7 +166,7 @@ def clear_cut_out_strokes(session: Session) -> None:
 
 
 def ask_mask_to_load(session: Session) -> None:
-    session.ask_file("Load a mask", MASKS, lambda path: do(load_mask, path))
+    session.ask_file(_("Load a mask"), MASKS, lambda path: do(load_mask, path))
 
 
 @with_project
@@ -175,14 +178,14 @@ def load_mask(session: Session, project: Project, path: Path) -> None:
         if session.project is project and project.active == identity:
             change_cut_out(session, mask=mask, strokes=())
 
-    kind = JobKind("Loading the mask", f"{path.name} cannot be loaded")
+    kind = JobKind(_("Loading the mask"), _("{name} cannot be loaded").format(name=path.name))
     run_job(session, kind, lambda: decode_mask(read_file(path), path.name), take)
 
 
 @with_project
 def ask_mask_to_save(session: Session, project: Project) -> None:
-    name = f"{project.name} mask.png"
-    session.ask_file("Save the mask", MASKS, lambda path: do(save_mask, path), name=name)
+    name = _("{project} mask").format(project=project.name) + MASKS[0]
+    session.ask_file(_("Save the mask"), MASKS, lambda path: do(save_mask, path), name=name)
 
 
 @with_project
@@ -195,6 +198,5 @@ def save_mask(session: Session, project: Project, path: Path) -> None:
         content = encode_mask(Mask.of(cut_picture(picture, cut_out).kept))
         write_atomically(path, lambda file: file.write(content))
 
-    run_job(
-        session, WRITING, work, lambda _: session.show_notice(f"Saved {path.name}.", tone="good")
-    )
+    text = _("Saved {name}.").format(name=path.name)
+    run_job(session, WRITING, work, lambda _result: session.show_notice(text, tone="good"))

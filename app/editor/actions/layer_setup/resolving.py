@@ -15,9 +15,10 @@ from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.promise import Promise
 from app.solving import KeyResolver, step_resolver
+from app.texts import _, ngettext
 from engine.maps import Bounds
 
-SOLVING_KEYS = JobKind("Solving the keys")
+SOLVING_KEYS = JobKind(_("Solving the keys"))
 REST = 0.5  # seconds after which a brush counts as resting
 
 
@@ -32,7 +33,7 @@ def set_limits(session: Session, project: Project, bounds: Bounds) -> None:
     """Set the limits; keys that exceed them are solved again."""
     project.previewed_limits = bounds
     cancel_solving_keys(session)
-    pending_changes.run_when_idle(session, do(_set_limits, bounds), "Limits")
+    pending_changes.run_when_idle(session, do(_set_limits, bounds), _("Limits"))
 
 
 @with_project
@@ -87,7 +88,7 @@ def set_limit(session: Session, bounds: Bounds, name: str, value: float) -> None
 
 def solve_keys_again(session: Session) -> None:
     """Solve every key for its targets again, within the present limits."""
-    pending_changes.run_when_idle(session, do(_solve_keys_again), "Solve again")
+    pending_changes.run_when_idle(session, do(_solve_keys_again), _("Solve again"))
 
 
 @with_project
@@ -97,7 +98,7 @@ def _solve_keys_again(session: Session, project: Project) -> None:
 
 def rebuild_mesh(session: Session) -> None:
     """Find the outline and build the mesh again; handles stay, keys are solved again."""
-    pending_changes.run_when_idle(session, do(_rebuild_mesh), "Rebuild")
+    pending_changes.run_when_idle(session, do(_rebuild_mesh), _("Rebuild"))
 
 
 @with_project
@@ -117,13 +118,13 @@ def rebuild_changed_cut_out(session: Session, project: Project) -> None:
         project.stale = stale, session.clock()
     is_busy = session.active_tool is not None or project.pending
     if not is_busy and session.clock() - project.stale[1] >= REST:
-        renewal = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
-        _go_on(session, project, renewal)
+        resolver = KeyResolver(before=stale, bounds=stale.bounds, meshing=stale.meshing)
+        _go_on(session, project, resolver)
 
 
-def _follows_cut_out(renewal: KeyResolver) -> bool:
+def _follows_cut_out(resolver: KeyResolver) -> bool:
     """Return whether a rebuild has no other cause than a changed cut-out."""
-    return renewal.before.is_stale and renewal.meshing == renewal.before.meshing
+    return resolver.before.is_stale and resolver.meshing == resolver.before.meshing
 
 
 @with_project
@@ -136,63 +137,66 @@ def cancel_solving_keys(session: Session, project: Project) -> None:
 
 
 @with_project
-def begin_solving_keys(session: Session, project: Project, renewal: KeyResolver) -> None:
+def begin_solving_keys(session: Session, project: Project, resolver: KeyResolver) -> None:
     """Begin to replace a layer's poses; a current solve is cancelled."""
     cancel_solving_keys(session)
-    _go_on(session, project, renewal)
+    _go_on(session, project, resolver)
 
 
-def _go_on(session: Session, project: Project, renewal: KeyResolver) -> None:
-    if renewal.before not in project.document.layers:
-        if _follows_cut_out(renewal):
+def _go_on(session: Session, project: Project, resolver: KeyResolver) -> None:
+    if resolver.before not in project.document.layers:
+        if _follows_cut_out(resolver):
             return  # the rebuild begins again
         session.show_notice(
-            "The keys were not posed again: the project changed meanwhile. Start again."
+            _("The keys were not posed again: the project changed meanwhile. Start again.")
         )
         return
-    if renewal.is_over:
-        _accept(session, project, renewal)
+    if resolver.is_over:
+        _accept(session, project, resolver)
         return
-    picture = project.layer_runtimes[renewal.before.id].picture.rgba
+    picture = project.layer_runtimes[resolver.before.id].picture.rgba
 
     def failed(error: Exception) -> None:
-        if renewal.replaces_picture:
-            report_failure(session, "The picture was not replaced", error)
+        if resolver.replaces_picture:
+            report_failure(session, _("The picture was not replaced"), error)
             return
-        builds = renewal.meshing is not None
+        builds = resolver.meshing is not None
         if builds:
-            project.unbuildable = renewal.before
-        report_failure(session, f"The {'mesh was' if builds else 'limits were'} not changed", error)
+            project.unbuildable = resolver.before
+        failure = _("The mesh was not changed") if builds else _("The limits were not changed")
+        report_failure(session, failure, error)
 
     pending_changes.begin_pending_change(
         session,
         project,
         SOLVING_KEYS,
-        lambda: step_resolver(renewal, picture),
+        lambda: step_resolver(resolver, picture),
         partial(_go_on, session, project),
         failed,
-        promise=Promise(label=SOLVING_KEYS.label, key_resolver=renewal),
+        promise=Promise(label=SOLVING_KEYS.label, key_resolver=resolver),
     )
 
 
-def _accept(session: Session, project: Project, renewal: KeyResolver) -> None:
-    if _follows_cut_out(renewal):
-        project.history.extend_step(renewal.command)
+def _accept(session: Session, project: Project, resolver: KeyResolver) -> None:
+    if _follows_cut_out(resolver):
+        project.history.extend_step(resolver.command)
     else:
         gesture = object()
-        project.history.do(renewal.command, gesture=gesture)
-        if renewal.new_layer is not None:
+        project.history.do(resolver.command, gesture=gesture)
+        if resolver.new_layer is not None:
             project.history.set_preview_pose(None, gesture=gesture)
             project.meshing = None
-    if renewal.replaces_picture:
+    if resolver.replaces_picture:
         editing.update_layer_runtimes(project)
-    for number, notice in enumerate(renewal.notices):
+    for number, notice in enumerate(resolver.notices):
         # This runs after every stroke, and notices of earlier strokes are out of date.
         session.show_notice(as_sentence(notice), topic=f"rebuilt {number}")
-    if renewal.unsolved:
-        poses = "pose" if len(renewal.unsolved) == 1 else "poses"
-        session.show_notice(
-            f"The {poses} {', '.join(renewal.unsolved)} could not be brought within the limits. "
-            "Move the handles there nearer to the drawing, or undo.",
-            tone="error",
+    if resolver.unsolved:
+        text = ngettext(
+            "The pose {poses} could not be brought within the limits. Move the handles there "
+            "nearer to the drawing, or undo.",
+            "The poses {poses} could not be brought within the limits. Move the handles there "
+            "nearer to the drawing, or undo.",
+            len(resolver.unsolved),
         )
+        session.show_notice(text.format(poses=", ".join(resolver.unsolved)), tone="error")

@@ -12,6 +12,7 @@ from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.project import Project
 from app.editor.session import MaterialTool, Session, with_project
 from app.errors import LissomError
+from app.texts import _, message_of
 from engine.errors import EngineError
 from engine.geometry import distance_to_boundary
 
@@ -62,12 +63,12 @@ def paint_stiffness(session: Session, project: Project, places: Sequence[complex
     )
     radius = cut_out_editing.brush_radius(project)
     amount = {"stiff": session.strength, "soft": 1 / min(session.strength, SOFTEST)}.get(tool, 1.0)
-    _, is_reached = brushed_stiffness(
+    _weights, is_reached = brushed_stiffness(
         project.layer, rest, radius=radius, amount=amount, softness=session.softness
     )
     if not is_reached:
         session.show_notice(
-            "The brush reaches no outline there. Make it larger, or brush nearer to the edge.",
+            _("The brush reaches no outline there. Make it larger, or brush nearer to the edge."),
             topic="material",
         )
         return
@@ -94,7 +95,7 @@ def add_bone(session: Session, project: Project, ends: tuple[int, int]) -> None:
     try:
         project.history.do(stiffness_commands.add_bone(project.active, ends))
     except (EngineError, LissomError) as error:
-        session.show_notice(str(error), tone="error", topic="material")
+        session.show_notice(message_of(error), tone="error", topic="material")
 
 
 @with_project
@@ -123,7 +124,7 @@ def bone_disabled_reason(project: Project, ends: tuple[int, int]) -> str:
     try:
         bone_region(layer, Bone(ends=ends), layer.domain.outline)
     except (EngineError, LissomError) as error:
-        return str(error)
+        return message_of(error)
     return ""
 
 
@@ -144,10 +145,11 @@ def suggest_stiffness(session: Session, project: Project) -> None:
         project.history.do(command, gesture=gesture)
         done.append(handle.name)
     if done:
-        session.show_notice(f"By their names: {', '.join(done)}.", topic="material")
+        text = _("By their names: {handles}.").format(handles=", ".join(done))
+        session.show_notice(text, topic="material")
     else:
         session.show_notice(
-            "No handle is called after a head, hand, foot, tail or the like: name them first.",
+            _("No handle is called after a head, hand, foot, tail or the like: name them first."),
             topic="material",
         )
 

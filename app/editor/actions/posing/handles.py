@@ -18,6 +18,7 @@ from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.motion import DisplayedFrame
+from app.texts import _, ngettext
 from engine.domain import MeshedDomain
 from engine.geometry import contains, diameter
 
@@ -63,7 +64,7 @@ def suggest_handles(session: Session, project: Project) -> None:
     taken = np.array([handle.position for handle in layer.handles], dtype=np.complex128)
     free = [handle for handle in suggested if not (np.abs(taken - handle.place) < near).any()]
     if not free:
-        session.show_notice("There are handles already where Lissom would put them.")
+        session.show_notice(_("There are handles already where Lissom would put them."))
         return
     names = {handle.name for handle in layer.handles}
     handles = [
@@ -76,8 +77,12 @@ def suggest_handles(session: Session, project: Project) -> None:
     project.selected_handles = project.selected_frames = frozenset()
     count = len(added)
     session.show_notice(
-        f"{count} handle{'s were' if count > 1 else ' was'} added. Drag one to pose.",
-        label="Take back",
+        ngettext(
+            "{count} handle was added. Drag it to pose.",
+            "{count} handles were added. Drag one to pose.",
+            count,
+        ).format(count=count),
+        label=_("Take back"),
         action=do(_take_suggestions_back, project, frozenset(added), gesture),
     )
 
@@ -119,9 +124,9 @@ def mirror_handles(session: Session, project: Project) -> None:
     if partners:
         project.history.do(handle_commands.add_handles(project.active, partners), gesture=gesture)
     if outside:
-        session.show_notice("The other side of the mirror axis is beside the drawing there.")
+        session.show_notice(_("The other side of the mirror axis is beside the drawing there."))
     elif not partners:
-        session.show_notice("Every selected handle has its partner on the other side already.")
+        session.show_notice(_("Every selected handle has its partner on the other side already."))
 
 
 def _is_inside(domain: MeshedDomain, place: complex) -> bool:

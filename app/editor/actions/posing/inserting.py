@@ -12,8 +12,9 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose
+from app.texts import _
 
-INSERTING = JobKind("Inserting a key", "The key could not be inserted", "hand")
+INSERTING = JobKind(_("Inserting a key"), _("The key could not be inserted"), "hand")
 
 
 @with_project
@@ -30,7 +31,9 @@ def insert_key(session: Session, project: Project) -> None:
     frame = playback.edited_frame(session, project)
     if any((pull.layer, pull.frame) == (project.active, frame) for pull in project.pulls):
         # A pending change may make a key there itself.
-        pending_changes.run_when_idle(session, do(insert_key_at, project.active, frame), "The key")
+        pending_changes.run_when_idle(
+            session, do(insert_key_at, project.active, frame), _("The key")
+        )
     else:
         insert_key_at(session, project.active, frame)
 
@@ -52,7 +55,8 @@ def insert_key_at(
         take = partial(_insert, session, project, clip, frame, gesture)
         solve_nearest_pose(session, project, clip, frame, take, kind=INSERTING)
     else:
-        session.show_notice(f"Frame {frame} has a key already. Drag a handle to change it.")
+        text = _("Frame {frame} has a key already. Drag a handle to change it.")
+        session.show_notice(text.format(frame=frame))
 
 
 def solve_nearest_pose(
@@ -65,8 +69,8 @@ def solve_nearest_pose(
     kind: JobKind,
 ) -> None:
     """Solve for the pose nearest to a clip's in-between at a frame, on the worker."""
-    puppet = project.layer_runtimes[clip.layer.id]
-    rig, sibling = Rig.of(clip.layer, puppet.rig), puppet.store.sampler
+    runtime = project.layer_runtimes[clip.layer.id]
+    rig, sibling = Rig.of(clip.layer, runtime.rig), runtime.store.sampler
 
     def work() -> Pose:
         return fit_shown_pose(rig, clip, frame, sibling)

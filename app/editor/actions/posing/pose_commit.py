@@ -8,8 +8,9 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.work.pull import Pull
 from app.errors import LissomError
+from app.texts import _
 
-NO_POSE = "The pose could not be kept"
+NO_POSE = _("The pose could not be kept")
 
 
 def commit_pose(session: Session, project: Project, pull: Pull, pose: Pose) -> None:
@@ -91,7 +92,8 @@ def _commit_first(session: Session, project: Project, pull: Pull, pose: Pose) ->
     for frame in frames:
         found = PreviewPose(layer=pull.layer, frame=frame, pose=pose)
         command = replace(
-            key_pose_command(session, project, found), label="Move" if pull.translations else "Pose"
+            key_pose_command(session, project, found),
+            label=_("Move") if pull.translations else _("Pose"),
         )
         project.history.do(command, gesture=pull.gesture)
     left = project.history.preview_pose

@@ -11,6 +11,7 @@ from app.editor.actions.posing.pose_solver import POSING, step_pose_solver
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.pull import DragStart, Pull, TargetChange, absolute_targets
+from app.texts import _
 from engine.deform import BoundedPull
 
 
@@ -18,7 +19,7 @@ from engine.deform import BoundedPull
 def drag_handles(
     session: Session,
     project: Project,
-    wish: TargetChange | Mapping[int, Target],
+    change: TargetChange | Mapping[int, Target],
     *,
     gesture: object | None = None,
     hand: BoundedPull | None = None,
@@ -29,7 +30,7 @@ def drag_handles(
     gesture, each drag until its release is a step. A missing in-between is computed first; targets
     set meanwhile are kept. `hand` pulls with bounded force.
     """
-    wanted = wish if callable(wish) else partial(absolute_targets, wish)
+    wanted = change if callable(change) else partial(absolute_targets, change)
     _change(session, project, gesture, lambda held, by: held.change_targets(by, wanted, hand))
 
 
@@ -78,9 +79,9 @@ def release_drag_forced(session: Session, project: Project) -> None:  # noqa: AR
             pull.force_targets()
 
 
-def set_targets(session: Session, wishes: Mapping[int, Target]) -> None:
+def set_targets(session: Session, targets: Mapping[int, Target]) -> None:
     """Set targets of handles from a field of the panel."""
-    _once(session, wishes)
+    _once(session, targets)
 
 
 @with_project
@@ -167,8 +168,8 @@ def end_drag_at(session: Session, project: Project, pull: Pull, pose: Pose) -> N
     commit_pose(session, project, pull, pose)
 
 
-def _once(session: Session, wish: TargetChange | Mapping[int, Target]) -> None:
-    drag_handles(session, wish)
+def _once(session: Session, change: TargetChange | Mapping[int, Target]) -> None:
+    drag_handles(session, change)
     release_drag(session)
 
 
@@ -178,7 +179,9 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
     frame, shown = playback.edited_frame(session, project), playback.current_frame(session, project)
     if frame != shown:
         session.show_notice(
-            f"Frame {shown} repeats frame {frame}: posed here, it changes in every repeat.",
+            _(
+                "Frame {shown} repeats frame {frame}: posed here, it changes in every repeat."
+            ).format(shown=shown, frame=frame),
             topic="repeat",
         )
     here = (project.active, frame)

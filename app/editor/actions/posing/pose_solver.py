@@ -21,9 +21,10 @@ from app.editor.work.pull import (
 )
 from app.motion import PoseSampler
 from app.solving import DragSolver, Rig, fit_shown_pose
+from app.texts import _
 from engine.deform import BoundedPull
 
-POSING = JobKind("Posing", "This pose could not be found", "hand")
+POSING = JobKind(_("Posing"), _("This pose could not be found"), "hand")
 # During a drag: the most Newton steps of one job, and the seconds after which the job begins no
 # further step, so that the next picture shows its result.
 STEPS, HASTE = 2, 0.004
@@ -60,14 +61,14 @@ def step_pose_solver(session: Session, project: Project) -> None:
             project.pending.remove(pull)
             report_failure(session, POSING.complaint, error)
 
-    puppet = project.layer_runtimes.get(pull.layer)
+    runtime = project.layer_runtimes.get(pull.layer)
     begin = partial(
         _begin,
         pull.clip,
         pull.frame,
         pull.before,
-        None if puppet is None else puppet.rig,
-        None if puppet is None else puppet.store.sampler,
+        None if runtime is None else runtime.rig,
+        None if runtime is None else runtime.store.sampler,
     )
     aim = pull.targets if pull.targets is not None else tuple(pull.target_changes.values())
     hands = tuple(pull.dragged_targets.values())

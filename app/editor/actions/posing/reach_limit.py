@@ -8,10 +8,12 @@ from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.pull import Pull
+from app.texts import N_, _, ngettext
 
 # Relaxes the limits, and drags handles once more to their original targets.
 RelaxLimits = Callable[[Session, Mapping[int, Target]], None]
-STOPPED_AT_LIMIT = "{who} stopped at {its} stretch limit."
+STOPPED_AT_LIMIT = N_("{handle} stopped at its stretch limit.")
+STOPPED_BY_HANDLES = N_("{handle} stopped where the other handles hold the shape.")
 
 
 def clamp_unreachable_targets(session: Session, project: Project, loosen: RelaxLimits) -> None:
@@ -38,18 +40,29 @@ def _show_limit_notice(
     if not short or pose is None:
         return
     name, others = layer.handle(short[0]).name, len(short) - 1
-    who, its = (f"{name} and {others} more", "their") if others else (name, "its")
-    if not measure_target_errors(layer, pose).at_limits:
-        session.show_notice(
-            f"{who} stopped where the other handles hold the shape.", topic="stopped"
+    is_at_limits = measure_target_errors(layer, pose).at_limits
+    if not others:
+        text = _(STOPPED_AT_LIMIT) if is_at_limits else _(STOPPED_BY_HANDLES)
+    elif is_at_limits:
+        text = ngettext(
+            "{handle} and {count} more handle stopped at their stretch limits.",
+            "{handle} and {count} more handles stopped at their stretch limits.",
+            others,
         )
-    elif relax_limits(layer.bounds) is None:
-        session.show_notice(STOPPED_AT_LIMIT.format(who=who, its=its), topic="stopped")
+    else:
+        text = ngettext(
+            "{handle} and {count} more handle stopped where the other handles hold the shape.",
+            "{handle} and {count} more handles stopped where the other handles hold the shape.",
+            others,
+        )
+    text = text.format(handle=name, count=others)
+    if not is_at_limits or relax_limits(layer.bounds) is None:
+        session.show_notice(text, topic="stopped")
     else:
         session.show_notice(
-            STOPPED_AT_LIMIT.format(who=who, its=its),
+            text,
             topic="stopped",
-            label="Loosen",
+            label=_("Loosen"),
             action=do(_relax_limits, pull.layer, pull.frame, asked, loosen),
         )
 
@@ -66,7 +79,7 @@ def _relax_limits(
     """Relax a layer's limits, and drag it once more to the original targets."""
     if layer != project.active:
         session.show_notice(
-            "Another layer is posed now. Choose the one that was pulled, and pull again."
+            _("Another layer is posed now. Select the layer that was dragged, and drag again.")
         )
         return
     if playback.edited_frame(session, project) != frame:

@@ -8,6 +8,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import frames_in, layer_of
 from app.errors import LissomError
+from app.texts import _, message_of
 
 
 def selected_range(project: Project) -> tuple[int, int] | None:
@@ -39,7 +40,7 @@ def create_cycle(session: Session, project: Project) -> None:
     until = min((end for end in ends if end is not None), default=None)
     commands = [cycle_commands.set_cycle(each, *stretch, until) for each in layers]
     editing.edit_document(
-        session, Command("Repeat stretch", lambda now: _all_of(commands, layers, now))
+        session, Command(_("Repeat stretch"), lambda now: _all_of(commands, layers, now))
     )
 
 
@@ -106,5 +107,5 @@ def _all_of(commands: list[Command], layers: list[int], document: Document) -> D
         except LissomError as error:
             if len(layers) == 1:
                 raise
-            raise LissomError(f"{document.layer(layer).name}: {error}") from error
+            raise LissomError(f"{document.layer(layer).name}: {message_of(error)}") from error
     return document

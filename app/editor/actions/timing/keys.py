@@ -21,8 +21,9 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import KeysByRow, frames_in, keys_in, source_frame
 from app.errors import LissomError
+from app.texts import N_, _
 
-NO_LAST_FRAME = (
+NO_LAST_FRAME = N_(
     "The last frame comes after frame {first} and is at most {most:,}, not {last:,}; type another."
 )
 EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
@@ -160,7 +161,7 @@ def set_fps(session: Session, fps: float) -> None:
 def set_last_frame(session: Session, project: Project, last: int) -> None:
     first = project.document.frames.first
     if not first < last <= LAST_FRAME:
-        raise LissomError(NO_LAST_FRAME.format(first=first, most=LAST_FRAME, last=last))
+        raise LissomError(_(NO_LAST_FRAME).format(first=first, most=LAST_FRAME, last=last))
     edit_timing(session, scene_commands.set_frames(FrameRange(first, last)))
 
 
@@ -191,7 +192,8 @@ def _set_preview(session: Session, project: Project, first: int, last: int) -> N
 def add_marker(session: Session, project: Project, frame: int) -> None:
     """Add a marker at a frame, unless it has one."""
     if any(marker.frame == frame for marker in project.document.markers):
-        session.show_notice(f"Frame {frame} has a marker already. Double-click it to name it.")
+        text = _("Frame {frame} has a marker already. Double-click the marker to name it.")
+        session.show_notice(text.format(frame=frame))
     else:
         editing.edit_document(session, scene_commands.add_marker(frame))
 

@@ -14,10 +14,11 @@ from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from app.rigging import fit_keys
+from app.texts import _, ngettext
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
 
-KEYING = JobKind("Making keys of a spring", "The swing could not be made into keys")
+KEYING = JobKind(_("Making keys of a spring"), _("The swing could not be made into keys"))
 NEAR = 4e-4  # of the layer's diameter: largest distance of the keys' motion from the swing
 AT_REST = 0.01  # pixels
 
@@ -73,7 +74,7 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         return
     moves = np.flatnonzero(np.abs(swing.offsets) > AT_REST)
     if not len(moves):
-        session.show_notice("It does not swing: nothing moves its place in the shape.")
+        session.show_notice(_("The handle does not swing: nothing moves its place in the shape."))
         return
     # The swing begins and ends at rest if there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
@@ -96,4 +97,9 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
     project.timeline.expanded_layers |= {identity}
     if project.active == identity:
         project.selected_track = spring.handle
-    session.show_notice(f"The spring has become a track of {len(keys)} keys.")
+    text = ngettext(
+        "The spring has become a track of {count} key.",
+        "The spring has become a track of {count} keys.",
+        len(keys),
+    )
+    session.show_notice(text.format(count=len(keys)))

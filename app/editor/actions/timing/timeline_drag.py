@@ -41,6 +41,7 @@ from app.editor.timeline_view import (
     layer_of,
 )
 from app.errors import LissomError
+from app.texts import _
 
 MOVE = editing.KeyVerb(key_commands.move_keys, track_commands.move_track_keys)
 COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
@@ -111,7 +112,7 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
     if isinstance(gesture, KeyBox):
         editing.select_keys_in_rows(session, gesture.keeps)
     elif isinstance(gesture, TimeDrag) and project.document is gesture.after:
-        _become(session, gesture.before, "Drag")
+        _become(session, gesture.before, _("Drag"))
         if isinstance(gesture, KeyDrag):
             editing.select_keys_in_rows(session, gesture.keys)
     end_timeline_drag(session)

@@ -26,11 +26,12 @@ from app.editor.session import Session, with_project
 from app.editor.timeline_view import display_frame
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
+from app.texts import _
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 AROUND = 1 / 64  # frames before and after a key, between which its velocity is measured
 CONVERTING_KEYS = JobKind(
-    "Placing keys of a track", "The places of the track's keys could not be found"
+    _("Moving keys of a track"), _("The places of the track's keys could not be found")
 )
 
 
@@ -60,7 +61,7 @@ def key_handles_at_playhead(session: Session, project: Project, handles: Sequenc
         frame = playback.edited_frame(session, project)
         key = TrackKey(frame=frame, place=0j, easing=session.preferences.easing)
         command = track_commands.put_track(project.active, Track(handles=new, keys=(key,)))
-        project.history.do(Command("Key handle", command.change), gesture=gesture)
+        project.history.do(Command(_("Key handle"), command.change), gesture=gesture)
     known = {layer.track_of(identity) for identity in handles} - {None}
     for track in known:
         if track is not None:
@@ -156,8 +157,8 @@ def _base_value_at(
     for frame in frames:
         still = animation.base.frame(frame)
         fz = complex(still.fz[0])
-        hangs = IDENTITY_MOTION if carried is None else carried(frame)
-        found.append(_BaseValue(complex(still.positions[0]), fz / abs(fz), hangs))
+        parent_motion = IDENTITY_MOTION if carried is None else carried(frame)
+        found.append(_BaseValue(complex(still.positions[0]), fz / abs(fz), parent_motion))
     return found
 
 

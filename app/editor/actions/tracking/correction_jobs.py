@@ -10,12 +10,13 @@ from app.editor.session import Session
 from app.editor.work.jobs import Job, JobKind
 from app.editor.work.layer_runtime import LayerRuntime
 from app.motion import CorrectedFrames, CorrectionUpdate
+from app.texts import _
 
-COMPLAINT = "The handles cannot follow their tracks"
-CORRECTING = JobKind("Corrections", COMPLAINT)
-CORRECTING_SHOWN_FRAME = JobKind("Frame correction", COMPLAINT, "hand")
+COMPLAINT = _("The handles cannot follow their tracks")
+CORRECTING = JobKind(_("Corrections"), COMPLAINT)
+CORRECTING_SHOWN_FRAME = JobKind(_("Frame correction"), COMPLAINT, "hand")
 # Base motions of tracks whose handles may be dragged.
-FINDING_BASE_FRAMES = JobKind("Places on tracks", COMPLAINT, "hand")
+FINDING_BASE_FRAMES = JobKind(_("Places on tracks"), COMPLAINT, "hand")
 
 Work = Callable[[], CorrectionUpdate]
 
@@ -30,10 +31,10 @@ def next_correction_jobs(session: Session, project: Project) -> Iterator[Job]:
     """Yield the job for corrections of some frames, nearest to the playhead first."""
     frame = playback.current_frame(session, project)
     if CORRECTING not in session.jobs.kinds:
-        for clip, puppet, corrected in _corrected(project):
+        for clip, runtime, corrected in _corrected(project):
             work = corrected.missing(project.document, frame, project.samplers)
             if work is not None:
-                yield _job(session, project, CORRECTING, puppet, clip, work)
+                yield _job(session, project, CORRECTING, runtime, clip, work)
                 return
 
 
@@ -54,12 +55,12 @@ def _follow(session: Session, project: Project) -> Iterator[Job]:
         playback.current_frame(session, project),
         is_track_drag_pending(session, project),
     )
-    for clip, puppet, corrected in _corrected(project):
+    for clip, runtime, corrected in _corrected(project):
         work = corrected.missing_here(project.document, frame, project.samplers)
         # The next pose drag must not wait until all frames are prepared.
         is_wanted = corrected.is_begun or is_urgent or not session.prepares_ahead
         if work is not None and is_wanted:
-            yield _job(session, project, CORRECTING_SHOWN_FRAME, puppet, clip, work)
+            yield _job(session, project, CORRECTING_SHOWN_FRAME, runtime, clip, work)
             return
 
 
@@ -74,33 +75,33 @@ def _ground(session: Session, project: Project) -> Iterator[Job]:
         return
     frames = [carry.frame for carry in project.track_drags]
     frame = frames[0] if frames else playback.current_frame(session, project)
-    for clip, puppet, corrected in _corrected(project):
+    for clip, runtime, corrected in _corrected(project):
         if clip.layer.id == project.active:
             work = corrected.missing_ground(project.document, frame, project.samplers)
             if work is not None:
-                yield _job(session, project, FINDING_BASE_FRAMES, puppet, clip, work)
+                yield _job(session, project, FINDING_BASE_FRAMES, runtime, clip, work)
 
 
 def _corrected(project: Project) -> Iterator[tuple[Clip, LayerRuntime, CorrectedFrames]]:
-    for layer, puppet in project.layer_runtimes.items():
+    for layer, runtime in project.layer_runtimes.items():
         clip = clip_of(project.document, layer)
-        if puppet.corrected is not None and not puppet.store.has_failed(clip, "correction"):
-            yield clip, puppet, puppet.corrected
+        if runtime.corrected is not None and not runtime.store.has_failed(clip, "correction"):
+            yield clip, runtime, runtime.corrected
 
 
 def _job(
-    session: Session, project: Project, kind: JobKind, puppet: LayerRuntime, clip: Clip, work: Work
+    session: Session, project: Project, kind: JobKind, runtime: LayerRuntime, clip: Clip, work: Work
 ) -> Job:
     """Return a job for corrections; a failed job is not repeated for the same keys."""
 
     def done(found: CorrectionUpdate) -> None:
         # The drag may have moved on meanwhile.
-        if puppet.corrected is not None:
-            puppet.corrected.take(found, is_newest=kind == CORRECTING_SHOWN_FRAME)
+        if runtime.corrected is not None:
+            runtime.corrected.take(found, is_newest=kind == CORRECTING_SHOWN_FRAME)
             project.free_memory()
 
     def failed(error: Exception) -> None:
-        puppet.store.mark_failed("correction", clip)
+        runtime.store.mark_failed("correction", clip)
         report_failure(session, kind.complaint, error)
 
     return Job(kind=kind, work=work, done=done, failed=failed)

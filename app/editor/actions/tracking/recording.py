@@ -15,6 +15,7 @@ from app.editor.work.track_drag import RecordedSample, Recording, TrackDrag
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
 from app.rigging import fit_keys
+from app.texts import _
 from engine.geometry import RigidMotion
 
 RECORDING_SPEEDS = (1.0, 0.5, 0.25)
@@ -22,7 +23,7 @@ RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # tremor is in screen pixels: without smoothing and with full smoothing.
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # initial value
-NO_RECORDING = "The recording could not be kept"
+NO_RECORDING = _("The recording could not be kept")
 
 
 @with_project
@@ -32,7 +33,9 @@ def toggle_recording_armed(session: Session, project: Project) -> None:
     if session.records:
         session.records = False
     elif not project.layer.handles:
-        session.show_notice("Click on the drawing to add a handle; then record how it is dragged.")
+        session.show_notice(
+            _("Click on the drawing to add a handle; then record how it is dragged.")
+        )
     else:
         playback.stop_playback(session)
         release_drag(session)
@@ -220,7 +223,7 @@ def _write(project: Project, take: Recording) -> None:
         keys[first] = replace(keys[seam], frame=first)
     row = tuple(keys[frame] for frame in sorted(keys))
     command = track_commands.put_track(take.layer, replace(fresh, keys=row))
-    project.history.do(replace(command, label="Record drag"), gesture=take.gesture)
+    project.history.do(replace(command, label=_("Record drag")), gesture=take.gesture)
     take.after = project.document
 
 

@@ -17,8 +17,9 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.track_drag import TrackDrag
 from app.errors import LissomError
+from app.texts import _
 
-NO_KEY = "The key of the handle could not be kept"
+NO_KEY = _("The key of the handle could not be kept")
 
 
 def draggable_track(project: Project, handle: int) -> Track | None:
@@ -64,7 +65,8 @@ def rotate_track_handle(
     if not track.keys_rotation:
         command = track_commands.set_turning(project.active, handle, turns=True)
         project.history.do(command, gesture=gesture)
-        session.show_notice("The keys of its track turn the shape now, too.", topic="turning")
+        text = _("The keys of the handle's track turn the shape now, too.")
+        session.show_notice(text, topic="turning")
     if held is not None:
         held.turn = angle
         return

@@ -8,6 +8,7 @@ from app.editor.project import Project
 from app.editor.session import Session
 from app.editor.timeline_view import source_frame
 from app.motion import BaseMotionFrame
+from app.texts import ngettext
 
 
 def find_key_frame(session: Session, document: Document, track: Track, frame: int) -> int | None:
@@ -15,7 +16,11 @@ def find_key_frame(session: Session, document: Document, track: Track, frame: in
     own = source_frame(document, track, frame)
     if own is None:
         session.show_notice(
-            f"The track is {track.delay} frames late: no key of it can be seen at frame {frame}.",
+            ngettext(
+                "The track is {delay} frame late: no key of it can be seen at frame {frame}.",
+                "The track is {delay} frames late: no key of it can be seen at frame {frame}.",
+                track.delay,
+            ).format(delay=track.delay, frame=frame),
             topic="late",
         )
     return own

@@ -10,6 +10,7 @@ from app.editor.actions.layer_setup import cut_out_editing
 from app.editor.project import Project
 from app.editor.session import Hint, KnifeOverlay, Mark, Session, StrokeOverlay
 from app.editor.tools.tool import PointerHit, Tool
+from app.texts import _
 
 STEP = 0.12  # of the brush's radius: least distance of a stroke's points
 REACH = 8.0  # screen pixels: a click within this distance of a line is on the line
@@ -24,15 +25,16 @@ class CutBrushTool(Tool):
     keeps: bool
 
     @classmethod
-    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
         if session.cutting not in {"keep", "remove"}:
             return ()
-        other = "remove" if session.cutting == "keep" else "keep"
+        keep, remove = _("drag to keep"), _("drag to remove")
+        is_keeping = session.cutting == "keep"
         return (
-            Hint("drag", f"to {session.cutting}"),
-            Hint("drag", f"to {other}", "alt"),
-            Hint("[ and ]", "for its size"),
-            Hint("X", "to swap"),
+            Hint(keep if is_keeping else remove),
+            Hint(remove if is_keeping else keep, "alt"),
+            Hint(_("[ and ] for its size")),
+            Hint(_("X to swap")),
         )
 
     @classmethod
@@ -70,12 +72,12 @@ class KnifeTool(Tool):
     parts: bool
 
     @classmethod
-    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
         if session.cutting != "knife":
             return ()
         return (
-            Hint("drag", "from outside to where it hangs together"),
-            Hint("click", "on a line to take it away", "alt"),
+            Hint(_("drag from outside to where the parts meet")),
+            Hint(_("click on a line to take it away"), "alt"),
         )
 
     @classmethod
@@ -113,12 +115,12 @@ class CutClickTool(Tool):
     """A click picks the background colour, or swaps a hole, at the release."""
 
     @classmethod
-    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
         match session.cutting:
             case "pick":
-                return (Hint("click", "on the background to remove its colour"),)
+                return (Hint(_("click on the background to remove its colour")),)
             case "holes":
-                return (Hint("click", "in a hole to keep it open, or to fill it"),)
+                return (Hint(_("click in a hole to keep it open, or to fill it")),)
             case _:
                 return ()
 

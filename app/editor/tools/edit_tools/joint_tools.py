@@ -8,6 +8,7 @@ from app.editor.project import Project
 from app.editor.session import Hint, Session
 from app.editor.tools.tool import PointerHit, Tool
 from app.editor.work.motion_setup import MotionSetup
+from app.texts import _
 
 REACH = 14.0  # screen pixels: reach of the pointer around a joint
 
@@ -25,8 +26,9 @@ class JointTool(Tool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         name = find_joint_near(session, project, spot.place)
         if name is None:
-            return (Hint("drag", "each joint to where it belongs"),)
-        return (Hint("drag", f"{name} to where it belongs"), Hint("click", "leaves it out", "alt"))
+            return (Hint(_("drag each joint to where it belongs")),)
+        text = _("drag {joint} to where it belongs").format(joint=_(name))
+        return (Hint(text), Hint(_("click leaves it out"), "alt"))
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -59,7 +61,7 @@ class JointTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint("let go", "where it belongs"),)
+        return (Hint(_("let go where it belongs")),)
 
 
 def find_joint_near(session: Session, project: Project, place: complex) -> str | None:

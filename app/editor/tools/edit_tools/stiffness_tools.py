@@ -7,6 +7,7 @@ from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
 from app.editor.project import Project
 from app.editor.session import BoneOverlay, Hint, Mark, Session, StrokeOverlay
 from app.editor.tools.tool import PointerHit, Tool
+from app.texts import _
 
 STEP = 0.25  # of the brush's radius: least distance of a stroke's points
 REACH = 14.0  # screen pixels: reach of the pointer around a handle
@@ -21,13 +22,13 @@ class StiffnessBrushTool(Tool):
     stiffens: bool | None
 
     @classmethod
-    def hints(cls, session: Session, _: Project, __: PointerHit) -> tuple[Hint, ...]:
-        what = {
-            "stiff": "to make a part stiff",
-            "soft": "to make a part soft",
-            "normal": "to make a part as usual again",
+    def hints(cls, session: Session, _project: Project, _spot: PointerHit) -> tuple[Hint, ...]:
+        text = {
+            "stiff": _("drag to make a part stiff"),
+            "soft": _("drag to make a part soft"),
+            "normal": _("drag to make a part as usual again"),
         }.get(session.material or "")
-        return () if what is None else (Hint("drag", what), Hint("[ and ]", "for its size"))
+        return () if text is None else (Hint(text), Hint(_("[ and ] for its size")))
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -66,12 +67,12 @@ class BoneTool(Tool):
     refusal: str = ""
 
     @classmethod
-    def hints(cls, session: Session, _: Project, spot: PointerHit) -> tuple[Hint, ...]:
+    def hints(cls, session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if session.material != "bone":
             return ()
         if spot.handle is None:
-            return (Hint("drag", "from one handle to another one for a bone"),)
-        return (Hint("drag", "to another handle for a bone"),)
+            return (Hint(_("drag from one handle to another one for a bone")),)
+        return (Hint(_("drag to another handle for a bone")),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:

@@ -5,6 +5,7 @@ from imgui_bundle import imgui
 from app.document import DEFAULT_DEPTH_EXTENT, Handle, Keyframe, Layer, layer_commands
 from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback, viewing
+from app.editor.actions.layer_setup import handle_editing
 from app.texts import _
 from app.ui.style.sliders import Scale, slider
 from app.ui.style.theme import Look
@@ -38,12 +39,12 @@ def draw_depth_settings(
 def _depth(session: Session, look: Look, project: Project, handle: Handle) -> list[Action]:
     label(look, _("Depth"))
     hint = _("Order where the drawing overlaps itself: −1 paints this part behind, 1 in front")
-    front = editing.depth_at_playhead(session, project, handle)
+    front = handle_editing.depth_at_playhead(session, project, handle)
     entered = slider(look, "depth", front, DEPTHS, text="%.2f", hint=hint)
     if entered is None:
         return []
     value = round(min(max(entered.value, -1.0), 1.0), 2)
-    return [do(editing.set_depth, handle.id, value)]
+    return [do(handle_editing.set_depth, handle.id, value)]
 
 
 def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:

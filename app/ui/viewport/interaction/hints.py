@@ -68,8 +68,8 @@ def _sentence(parts: list[str]) -> str:
 
 
 def _format_hint(hint: Hint) -> str:
-    gesture = reduce(lambda text, key: format_modified(key, text), KEYS.get(hint.key, ()), hint.how)
-    return _("{gesture} {effect}").format(gesture=gesture, effect=hint.what)
+    keys = KEYS.get(hint.key, ())
+    return reduce(lambda text, key: format_modified(key, text), keys, hint.text)
 
 
 def draw_badges(

@@ -4,7 +4,8 @@ import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.editor import Action, Session, TutorialStage, TutorialState, do
-from app.editor.actions import exporting, tutorials
+from app.editor.actions import tutorials
+from app.editor.actions.project_files import exporting
 from app.texts import _, ngettext
 from app.ui.shortcuts.table import BINDINGS
 from app.ui.style.theme import SMALL, Look, colour_u32

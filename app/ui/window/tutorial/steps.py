@@ -6,7 +6,8 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, imgui
 
 from app.editor import Project, Session, TutorialState
-from app.editor.actions import exporting, tutorials
+from app.editor.actions import tutorials
+from app.editor.actions.project_files import exporting
 from app.texts import _
 from app.ui.panel import is_in_front
 from app.ui.shortcuts.table import BINDINGS

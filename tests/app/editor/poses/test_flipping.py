@@ -44,7 +44,7 @@ def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     assert project.document is before
 
 
-def test_a_flip_that_comes_too_late_is_told(session):
+def test_late_flip_is_reported(session):
     copying.copy_pose_or_keys(session)
     pasting.paste_copied(session, "flipped")
     editing.edit_layer(session, handle_commands.remove_handles, {0})

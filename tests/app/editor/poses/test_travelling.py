@@ -21,7 +21,7 @@ from app.document import (
     track_commands,
 )
 from app.editor.actions import editing, playback
-from app.editor.actions.layer_setup import stiffness_editing
+from app.editor.actions.layer_setup import handle_editing, stiffness_editing
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.upkeep import maintain
 from app.editor.layering.layer_list import rename_layer
@@ -261,7 +261,7 @@ def test_why_nothing_can_be_pasted_is_said(session):
     assert "still picture" in pasting.paste_disabled_reason(session, project, PLAIN)
 
 
-def test_layers_without_a_common_name_are_left_out_and_told(session):
+def test_paste_reports_layers_without_a_common_name(session):
     far = identity(session, "far leg")
     for handle in layer(session, "far leg").handles:
         command = handle_commands.rename_handle(far, handle.id, f"point {handle.id}")
@@ -274,8 +274,8 @@ def test_layers_without_a_common_name_are_left_out_and_told(session):
     settle(session)
     assert layer(session, "body").key_frames == {0, 12}
     assert layer(session, "far leg").key_frames == {0}
-    told = [toast.text for toast in session.toasts]
-    assert "“far leg” has no handle called hip, knee or foot." in told
+    texts = [toast.text for toast in session.toasts]
+    assert "“far leg” has no handle called hip, knee or foot." in texts
 
 
 def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
@@ -297,8 +297,8 @@ def test_handles_that_are_not_copied_stay_where_the_motion_has_them(session):
     pasting.paste_copied(session)
     settle(session)
     shin = next(each for each in layer(session, "far leg").handles if each.name == "shin")
-    wished = layer(session, "far leg").key(12).pose.targets[shin.id].position
-    assert wished == pytest.approx(here, abs=0.5)
+    target = layer(session, "far leg").key(12).pose.targets[shin.id].position
+    assert target == pytest.approx(here, abs=0.5)
     close(
         {k: w for k, w in ways(session, "far leg", 12).items() if k != "shin"},
         ways(session, "near leg", 0),
@@ -321,12 +321,12 @@ def test_selected_handles_alone_take_over_from_another_layer(session):
 def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     editing.select_handles(session, frozenset({2}))
     nudge_handles(session, 13 + 3j)
-    (promised,) = session.project.pulls
-    while promised.kept is None:
+    (pull,) = session.project.pulls
+    while pull.kept is None:
         maintain(session)
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
-    assert not promised.is_settled
+    assert not pull.is_settled
     copying.copy_pose_or_keys(session)
     set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)
@@ -335,7 +335,7 @@ def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     close(ways(session, "far leg", 0), ways(session, "near leg", 0))
 
 
-def test_a_layer_that_changes_meanwhile_is_told(session):
+def test_paste_reports_a_layer_that_changes_meanwhile(session):
     copying.copy_pose_or_keys(session)
     set_active_layer(session, identity(session, "far leg"))
     pasting.paste_copied(session)
@@ -412,9 +412,9 @@ def test_what_is_turned_as_a_whole_stays_turned_where_its_sides_are_swapped():
     pose = replace(key.pose, targets=targets, phi=turn * body.domain.cage)
     copied = CopiedKeys(body, (replace(key, pose=pose),))
     landing = paste_destinations.find_paste_destination(scene, copied, body, SWAPPED)
-    wished = landing.pose_transfer(SWAPPED).transfer_targets(body, pose)
+    target = landing.pose_transfer(SWAPPED).transfer_targets(body, pose)
     for handle in body.handles:
-        assert wished[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
+        assert target[handle.id].position == pytest.approx(targets[handle.id].position, abs=1e-9)
 
 
 @pytest.mark.parametrize(("way", "mirrors"), [(SWAPPED, False), (FLIPPED, True)])
@@ -472,7 +472,7 @@ def test_pairs_of_the_document_tell_partners_of_handles_too(session):
         editing.edit_layer(session, handle_commands.rename_handle, handle, name)
     pasting.set_mirror_names(session, "L/R, Spielknie/Standknie")
     editing.select_handles(session, frozenset({1}))
-    editing.select_mirrored(session)
+    handle_editing.select_mirrored(session)
     assert session.project.selected_handles == {2}
     editing.edit_document(session, track_commands.put_track_key(0, 1, 0, 4 + 2j))
     pairs = session.project.document.pairs

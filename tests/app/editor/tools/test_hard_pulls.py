@@ -137,8 +137,8 @@ def test_a_hand_beyond_reach_moves_a_limb_and_leaves_the_rest(session):
     assert ((wanted - after[hand]) / (asked - after[hand])).real > 0
     (toast,) = [toast for toast in session.toasts if "stopped" in toast.text]
     name = project.layer.handle(hand).name
-    assert toast.text == STOPPED_AT_LIMIT.format(who=name, its="its")
-    # All of that is one step, and the pose is found again from its own wishes.
+    assert toast.text == STOPPED_AT_LIMIT.format(handle=name)
+    # The whole drag is one step, and the pose is solved again from its own targets.
     solve_pose_again(session, {}, gesture=object())
     settle(session)
     assert per_mille(session, where(project)[1] - rests) < 1
@@ -167,7 +167,7 @@ def test_loosen_pulls_once_more_to_where_the_hand_went(session):
 
 
 @pytest.mark.parametrize("session", ["person"], indirect=True)
-def test_alt_keeps_the_wish_and_pulls_as_strongly_as_it_takes(session):
+def test_alt_keeps_the_target_and_forces_the_drag(session):
     project = session.project
     hand, asked, before = drag_too_far(session, rests=0)
     tool_pointer.release_pointer_forced(session, asked)

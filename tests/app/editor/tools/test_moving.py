@@ -150,7 +150,7 @@ def test_each_arrow_is_a_step(session):
 
 @pytest.fixture
 def joined(blob, tmp_path):
-    """Two blobs, the second of which hangs on the first, and is posed."""
+    """Two blobs: the second is attached to the first, and is posed."""
     session = session_of(blob, tmp_path)
     session.project.history.do(shape_commands.set_anchor(0, LEFT))
     settle(session)
@@ -167,7 +167,7 @@ def places_of(session, layer):
     return shown.placement.apply(shown.positions)
 
 
-def test_a_layer_moves_what_it_hangs_on(joined):
+def test_layer_moves_its_root_parent(joined):
     project, before = joined.project, [places_of(joined, layer) for layer in (0, 1)]
     drag(joined, end=False, ctrl=True, shift=True)
     settle(joined)
@@ -184,7 +184,7 @@ def test_a_layer_moves_what_it_hangs_on(joined):
     np.testing.assert_allclose(places_of(joined, 1), before[1] + 4, atol=1e-3)
 
 
-def test_a_layer_stays_that_hangs_on_a_locked_one(joined):
+def test_layer_stays_when_its_parent_is_locked(joined):
     toggle_layers_locked(joined, 0)
     document = joined.project.document
     drag(joined, ctrl=True, shift=True)
@@ -251,12 +251,12 @@ def test_an_in_between_becomes_a_pose_of_its_own(tmp_path, auto_key, is_there):
 def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     """The hand lets a handle go, and moves all of it before the pose has come to rest."""
     session = session_of(blob, tmp_path)
-    wished = {1: replace(target(session, 1), position=RIGHT + 12j)}
-    set_targets(session, wished)
+    targets = {1: replace(target(session, 1), position=RIGHT + 12j)}
+    set_targets(session, targets)
     settle(session)
     rested = pose_of(session)
     editing.undo(session)
-    set_targets(session, wished)
+    set_targets(session, targets)
     maintain(session)
     assert session.jobs.wait_until_idle()
     session.jobs.deliver()

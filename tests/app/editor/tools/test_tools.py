@@ -239,14 +239,14 @@ def test_there_is_a_hint_wherever_something_can_be_done(session, spot):
     assert hints
     for hint in hints:
         held = dict.fromkeys(filter(None, hint.key.split("+")), True)
-        there = ON_RING if "its ring" in hint.how else spot
+        there = ON_RING if "its ring" in hint.text else spot
         tool_pointer.press_pointer(session, replace(there, **held))
         named = type(session.active_tool)
         assert hint in named.hints(session, session.project, spot)
         tool_pointer.cancel_tool(session)
 
 
-def wish(session, identity=0):
+def target(session, identity=0):
     settle(session)
     return session.project.layer.keys[0].pose.targets[identity]
 
@@ -257,12 +257,12 @@ def test_a_drag_goes_as_far_as_is_typed_whatever_the_pointer_does(session):
     tool_pointer.type_in_tool(session, "0")
     assert [mark.text for mark in session.active_tool.tool_overlays] == ["40 px"]
     tool_pointer.move_pointer(session, LEFT + 6j)
-    assert wish(session).position == pytest.approx(LEFT + 40j)
+    assert target(session).position == pytest.approx(LEFT + 40j)
     tool_pointer.type_in_tool(session, "y")
     assert [mark.text for mark in session.active_tool.tool_overlays] == ["Y 40 px"]
-    assert wish(session).position == pytest.approx(LEFT - 40j)
+    assert target(session).position == pytest.approx(LEFT - 40j)
     tool_pointer.release_pointer(session, LEFT)
-    assert wish(session).position == pytest.approx(LEFT - 40j)
+    assert target(session).position == pytest.approx(LEFT - 40j)
     editing.undo(session)
     assert session.project.history.undo_label is None
 
@@ -272,17 +272,17 @@ def test_a_handle_that_was_only_pressed_goes_where_it_is_typed_to(session):
     for character in "x-5":
         tool_pointer.type_in_tool(session, character)
     tool_pointer.release_pointer(session, LEFT)
-    assert wish(session).position == pytest.approx(LEFT - 5)
+    assert target(session).position == pytest.approx(LEFT - 5)
 
 
 def test_turning_takes_degrees_and_goes_in_steps(session):
     drag(session, ON_RING, LEFT + 20 + 1j)
     tool_pointer.move_pointer_in_steps(session, LEFT + 20 * np.exp(1j * np.radians(38)))
-    assert wish(session).rotation == pytest.approx(np.radians(45))
+    assert target(session).rotation == pytest.approx(np.radians(45))
     tool_pointer.move_pointer(session, LEFT + 20 * np.exp(1j * np.radians(38)))
-    assert wish(session).rotation == pytest.approx(np.radians(38))
+    assert target(session).rotation == pytest.approx(np.radians(38))
     tool_pointer.type_in_tool(session, "-12.5")
     tool_pointer.move_pointer(session, LEFT + 20j)
-    assert wish(session).rotation == pytest.approx(np.radians(-12.5))
+    assert target(session).rotation == pytest.approx(np.radians(-12.5))
     tool_pointer.release_pointer(session, LEFT + 20j)
-    assert wish(session).rotation == pytest.approx(np.radians(-12.5))
+    assert target(session).rotation == pytest.approx(np.radians(-12.5))

@@ -16,9 +16,10 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.motion_setup import MotionJob, MotionSetup
 from app.editor.work.promise import Promise
 from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
+from app.texts import _, ngettext
 
-GIVING = JobKind("Giving the motion", "The motion was not given", "hand")
-MOST_TOLD = 3  # most unreached joints that a notice names
+GIVING = JobKind(_("Applying the motion"), _("The motion was not applied"), "hand")
+MOST_NAMED = 3  # most unreached joints that a notice names
 
 
 @with_project
@@ -27,7 +28,7 @@ def apply_motion_preset(session: Session, project: Project) -> None:
     draft = project.motion_setup
     if draft is not None and not preset_setup.apply_motion_disabled_reason(project):
         preset_setup.close_motion_setup(session)
-        pending_changes.run_when_idle(session, do(_begin, draft), "Give a motion")
+        pending_changes.run_when_idle(session, do(_begin, draft), _("Apply motion preset"))
 
 
 @with_project
@@ -37,13 +38,13 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
     before = project.document.layer(draft.layer)
     if before.domain is not draft.domain:
         session.show_notice(
-            "The motion was not given: the drawing has another shape by now. Start again."
+            _("The motion was not applied: the drawing has another shape by now. Start again.")
         )
         return
     base = _without(project.document, draft)
-    errand = MotionJob(setup=draft, before=before, base=base)
+    task = MotionJob(setup=draft, before=before, base=base)
     order = _motion_request(draft, is_first=not before.motions)
-    _step(session, project, errand, partial(start_motion_solve, base, before.id, order))
+    _step(session, project, task, partial(start_motion_solve, base, before.id, order))
 
 
 def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
@@ -91,36 +92,38 @@ def _without(document: Document, draft: MotionSetup) -> Document:
 
 
 def _step(
-    session: Session, project: Project, errand: MotionJob, work: Callable[[], MotionSolve]
+    session: Session, project: Project, task: MotionJob, work: Callable[[], MotionSolve]
 ) -> None:
     """Run one step on the worker."""
 
     def failed(error: Exception) -> None:
-        project.motion_setup = project.motion_setup or errand.setup
+        project.motion_setup = project.motion_setup or task.setup
         report_failure(session, GIVING.complaint, error)
 
     def arrived(giving: MotionSolve) -> None:
-        _go_on(session, project, replace(errand, solve=giving))
+        _go_on(session, project, replace(task, solve=giving))
 
-    promise = Promise(label=GIVING.label, motion_job=errand)
+    promise = Promise(label=GIVING.label, motion_job=task)
     pending_changes.begin_pending_change(
         session, project, GIVING, work, arrived, failed, promise=promise
     )
 
 
-def _go_on(session: Session, project: Project, errand: MotionJob) -> None:
+def _go_on(session: Session, project: Project, task: MotionJob) -> None:
     """Take the next step, or write the motion to the layer."""
-    if errand.solve is not None and not errand.solve.is_over:
-        _step(session, project, errand, partial(step_motion_solve, errand.solve))
-    elif errand.solve is not None:
-        _accept(session, project, errand, errand.solve)
+    if task.solve is not None and not task.solve.is_over:
+        _step(session, project, task, partial(step_motion_solve, task.solve))
+    elif task.solve is not None:
+        _accept(session, project, task, task.solve)
 
 
-def _accept(session: Session, project: Project, errand: MotionJob, giving: MotionSolve) -> None:
+def _accept(session: Session, project: Project, task: MotionJob, giving: MotionSolve) -> None:
     """Write the motion to the layer and play it; if the layer changed meanwhile, show a notice."""
-    before, draft = errand.before, errand.setup
+    before, draft = task.before, task.setup
     if before not in project.document.layers:
-        session.show_notice("The motion was not given: the drawing was posed or changed meanwhile.")
+        session.show_notice(
+            _("The motion was not applied: the drawing was posed or changed meanwhile.")
+        )
         project.motion_setup = project.motion_setup or draft
         return
     gesture, command = object(), giving.command
@@ -139,11 +142,22 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
     """Show a notice of joints that are out of reach, and offer a size that reaches all."""
     if not giving.target_errors:
         return
-    parts = [f"{name} by {lag:.0f} px" for name, (lag, _) in giving.target_errors.items()]
-    told = ", ".join(parts[:MOST_TOLD])
-    if len(parts) > MOST_TOLD:
-        told += f" and {len(parts) - MOST_TOLD} more"
-    text = f"Some joints fall short of the motion, held back by the limits: {told}."
+    parts = [
+        _("{joint} by {distance:.0f} px").format(joint=_(name), distance=error)
+        for name, (error, *_rest) in giving.target_errors.items()
+    ]
+    named, more = ", ".join(parts[:MOST_NAMED]), len(parts) - MOST_NAMED
+    if more > 0:
+        text = ngettext(
+            "Some joints fall short of the motion, held back by the limits: {joints} and {count} "
+            "more joint.",
+            "Some joints fall short of the motion, held back by the limits: {joints} and {count} "
+            "more joints.",
+            more,
+        ).format(joints=named, count=more)
+    else:
+        text = _("Some joints fall short of the motion, held back by the limits: {joints}.")
+        text = text.format(joints=named)
     size = giving.reachable_size
     if size is None:
         session.show_notice(text, topic="motion")
@@ -151,7 +165,7 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
     session.show_notice(
         text,
         topic="motion",
-        label=f"Use size {size:.2f}",
+        label=_("Use size {size:.2f}").format(size=size),
         action=do(apply_motion_at_size, giving.before.id, giving.applied.first, size),
     )
 
@@ -164,21 +178,21 @@ def apply_motion_at_size(
     found = project.document.layer(layer) if layer in project.layer_runtimes else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
-        session.show_notice("That motion is not there any more.")
+        session.show_notice(_("That motion is not there any more."))
         return
     draft = preset_setup.setup_of_applied_motion(found, given)
     parameters = replace(draft.parameters, size=size)
     pending_changes.run_when_idle(
-        session, do(_begin, replace(draft, parameters=parameters)), "Give a motion"
+        session, do(_begin, replace(draft, parameters=parameters)), _("Apply motion preset")
     )
 
 
 @with_project
 def cancel_motion_job(session: Session, project: Project) -> None:
     """Cancel the pending motion; its draft opens again."""
-    errand = project.motion_job
-    if errand is not None:
+    task = project.motion_job
+    if task is not None:
         session.jobs.drop(GIVING)
         project.pending = [promise for promise in project.pending if not promise.motion_job]
-        if errand.before.id == project.active:
-            project.motion_setup = project.motion_setup or errand.setup
+        if task.before.id == project.active:
+            project.motion_setup = project.motion_setup or task.setup

@@ -10,6 +10,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
 from app.rigging import find_kind, other_side, suggest_joints
+from app.texts import _
 from engine.geometry import diameter
 
 NEAR = 0.035  # of the diameter: a handle within this distance of a joint is the joint
@@ -121,7 +122,8 @@ def mirror_joints(session: Session, project: Project) -> None:
             outside += [other_side(name)] if nearest != mirrored else []
     project.motion_setup = draft.with_joints(joints, draft.selected_joint)
     if outside:
-        session.show_notice(f"The mirrored places of {', '.join(outside)} are beside the drawing.")
+        text = _("The mirrored places of {joints} are beside the drawing.")
+        session.show_notice(text.format(joints=", ".join(map(_, outside))))
 
 
 def mirrored_side(draft: MotionSetup) -> str:
@@ -147,12 +149,12 @@ def _beside(draft: MotionSetup, name: str) -> complex:
     """Return a place for a joint that was not found: like the other side, or near its parent."""
     kind, joints = draft.body_kind, draft.joints
     outline = draft.domain.outline
-    twin = joints.get(other_side(name))
-    if twin is not None and kind.name == "biped-front":
-        return _inside(draft, complex(2 * _axis(draft) - twin.real, twin.imag))[0]
+    opposite = joints.get(other_side(name))
+    if opposite is not None and kind.name == "biped-front":
+        return _inside(draft, complex(2 * _axis(draft) - opposite.real, opposite.imag))[0]
     reach = BELOW * float(np.ptp(outline.imag))
-    if twin is not None and other_side(name) != name:
-        return _inside(draft, twin + 0.4 * reach)[0]
+    if opposite is not None and other_side(name) != name:
+        return _inside(draft, opposite + 0.4 * reach)[0]
     before = kind.parent(name, joints)
     joint, _, side = name.partition(".")
     start = joints[before] if before else complex(np.mean(outline))

@@ -11,19 +11,22 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.motion_setup import MotionSetup
 from app.rigging import MOTIONS, Parameters, guess_kind
+from app.texts import _, ngettext
 
 MOST_ROUNDS = 50
 PANEL = "Motion"
 LINKS = 6
 
 
-def motion_disabled_reason(_: Session, project: Project) -> str:
+def motion_disabled_reason(_session: Session, project: Project) -> str:
     """Return why the active layer cannot get a motion; empty if it can."""
     layer = project.layer
     if layer.still:
-        return f"{layer.name} is a still picture: there is no shape on it to be moved."
+        text = _("{layer} is a still picture, which has no shape to move.")
+        return text.format(layer=layer.name)
     if layer.locked:
-        return f"{layer.name} is locked: unlock it in the list of layers first."
+        text = _("{layer} is locked: unlock it in the list of layers first.")
+        return text.format(layer=layer.name)
     return ""
 
 
@@ -207,12 +210,17 @@ def apply_motion_disabled_reason(project: Project) -> str:
     """Return why the draft cannot be applied; empty if it can."""
     draft = project.motion_setup
     if draft is None:
-        return "There is no motion to be given."
+        return _("There is no motion to apply.")
     if draft.missing_joints:
-        missing = ", ".join(draft.missing_joints)
-        return f"{draft.preset.label} needs {missing}: click on it in the diagram to add it."
+        text = ngettext(
+            "{motion} needs {joints}: click on this joint in the diagram to add it.",
+            "{motion} needs {joints}: click on each of these joints in the diagram to add it.",
+            len(draft.missing_joints),
+        )
+        missing = ", ".join(map(_, draft.missing_joints))
+        return text.format(motion=draft.preset.label, joints=missing)
     if is_applied_motion_edited(project) and not draft.replaces_edits:
-        return "It was edited by hand since it was given, which would be lost."
+        return _("The motion was edited by hand since it was applied. The edits would be lost.")
     return ""
 
 

@@ -7,12 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from app.document import Clip, ExportSettings, FrameRange, clip_of, scene_commands
+from app.document import Clip, ExportSettings, FrameRange, clip_of
 from app.editor import pending_changes
 from app.editor.action import Action, do
-from app.editor.actions import editing
 from app.editor.actions.posing.pose_commit import key_pose_command
-from app.editor.dialogs import FileDialog, Question
+from app.editor.dialogs import Question
 from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
@@ -20,60 +19,31 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.promise import Afterwards
 from app.errors import LissomError, display_name
 from app.export import (
-    FRAMES,
     CachedVertices,
     ExportRequest,
-    FrameNames,
     check_request,
     clipboard_program,
-    data_file,
     list_overwritten_files,
     plan_export,
     put_on_clipboard,
     with_reduced_meshes,
-    with_suffix_for,
 )
 from app.export_formats import EXPORT_FORMATS, STILL_FORMAT
-from app.motion import Animation, BoundingBox, PoseSampler, extent_key, placed_animations
+from app.motion import Animation, PoseSampler, extent_key, placed_animations
 from app.storage import Cancellation, make_settings_folder, temporary_picture
+from app.texts import _, ngettext
 
-UNDER_WAY = "An export is under way. The next one can begin when it is done."
-RUNNING = "An export is running"
-CANCELLED_UNWRITTEN = "The export was cancelled. Nothing was written."
-CANCELLED_MIDWAY = "The export was cancelled. Frames that were written stay."
-PREPARING = JobKind("Preparing the export", "The export could not begin", "export")
-COPYING = JobKind("Copying the picture", "The picture was not copied", "export")
-
-
-def ask_destination_and_export(session: Session) -> None:
-    """Ask for a destination, and start the export."""
-    _ask(session, "Export", lambda path: do(start_export_at, path))
+UNDER_WAY = _("An export is under way. The next one can begin when it is done.")
+RUNNING = _("An export is running")
+CANCELLED_UNWRITTEN = _("The export was cancelled. Nothing was written.")
+CANCELLED_MIDWAY = _("The export was cancelled. Frames that were written stay.")
+PREPARING = JobKind(_("Preparing the export"), _("The export could not begin"), "export")
+COPYING = JobKind(_("Copying the picture"), _("The picture was not copied"), "export")
 
 
-def ask_export_destination(session: Session) -> None:
-    """Ask for the destination of the next export; do not start it."""
-    _ask(session, "Choose", lambda path: do(set_export_destination, path))
-
-
-@with_project
-def set_export_destination(_: Session, project: Project, out: Path) -> None:
-    """Set the destination of the next export of this format."""
-    name = project.document.export.format
-    _note_place(project, name, out)
-    data = data_file(out, name)
-    if EXPORT_FORMATS[name].suffixes and not (data is not None and data.exists()):
-        # The file dialog has already asked whether to replace the file.
-        project.replaceable = name, out
-
-
-def _note_place(project: Project, name: str, out: Path) -> None:
+def note_export_destination(project: Project, name: str, out: Path) -> None:
     project.export_destinations.pop(name, None)
     project.export_destinations[name] = out
-
-
-def start_export_at(session: Session, out: Path) -> None:
-    set_export_destination(session, out)
-    start_export(session, out)
 
 
 @with_project
@@ -81,27 +51,6 @@ def replace_export_files(session: Session, project: Project, out: Path) -> None:
     """Export, and replace existing files."""
     project.replaceable = project.document.export.format, out
     start_export(session, out)
-
-
-@with_project
-def repeat_export(session: Session, project: Project) -> None:
-    """Export to the chosen or last destination; ask if there is neither."""
-    out = export_destination(project)
-    if out is not None:
-        start_export(session, out)
-    else:
-        ask_destination_and_export(session)
-
-
-def export_destination(project: Project) -> Path | None:
-    """Return the destination of the next export, or None.
-
-    This is the last destination of the format. The first export of a format goes beside the last
-    export of another format, under a suitable name.
-    """
-    name, places = project.document.export.format, project.export_destinations
-    newest = next(reversed(places.values()), None)
-    return places.get(name) or (with_suffix_for(newest, name) if newest else None)
 
 
 @with_project
@@ -115,16 +64,18 @@ def start_export(session: Session, project: Project, out: Path) -> None:
     is_replaceable = project.replaceable == (settings.format, out)
     there = [] if is_replaceable else list_overwritten_files(project.document, request)
     if there:
-        what = "file" if len(there) == 1 else f"{len(there)} files"
-        which = there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
+        count, listed = len(there), there[0] if len(there) == 1 else f"{there[0]} … {there[-1]}"
+        folder = out.parent if out.name in there else out
         session.dialog = Question(
-            title=f"Replace the {what}?",
-            text=f"{out.parent if out.name in there else out} holds {which} already.",
-            answers=(("Replace", do(replace_export_files, out)),),
+            title=ngettext("Replace the file?", "Replace the {count} files?", count).format(
+                count=count
+            ),
+            text=_("{folder} holds {files} already.").format(folder=folder, files=listed),
+            answers=((_("Replace"), do(replace_export_files, out)),),
         )
         return
     session.cancellation = Cancellation()
-    pending_changes.run_when_idle(session, do(_begin, request), "Export", changes=False)
+    pending_changes.run_when_idle(session, do(_begin, request), _("Export"), changes=False)
 
 
 @with_project
@@ -134,7 +85,7 @@ def _begin(session: Session, project: Project, request: ExportRequest) -> None:
 
     def begun(run: ExportRun) -> None:
         session.export = run
-        _note_place(project, settings.format, out)
+        note_export_destination(project, settings.format, out)
         folder = out.parent if EXPORT_FORMATS[settings.format].suffixes else out
         session.preferences = replace(session.preferences, exported=folder)
         # A new pose makes a new picture, which must not replace this one without a question.
@@ -157,7 +108,7 @@ def copy_picture(session: Session, project: Project) -> None:
     check_request(project.document, request)
     session.cancellation = Cancellation()
     pending_changes.run_when_idle(
-        session, do(_begin_copy, request), "Copy the picture", changes=False
+        session, do(_begin_copy, request), _("Copy the picture"), changes=False
     )
 
 
@@ -209,10 +160,10 @@ def _prepare(
         frames = request.settings.frames
         if frames is not None and unkeyed.frame in frames:
             document = key_pose_command(session, project, unkeyed)(document)
-    pictures = {layer: puppet.cut.value.texture for layer, puppet in project.layer_runtimes.items()}
+    pictures = {layer: each.cut.value.texture for layer, each in project.layer_runtimes.items()}
     samplers = {
-        layer: (puppet.fine or puppet.store).sampler or puppet.store.sampler
-        for layer, puppet in project.layer_runtimes.items()
+        layer: (runtime.fine or runtime.store).sampler or runtime.store.sampler
+        for layer, runtime in project.layer_runtimes.items()
     }
     extent = project.extent
     box = extent.value if extent.follows(extent_key(document)) else None
@@ -224,9 +175,9 @@ def _prepare(
         alone = [
             _animation(clip_of(exported, layer.id), samplers[layer.id]) for layer in exported.layers
         ]
-        hung = placed_animations(alone, exported)
+        attached = placed_animations(alone, exported)
         poses = {
-            layer: CachedVertices(animation, cancellation) for layer, animation in hung.items()
+            layer: CachedVertices(animation, cancellation) for layer, animation in attached.items()
         }
         plan = plan_export(exported, request, poses, box)
         return ExportRun(document=exported, pictures=pictures, poses=poses, plan=plan)
@@ -268,13 +219,18 @@ def confirm_ending_export(session: Session, then: Action) -> None:
         then.apply(session)
         return
     done, total = (run.done, len(run.plan.times)) if run is not None else (0, 0)
-    how_far = f"{done} of {total} frames are drawn." if total else "It is being prepared."
-    is_lost = run is not None and _is_one_file(run)
-    left = "Nothing is written" if is_lost else "Frames that are written stay"
+    progress = _("The export is being prepared.")
+    if total:
+        progress = ngettext(
+            "{done} of {total} frame is drawn.", "{done} of {total} frames are drawn.", total
+        ).format(done=done, total=total)
+    result = _("Frames that are written stay if the export ends now.")
+    if run is not None and _is_one_file(run):
+        result = _("Nothing is written if the export ends now.")
     session.dialog = Question(
         title=RUNNING,
-        text=f"{how_far} {left} if it ends now.",
-        answers=(("Quit", then),),
+        text=f"{progress} {result}",
+        answers=((_("Quit"), then),),
     )
 
 
@@ -296,13 +252,17 @@ def finish_export(session: Session, run: ExportRun, notices: Sequence[str]) -> N
         return
     session.exported = run.plan
     folder = run.plan.out if run.plan.out.is_dir() else run.plan.out.parent
-    count = len(run.plan.times)
-    frames = "1 frame" if count == 1 else f"{count} frames"
-    what = f"{frames} to " if EXPORT_FORMATS[run.plan.format].is_drawn else ""
+    name, count = run.plan.out.name, len(run.plan.times)
+    if EXPORT_FORMATS[run.plan.format].is_drawn:
+        text = ngettext(
+            "Exported {count} frame to {name}.", "Exported {count} frames to {name}.", count
+        ).format(count=count, name=name)
+    else:
+        text = _("Exported {name}.").format(name=name)
     session.show_notice(
-        f"Exported {what}{run.plan.out.name}.",
+        text,
         tone="good",
-        label="Open folder",
+        label=_("Open folder"),
         action=do(open_folder, folder),
     )
     for notice in (*notices, *run.plan.notices):
@@ -318,29 +278,13 @@ def _copy(session: Session, picture: Path) -> None:
         finally:
             picture.unlink(missing_ok=True)
 
-    def done(_: None) -> None:
-        session.show_notice("The picture is on the clipboard.", tone="good")
-
-    run_job(session, COPYING, work, done)
+    text = _("The picture is on the clipboard.")
+    run_job(session, COPYING, work, lambda _result: session.show_notice(text, tone="good"))
 
 
 def report_failed_export(session: Session, error: Exception) -> None:
     session.export = None
-    report_failure(session, "The export failed", error)
-
-
-def set_export_settings(session: Session, export: ExportSettings) -> None:
-    editing.edit_document(session, scene_commands.set_export(export))
-
-
-def set_aspect_locked(session: Session, keeps: bool) -> None:  # noqa: FBT001 - the only argument
-    """Link or unlink width and height of an export."""
-    session.is_aspect_locked = keeps
-
-
-def preview_export_frame(session: Session, box: BoundingBox) -> None:
-    """Show the export's frame in the viewport, until the next frame of the window."""
-    session.export_frame = box
+    report_failure(session, _("The export failed"), error)
 
 
 def open_folder(session: Session, folder: Path) -> None:
@@ -351,26 +295,6 @@ def open_folder(session: Session, folder: Path) -> None:
         opener = "open" if sys.platform == "darwin" else "xdg-open"
         subprocess.Popen([opener, folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # noqa: S603
     except OSError:
-        raise LissomError(f"no file manager was found; the folder is {folder}") from None
+        text = _("no file manager was found; the folder is {folder}")
+        raise LissomError(text.format(folder=folder)) from None
     session.hint = display_name(folder)
-
-
-@with_project
-def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path], Action]) -> None:
-    if session.export is not None:
-        return
-    settings = project.document.export
-    suffixes = EXPORT_FORMATS[settings.format].suffixes
-    out = export_destination(project)
-    if out is None:
-        out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
-    session.dialog = FileDialog(
-        title="Export into a file" if suffixes else "Export into a folder",
-        folder=out.parent,
-        name=out.name,
-        suffixes=suffixes,
-        writes=True,
-        verb=verb,
-        chosen=chosen,
-        is_frame=FrameNames(pattern=settings.names, project=project.name).fits,
-    )

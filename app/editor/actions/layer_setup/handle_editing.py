@@ -1,0 +1,76 @@
+"""Partners, locks, groups and depth of handles."""
+
+from collections.abc import Mapping
+from itertools import count
+
+from app.document import Handle, handle_commands, layer_commands, mirrored_handles_by_name
+from app.editor.actions import playback
+from app.editor.actions.editing import edit_layer, select_handles
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.texts import _
+
+
+@with_project
+def select_mirrored(session: Session, project: Project) -> None:
+    """Select the handles on the other side whose names match the selected ones."""
+    pairs = mirrored_handles_by_name(project.layer.handles, project.document.pairs)
+    partners = frozenset(pairs[handle] for handle in project.selected_handles if handle in pairs)
+    if partners:
+        select_handles(session, partners)
+    else:
+        session.show_notice(
+            _(
+                "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
+                "“foot_l” and “foot_r”, or “left ear” and “right ear”."
+            )
+        )
+
+
+@with_project
+def toggle_handles_locked(session: Session, project: Project) -> None:
+    """Lock the selected handles, or unlock them if all are locked."""
+    if project.selected_handles:
+        chosen = [
+            handle for handle in project.layer.handles if handle.id in project.selected_handles
+        ]
+        locked = not all(handle.locked for handle in chosen)
+        edit_layer(session, handle_commands.lock_handles, project.selected_handles, locked=locked)
+
+
+@with_project
+def group_handles(session: Session, project: Project) -> None:
+    if len(project.selected_handles) > 1:
+        taken = {handle.group for handle in project.layer.handles}
+        names = (_("group {number}").format(number=number) for number in count(1))
+        name = next(each for each in names if each not in taken)
+        edit_layer(session, handle_commands.group_handles, project.selected_handles, name)
+
+
+@with_project
+def ungroup_handles(session: Session, project: Project) -> None:
+    """Dissolve the groups of the selected handles."""
+    fellows = frozenset[int]().union(*map(project.layer.grouped_handles, project.selected_handles))
+    edit_layer(session, handle_commands.group_handles, fellows, "")
+
+
+def depth_at_playhead(session: Session, project: Project, handle: Handle) -> float:
+    """Return the depth of a handle at the present frame, −1 (back) to 1 (front)."""
+    return _depth_points_at_playhead(session, project).get(handle.id, handle.depth)
+
+
+@with_project
+def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
+    """Set the depth of a handle: in the present key if that has the depth, or else for all keys."""
+    if identity in _depth_points_at_playhead(session, project):
+        frame = playback.edited_frame(session, project)
+        edit_layer(session, layer_commands.key_depth, frame, identity, front)
+    else:
+        extent = project.layer.handle(identity).extent
+        edit_layer(session, layer_commands.set_depth, identity, front, extent)
+
+
+def _depth_points_at_playhead(session: Session, project: Project) -> Mapping[int, float]:
+    """Return the depth points of the key at the present frame; empty without one."""
+    frame, layer = playback.edited_frame(session, project), project.layer
+    return layer.key(frame).depths if frame in layer.key_frames else {}

@@ -1,0 +1,126 @@
+"""Autosaves and preferences, which are written when they are due."""
+
+from functools import partial
+
+from app.document import Document
+from app.editor import pending_changes
+from app.editor.actions.posing.pose_commit import key_pose_command
+from app.editor.actions.posing.pose_lifecycle import commit_all_poses
+from app.editor.actions.project_files.saving import has_unsaved_changes
+from app.editor.error_reports import clear_reported_failure, report_first_failure, run_job
+from app.editor.project import Project
+from app.editor.session import Session, with_project
+from app.editor.work.jobs import JobKind
+from app.storage import SECONDS, remove_abandoned_files, save_preferences
+from app.texts import _
+
+AUTOSAVING = JobKind(_("Autosaving"), _("Unsaved work cannot be kept"), "keep")
+WRITING = JobKind(_("Saving preferences"), _("The preferences cannot be kept"), "keep")
+CLEARING = JobKind(
+    _("Clearing up"), _("Unfinished files of earlier saves were not removed"), "keep"
+)
+
+
+def write_due_files(session: Session) -> None:
+    """Write unsaved work and preferences when they are due; once a frame."""
+    autosave(session)
+    write_preferences(session)
+
+
+def remove_temporary_files(session: Session) -> None:
+    """Remove temporary files of interrupted saves from the person's folders; at the start."""
+    folders = {session.folder, *session.preferences.written}
+
+    def work() -> None:
+        for folder in folders:
+            remove_abandoned_files(folder)
+
+    # The folders may be on a slow disk.
+    run_job(session, CLEARING, work, lambda _: None)
+
+
+def write_preferences(session: Session) -> None:
+    """Write the preferences if they have changed."""
+    preferences, folder = session.preferences, session.folder
+    if preferences == session.saved_preferences:
+        return
+    session.saved_preferences = preferences
+    run_job(
+        session,
+        WRITING,
+        lambda: save_preferences(folder, preferences),
+        lambda _: clear_reported_failure(session, WRITING.complaint),
+        partial(report_first_failure, session, WRITING.complaint),
+    )
+
+
+@with_project
+def autosave(session: Session, project: Project) -> None:
+    """Write unsaved changes to the autosave at intervals."""
+    if not has_unsaved_changes(project):
+        if project.autosaved is not None:
+            project.autosaved = None
+            session.autosave.remove()
+        project.changed_at = None
+        return
+    if project.autosaved == (project.document, project.history.preview_pose):
+        project.changed_at = None
+        return
+    now = session.clock()
+    if project.changed_at is None:
+        project.changed_at = now
+    # An autosave would disturb a drag, so it waits for the end of the drag. A very long drag must
+    # not delay it for ever.
+    may_write = pending_changes.is_document_idle(project) or now - project.changed_at >= SECONDS
+    is_due = now - project.autosaved_at >= SECONDS
+    if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
+        _begin_autosave(session, project, now)
+
+
+@with_project
+def autosave_now(session: Session, project: Project) -> None:
+    """Write unsaved changes to the autosave on this thread, before the program ends.
+
+    Raises
+    ------
+    LissomError
+        If the autosave cannot be written.
+    """
+    commit_all_poses(session, project)
+    kept = project.document, project.history.preview_pose
+    is_kept = project.autosaved == kept and AUTOSAVING not in session.jobs.kinds
+    if is_kept or not has_unsaved_changes(project):
+        return
+    # An autosave that waits is older, and must not replace this one.
+    session.jobs.drop(AUTOSAVING)
+    session.autosave.write(_all_keyed(session, project), project.origin)
+    project.autosaved, project.autosaved_at = kept, session.clock()
+
+
+def _all_keyed(session: Session, project: Project) -> Document:
+    """Return the document with the unkeyed pose as a key, since files store keys only."""
+    unkeyed = project.history.preview_pose
+    if unkeyed is None:
+        return project.document
+    return key_pose_command(session, project, unkeyed)(project.document)
+
+
+def _begin_autosave(session: Session, project: Project, now: float) -> None:
+    document, origin, earlier = _all_keyed(session, project), project.origin, project.autosaved
+    kept = project.document, project.history.preview_pose
+    project.autosaved, project.autosaved_at = kept, now
+
+    def done(_: None) -> None:
+        clear_reported_failure(session, AUTOSAVING.complaint)
+        # The project may have been saved or closed meanwhile.
+        if session.project is not project or project.autosaved != kept:
+            session.autosave.remove()
+
+    def failed(error: Exception) -> None:
+        # The disk may have room again next time.
+        if project.autosaved == kept:
+            project.autosaved = earlier
+        report_first_failure(session, AUTOSAVING.complaint, error)
+
+    work = partial(session.autosave.write, document, origin)
+    run_job(session, AUTOSAVING, work, done, failed)
