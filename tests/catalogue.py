@@ -14,7 +14,7 @@ from app.texts import DOMAIN, LOCALE
 ROOT = Path(__file__).parents[1]
 TEMPLATE = LOCALE / f"{DOMAIN}.pot"
 # What takes a text as its first argument, and a text and its plural as the first two.
-MARKS, PLURALS = {"_", "N_", "EngineError", "Message", "gettext"}, {"ngettext"}
+MARKS, PLURALS = {"_", "N_", "EngineError", "Message", "gettext"}, {"ngettext", "count_message"}
 
 
 def source_files() -> list[Path]:

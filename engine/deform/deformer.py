@@ -57,9 +57,10 @@ class Deformer(ConstrainedShape):
         certificate = certify(first, self.boundary, self.bounds)
         if not certificate.is_certified:
             raise EngineError(
-                UNCERTIFIED_START.format(
-                    k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
-                )
+                UNCERTIFIED_START,
+                k=certificate.k,
+                sigma_a=certificate.sigma_a,
+                sigma_b=certificate.sigma_b,
             )
         return State(map=first, certificate=certificate, limits=self.bounds, boundary=self.boundary)
 
@@ -164,7 +165,7 @@ class Deformer(ConstrainedShape):
         require_kind(wish, HandleTargets, "targets")
         if len(wish.positions) != len(self.handles.points):
             raise EngineError(
-                TARGET_COUNT.format(count=len(self.handles.points), given=len(wish.positions))
+                TARGET_COUNT, count=len(self.handles.points), given=len(wish.positions)
             )
 
     def _is_same_request(self, state: State, wish: HandleTargets) -> bool:
@@ -212,7 +213,7 @@ class Deformer(ConstrainedShape):
         self._require_own(wish)
         state, count = self._settled(state, wish, ways, as_count(at_most, "at_most"))
         if throw and not state.status.is_solved:
-            raise EngineError(UNSETTLED.format(count=count, status=state.status.value))
+            raise EngineError(UNSETTLED, count=count, status=state.status.value)
         return state, count
 
     def _settled(

@@ -112,9 +112,7 @@ def mesh_network(
         raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
     if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
         raise EngineError(
-            MESH_POINTS.format(
-                smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
-            )
+            MESH_POINTS, smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
         )
     loops = (outline, *holes)
     along, against = _directed(triangles, len(vertices))
@@ -127,16 +125,17 @@ def mesh_network(
     crossing = leave_region(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
-        raise EngineError(EDGE_LEAVES.format(first=first, second=second))
+        raise EngineError(EDGE_LEAVES, first=first, second=second)
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
     seen = nearest[~leave_region(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
-        raise EngineError(ANCHOR_UNREACHED.format(anchor=anchor[0]))
+        raise EngineError(ANCHOR_UNREACHED, anchor=anchor[0])
     reached = shortest_parents(along + against, int(seen[0]))
     if np.any(reached < 0):
         raise EngineError(
-            f"Point {np.flatnonzero(reached < 0)[0]} is not joined to the anchor by triangles; "
-            "leave the triangles out and the engine finds its own paths."
+            "Point {point} is not joined to the anchor by triangles; leave the triangles "
+            "out and the engine finds its own paths.",
+            point=np.flatnonzero(reached < 0)[0],
         )
     nodes, parents = np.concatenate([anchor, vertices]), np.concatenate([[0], reached + 1])
     parents[seen[0] + 1] = 0
@@ -223,7 +222,9 @@ def with_loops(
             if len(seen):
                 break
         else:
-            raise EngineError(f"No point near hole {number} sees it; give more points around it.")
+            raise EngineError(
+                "No point near hole {number} sees it; give more points around it.", number=number
+            )
         order = first + np.roll(np.arange(len(along)), -begin)
         own = np.empty(len(along), dtype=np.intp)
         own[order - first] = np.concatenate([seen[:1], order[:-1]])

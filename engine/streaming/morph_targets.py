@@ -84,7 +84,7 @@ def build_morph_targets(
     """
     moments = as_reals(times, "times")
     if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
-        raise EngineError(NO_TIMES.format(times=moments))
+        raise EngineError(NO_TIMES, times=moments)
     if (np.diff(moments) <= 0).any():
         raise EngineError(TIMES_FALL)
     as_number(tolerance, "The tolerance of targets", above=0)

@@ -60,10 +60,10 @@ class Flattening:
             If the mesh has holes: around them a flat metric need not close.
         """
         if domain.loops > 1:
-            count = domain.loops - 1
             raise EngineError(
-                f"This mesh has {count} {'hole' if count == 1 else 'holes'}; the method of Chen et "
-                "al. (2013) is for meshes without. Choose another."
+                "This mesh has holes: {count}. The method of Chen et al. (2013) is for meshes "
+                "without holes; choose another method.",
+                count=domain.loops - 1,
             )
         inner = np.flatnonzero(~domain.border)
         place = np.full(len(domain.points), -1)

@@ -194,14 +194,15 @@ def _as_corners(triangles: npt.ArrayLike, count: int) -> Indices:
     corners = np.asarray(triangles)
     if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
         raise EngineError(
-            f"triangles must be integers of shape (t, 3), not {corners.dtype} of shape "
-            f"{corners.shape}."
+            "triangles must be integers of shape (t, 3), not {dtype} of shape {shape}.",
+            dtype=corners.dtype,
+            shape=corners.shape,
         )
     if not len(corners):
         raise EngineError("A mesh needs at least one triangle; there is none.")
     if corners.min() < 0 or corners.max() >= count:
         raise EngineError(
-            MESH_POINTS.format(smallest=corners.min(), largest=corners.max(), last=count - 1)
+            MESH_POINTS, smallest=corners.min(), largest=corners.max(), last=count - 1
         )
     return corners.astype(np.intp)
 
@@ -213,15 +214,18 @@ def _oriented(points: Complexes, corners: Indices) -> Indices:
     longest = np.max(np.abs([b - a, c - b, a - c]), axis=0)
     flat = np.flatnonzero(np.abs(areas) <= FLAT * longest**2)
     if len(flat):
-        raise EngineError(f"Triangle {flat[0]} of the domain is flat; leave it out.")
+        raise EngineError(
+            "Triangle {triangle} of the domain is flat; leave it out.", triangle=flat[0]
+        )
     clockwise = areas < 0
     if clockwise.all():
         return corners[:, ::-1]
     if clockwise.any():
         rarer = clockwise if 2 * clockwise.sum() <= len(corners) else ~clockwise
         raise EngineError(
-            f"Triangle {np.flatnonzero(rarer)[0]} of the domain is turned over against the others: "
-            "the domain folds there. Give a mesh whose triangles all run the same way round."
+            "Triangle {triangle} of the domain is turned over against the others: the "
+            "domain folds there. Give a mesh whose triangles all run the same way round.",
+            triangle=np.flatnonzero(rarer)[0],
         )
     return corners
 
@@ -233,8 +237,11 @@ def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
     if shared.max() > 2:
         first, second = edges[shared.argmax()]
         raise EngineError(
-            f"The edge from point {first} to point {second} is in {shared.max()} triangles; an "
-            "edge of a plane mesh is in one or two."
+            "The edge from point {first} to point {second} is in {count} triangles; an "
+            "edge of a plane mesh is in one or two.",
+            first=first,
+            second=second,
+            count=shared.max(),
         )
     return edges, edges[shared == 1], twins
 
@@ -243,14 +250,15 @@ def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
     """Raise an `EngineError` for points without triangles, and for triangles in several pieces."""
     unused = np.flatnonzero(np.bincount(corners.ravel(), minlength=count) == 0)
     if len(unused):
-        raise EngineError(f"Point {unused[0]} is in no triangle; leave it out.")
+        raise EngineError("Point {point} is in no triangle; leave it out.", point=unused[0])
     graph = csr_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(corners),) * 2)
     pieces, number = connected_components(graph, directed=False)
     if pieces > 1:
         apart = np.flatnonzero(number != number[0])[0]
         raise EngineError(
-            f"Triangle {apart} is not joined to triangle 0 by common edges; give a mesh of one "
-            "piece."
+            "Triangle {triangle} is not joined to triangle 0 by common edges; give a mesh "
+            "of one piece.",
+            triangle=apart,
         )
 
 
@@ -272,6 +280,6 @@ def _nearest(points: Complexes, anchor: npt.ArrayLike) -> int:
     place = as_points(np.ravel(anchor), "anchor")
     if len(place) != 1:
         raise EngineError(
-            f"One anchor is needed, not {len(place)}; leave it out to have one found."
+            "One anchor is needed, not {count}; leave it out to have one found.", count=len(place)
         )
     return int(np.abs(points - place[0]).argmin())

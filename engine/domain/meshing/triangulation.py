@@ -77,8 +77,10 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
     shortest = min(float(np.abs(edge_vectors(loop)).min()) for loop in loops)
     if shortest < SHORTEST_EDGE * diameter(outline):
         raise EngineError(
-            f"The outline has an edge of length {shortest:.3g}, which is too short for its size of "
-            f"{diameter(outline):.3g}; leave out one of its ends."
+            "The outline has an edge of length {shortest:.3g}, which is too short for its "
+            "size of {size:.3g}; leave out one of its ends.",
+            shortest=shortest,
+            size=diameter(outline),
         )
     centre = outline[0]
     # A power of two, so that scaling rounds nothing.

@@ -15,7 +15,7 @@ from engine.domain.outline.grid import working_grid
 from engine.domain.outline.holes import SMALLEST_HOLE, find_visible_holes, make_hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
 from engine.domain.outline.parts import WholePiece, join_parts
-from engine.errors import EngineError
+from engine.errors import EngineError, Message, count_message
 from engine.geometry import Hole, require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
@@ -52,7 +52,7 @@ class Enclosure:
         Simple, counter-clockwise, strictly around the outline, one vertex for each of its own.
     holes : tuple of Hole
         Inside the outline and apart, the largest first.
-    notices : tuple of str
+    notices : tuple of Message
         Every remedy that was applied, in words.
     closed : complex128, shape (m,), optional
         Painted places of the vertices of the outline, and then of the holes' outlines: both sides
@@ -62,7 +62,7 @@ class Enclosure:
     outline: Complexes
     cage: Complexes
     holes: tuple[Hole, ...]
-    notices: tuple[str, ...]
+    notices: tuple[Message, ...]
     closed: Complexes | None = None
 
 
@@ -124,7 +124,7 @@ def enclose_subject(
         cuts off a part of it, or separates nothing.
     """
     require_word(detail, MARGINS, "The detail")
-    require_word(holes, HOLES, "What is done with holes")
+    require_word(holes, HOLES, "The treatment of holes")
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
     margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
@@ -150,9 +150,7 @@ def enclose_subject(
         closed=None if closed is None else readonly(grid.to_picture(closed)),
         notices=(
             *piece.notices,
-            *piece.filled_notice(filled),
-            *piece.filled_notice(small, "too small to stay open"),
-            *piece.filled_notice(crowded, "since too many open holes make posing slow"),
+            *_describe_filled(piece, filled, small, crowded),
             *_describe_draft(fit.draft, int(np.count_nonzero(piece.mask))),
         ),
     )
@@ -262,20 +260,69 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
     return min(fits, key=lambda fit: len(fit.outline))
 
 
-def _describe_draft(draft: _Draft, area: int) -> tuple[str, ...]:
+def _describe_filled(
+    piece: WholePiece, filled: Indices, small: Indices, crowded: Sequence[int]
+) -> tuple[Message, ...]:
+    """Describe in words the filled holes: by request, since they are small, and since too many."""
+    described = (
+        (
+            filled,
+            count_message(
+                "{count:,} hole filled, {share:.2%} of the subject",
+                "{count:,} holes filled, the largest {share:.2%} of the subject",
+                len(filled),
+                share=piece.largest_share(filled),
+            ),
+        ),
+        (
+            small,
+            count_message(
+                "{count:,} hole filled, {share:.2%} of the subject, too small to stay open",
+                "{count:,} holes filled, the largest {share:.2%} of the subject, too small to "
+                "stay open",
+                len(small),
+                share=piece.largest_share(small),
+            ),
+        ),
+        (
+            crowded,
+            count_message(
+                "{count:,} hole filled, {share:.2%} of the subject, since too many open holes "
+                "make posing slow",
+                "{count:,} holes filled, the largest {share:.2%} of the subject, since too many "
+                "open holes make posing slow",
+                len(crowded),
+                share=piece.largest_share(crowded),
+            ),
+        ),
+    )
+    return tuple(message for numbers, message in described if len(numbers))
+
+
+def _describe_draft(draft: _Draft, area: int) -> tuple[Message, ...]:
     """Describe in words the remedies of a draft, for a subject of `area` cells."""
     notices = []
     fused = draft.curve.joined_gap_share()
     if fused >= LEAST_JOINED:
         notices.append(
-            "limbs too close together for outlines of their own are fused and move as one, along "
-            f"{fused:.0%} of the edge"
+            Message(
+                "limbs too close together for outlines of their own are fused and move as one, "
+                "along {share:.0%} of the edge",
+                {"share": fused},
+            )
         )
     if draft.widening > 1:
-        notices.append(f"margin widened {draft.widening:.1f} times for an outline of few vertices")
+        notices.append(
+            Message(
+                "margin widened {factor:.1f} times for an outline of few vertices",
+                {"factor": draft.widening},
+            )
+        )
     share = draft.curve.enclosed / area
     if share >= LEAST_ENCLOSED:
-        notices.append(f"the outline closes over gaps of {share:.1%} of the subject")
+        notices.append(
+            Message("the outline closes over gaps of {share:.1%} of the subject", {"share": share})
+        )
     return tuple(notices)
 
 

@@ -73,7 +73,7 @@ class KeyframeBlend:
         if not len(keyframes) == len(sheets) == course.count:
             wanted = ("two", "three", "four", "five", "six")[course.count - 2]
             raise EngineError(
-                KEYFRAMES_OF_SEGMENT.format(wanted=wanted, count=len(keyframes), sheets=len(sheets))
+                KEYFRAMES_OF_SEGMENT, wanted=wanted, count=len(keyframes), sheets=len(sheets)
             )
         return cls(
             keyframes=tuple(keyframes), sheets=sheets, time_weights=course, eta_time_weights=course

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from messages import says
 from numpy.testing import assert_array_equal
+from outlines import notices_of
 from scipy import ndimage
 
 from engine.arrays import Booleans
@@ -27,7 +28,7 @@ def test_one_piece_without_holes_is_left_as_it_is() -> None:
     mask[50:200, 60:250] = True
     piece = join_parts(mask, diagonal(mask))
     assert_array_equal(piece.mask, mask)
-    assert piece.notices == ()
+    assert notices_of(piece) == ()
 
 
 def test_parts_that_touch_at_a_corner_are_one() -> None:
@@ -35,7 +36,7 @@ def test_parts_that_touch_at_a_corner_are_one() -> None:
     mask[50:100, 50:100] = mask[100:150, 100:150] = True
     piece = join_parts(mask, diagonal(mask))
     assert_array_equal(piece.mask, mask)
-    assert piece.notices == ()
+    assert notices_of(piece) == ()
 
 
 def test_bridges_join_all_parts_and_take_nothing_away() -> None:
@@ -44,7 +45,7 @@ def test_bridges_join_all_parts_and_take_nothing_away() -> None:
     piece = join_parts(mask, diagonal(mask))
     assert count_parts(piece.mask) == 1
     assert not (mask & ~piece.mask).any()
-    assert piece.notices == ("4 parts joined by invisible bridges",)
+    assert notices_of(piece) == ("4 parts joined by invisible bridges",)
     # The longest of the four ways round is left open.
     assert count_parts(piece.mask & ~mask) == 3
     assert not piece.mask[100:180, 180:].any()
@@ -79,7 +80,7 @@ def test_specks_are_dropped_and_told() -> None:
     mask[10, 10] = mask[10, 12] = mask[280:282, 280] = True
     piece = join_parts(mask, diagonal(mask))
     assert not piece.mask[:40].any()
-    assert piece.notices == ("3 specks dropped (0.01% of the subject)",)
+    assert notices_of(piece) == ("3 specks dropped (0.01% of the subject)",)
 
 
 @pytest.mark.parametrize(("size", "told"), [(60, "12.7%"), (4, "under 0.1%")])
@@ -89,7 +90,7 @@ def test_a_hole_is_filled_and_told_with_its_size(size: int, told: str) -> None:
     mask[100 : 100 + size, 100 : 100 + size] = False
     piece = join_parts(mask, diagonal(mask))
     assert piece.mask[50:220, 50:217].all()
-    assert piece.notices == ()
+    assert notices_of(piece) == ()
     assert piece.filled_notice([1]) == (f"1 hole filled, {told} of the subject",)
     assert piece.filled_notice([1], "for a reason")[0].endswith("of the subject, for a reason")
     assert piece.filled_notice([]) == ()
