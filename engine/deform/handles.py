@@ -68,8 +68,8 @@ class HandleTargets(NamedTuple):
         if other is None or other is self:
             return other is self
         ours, theirs = (
-            [*wish[:2], *(wish.pulls or ()), *(wish.distance_constraints or ())]
-            for wish in (self, other)
+            [*targets[:2], *(targets.pulls or ()), *(targets.distance_constraints or ())]
+            for targets in (self, other)
         )
         return len(ours) == len(theirs) and all(
             one is two or np.array_equal(one, two, equal_nan=one is self.rotations)

@@ -153,15 +153,15 @@ def prepare(
     intervals = []
     for i in range(len(around) - 1):
         ends = tangents[i], tangents[(i + 1) % len(maps)]
-        course = TimeWeights.between(*(1.0 if end is None else end for end in ends))
-        window = np.arange(course.count) + i - course.first
+        time_weights = TimeWeights.between(*(1.0 if end is None else end for end in ends))
+        window = np.arange(time_weights.count) + i - time_weights.first
         rounds, places = np.divmod(window, len(maps))
-        passage = KeyframeBlend.of(
+        keyframe_blend = KeyframeBlend.of(
             [samples[place] for place in places],
             sheets[places] + rounds.astype(np.int32) * (sheets[-1] - sheets[0]),
-            course,
+            time_weights,
         )
-        interval = KeyframeSegment(sites, passage, bounds, extension)
+        interval = KeyframeSegment(sites, keyframe_blend, bounds, extension)
         intervals.append(prepare_inbetweens(variant, interval))
     return Prepared(
         variant=variant,

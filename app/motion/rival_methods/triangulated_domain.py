@@ -66,7 +66,7 @@ class TriangulatedDomain:
     gradient : complex128, sparse, shape (m, n)
         ∂φ_j/∂z of the hat functions: its product with the positions of the vertices is f_z of each
         triangle, and that of its conjugate is f_z̄.
-    twins : intp, shape (e, 2)
+    counterparts : intp, shape (e, 2)
         The two half-edges of each inner edge; number 3 t + k leads from corner k of triangle t to
         its next.
     border : bool, shape (n,)
@@ -84,7 +84,7 @@ class TriangulatedDomain:
     mesh: Mesh
     areas: Floats
     gradient: csr_array
-    twins: Indices
+    counterparts: Indices
     border: Booleans
     loops: int
     anchor: int
@@ -113,8 +113,8 @@ class TriangulatedDomain:
         points = as_points(points, "points", at_least=3)
         corners = _oriented(points, _as_corners(triangles, len(points)))
         mesh = Mesh(vertices=points, triangles=corners.astype(np.int32))
-        edges, sides, twins = _adjacency(corners)
-        pairs = twins // 3
+        edges, sides, counterparts = _adjacency(corners)
+        pairs = counterparts // 3
         _require_whole(corners, pairs, len(points))
         areas = mesh.areas()
         border = np.zeros(len(points), dtype=np.bool_)
@@ -125,7 +125,7 @@ class TriangulatedDomain:
             mesh=mesh,
             areas=freeze(areas),
             gradient=_gradient(points, corners, areas),
-            twins=freeze(twins),
+            counterparts=freeze(counterparts),
             border=freeze(border),
             # Euler: V − E + F = 2 − (loops), for a plane mesh without its outside.
             loops=2 - (len(points) - len(edges) + len(corners)),
@@ -146,7 +146,7 @@ class TriangulatedDomain:
     @property
     def pairs(self) -> Indices:
         """The two triangles at each inner edge, intp (e, 2)."""
-        return self.twins // 3
+        return self.counterparts // 3
 
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and f_z̄ (m,) of the piecewise linear map to positions (n,)."""
@@ -232,7 +232,7 @@ def _oriented(points: Complexes, corners: Indices) -> Indices:
 
 def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
     """Return all edges (e, 2), those on the border (b, 2), and the half-edges of inner ones."""
-    edges, numbers, twins = sides_of(corners)
+    edges, numbers, counterparts = sides_of(corners)
     shared = np.bincount(numbers.ravel())
     if shared.max() > 2:
         first, second = edges[shared.argmax()]
@@ -243,7 +243,7 @@ def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
             second=second,
             count=shared.max(),
         )
-    return edges, edges[shared == 1], twins
+    return edges, edges[shared == 1], counterparts
 
 
 def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:

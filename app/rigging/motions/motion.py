@@ -111,7 +111,7 @@ class Motion:
     @property
     def can_travel(self) -> bool:
         """Whether its steps move the body forward."""
-        return any(course.can_travel for course in self.templates.values())
+        return any(template.can_travel for template in self.templates.values())
 
     def template_for(self, kind: str) -> MotionTemplate:
         """Return the template for bodies of a kind; raise an `EngineError` if there is none."""
@@ -144,14 +144,14 @@ class Motion:
         """
         for share in shares:
             as_number(share, "A share of a motion's cycle")
-        course = self.template_for(body.kind.name)
-        if parameters.travel and not course.can_travel:
+        template = self.template_for(body.kind.name)
+        if parameters.travel and not template.can_travel:
             raise EngineError("{motion!r} has no steps; leave out travel.", motion=self.name)
         body = body.mirrored() if parameters.mirrored else body
-        body.require_joints(course.needed, f"{self.name!r}")
-        if course.either and not any(name in body.joints for name in course.either):
-            body.require_joints(course.either[:1], f"{self.name!r}")
-        performed = course.instantiate(body, parameters)
+        body.require_joints(template.needed, f"{self.name!r}")
+        if template.either and not any(name in body.joints for name in template.either):
+            body.require_joints(template.either[:1], f"{self.name!r}")
+        performed = template.instantiate(body, parameters)
         ways = [share * performed.stride if parameters.travel else 0.0 for share in shares]
         moments = [performed.pose_at((share + parameters.start) % 1.0) for share in shares]
         if parameters.mirrored:

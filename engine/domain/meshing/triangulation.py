@@ -168,9 +168,9 @@ def _depth(loops: Sequence[Complexes], points: Complexes, spacing: float) -> Flo
 
 def _mark_seam(mesh: HalfEdgeMesh, deep: Booleans) -> None:
     """Mark the border of a mesh between deep vertices, where the core adjoins."""
-    border = np.flatnonzero(mesh.twins == OUTLINE)
+    border = np.flatnonzero(mesh.counterparts == OUTLINE)
     start, end = mesh.ends(border)
-    mesh.twins[border[deep[start] & deep[end]]] = SEAM
+    mesh.counterparts[border[deep[start] & deep[end]]] = SEAM
 
 
 def _compact(points: Complexes, triangles: Indices) -> Mesh:

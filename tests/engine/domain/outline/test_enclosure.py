@@ -139,7 +139,7 @@ def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
     assert notices_of(filled) == ("1 hole filled, 30.87% of the subject",)
 
 
-def test_a_gap_that_has_to_be_closed_is_told() -> None:
+def test_closed_gap_is_reported() -> None:
     outline = outlined(pictures.ring(1024, mouth=2))
     assert contains(outline.outline, np.array([512 + 512j])).all()
     assert any("closes over gaps of" in notice for notice in notices_of(outline))
@@ -157,7 +157,7 @@ def test_parts_are_joined_by_the_shortest_bridges() -> None:
     assert contains(outline.outline, between).tolist() == [True, False, False, True, False]
 
 
-def test_holes_and_specks_are_told() -> None:
+def test_holes_and_specks_are_reported() -> None:
     rgba = pictures.blob(300, depth=0.0)
     rgba[140:150, 100:110, 3] = 0
     rgba[140:150, 180:186, 3] = 0
@@ -249,9 +249,9 @@ def test_no_polygon_has_fewer_edges_than_foreseen(name: str, fitted) -> None:
     assert all(least <= found for least, found in fitted if found)
 
 
-def test_limbs_that_are_fused_are_told() -> None:
-    told = notices_of(outlined(pictures.spiral(200, 20)))
-    (fused,) = [notice for notice in told if "fused" in notice]
+def test_fused_limbs_are_reported() -> None:
+    reported = notices_of(outlined(pictures.spiral(200, 20)))
+    (fused,) = [notice for notice in reported if "fused" in notice]
     share = int(fused.split("along ")[1].split("%")[0])
     # All of the arm's two sides, but for its outermost turn.
     assert 80 <= share <= 95
