@@ -79,6 +79,7 @@ def _drag(boundary: Boundary) -> Table:
     objective = Objective(boundary=boundary, handles=handles, targets=handle_targets)
     jet = objective.evaluate(*state.map.columns)
     radial = objective.radial_derivatives(jet)
+    steps = _newton_steps(boundary, handles, handle_targets)
     rows = (
         *_split(deformer, moving),
         Row(
@@ -99,7 +100,7 @@ def _drag(boundary: Boundary) -> Table:
         Row(
             name="minimum without bounds",
             seconds=None,
-            note=f"{_newton_steps(boundary, handles, handle_targets)} Newton steps from the identity",
+            note=f"{steps} Newton steps from the identity",
         ),
     )
     return Table(title=f"Deformer, {len(boundary.cage)} cage vertices, 6 handles", rows=rows)

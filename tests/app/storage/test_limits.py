@@ -291,7 +291,7 @@ KNOWN = {
 }
 BETWEEN = KNOWN | {"first": 8, "start": 8, "last": 10}
 UNKNOWN_MOTIONS = (
-    (BETWEEN | {"motion": "nosuch"}, "there is no motion 'nosuch'"),
+    (BETWEEN | {"motion": "nosuch"}, "There is no motion 'nosuch'"),
     (BETWEEN | {"kind": "biped-side"}, "a motion of 'anything', and not of 'biped-side'"),
     (BETWEEN | {"motion": "wave", "kind": "biped-side"}, "has no joint 'top'"),
     (BETWEEN | {"joints": {"top": 7}}, "is the handle 7, which is not there"),

@@ -189,7 +189,7 @@ def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
     assert deformer.step(released, left) is released
     assert released.map is state.map
     assert deformer.release(released, left).status is state.status
-    # It is a minimum for the new targets as it was for the old ones, and a new search finds it again.
+    # It is a minimum for the new targets as for the old ones, and a new search finds it again.
     gradients = []
     for each in (handle_targets, left):
         mine, jet = deformer.measure_state(state, each)

@@ -136,7 +136,7 @@ def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
     assert contains(shut.outline, centre).all()
     assert len(shut.holes) == 1
     filled = enclose_subject(pictures.seen(pictures.ring(mouth=0)), detail="normal", holes="fill")
-    assert notices_of(filled) == ("1 hole filled, 30.87% of the subject",)
+    assert notices_of(filled) == ("1 hole filled, 30.89% of the subject",)
 
 
 def test_closed_gap_is_reported() -> None:
@@ -165,7 +165,7 @@ def test_holes_and_specks_are_reported() -> None:
     outline = outlined(rgba)
     assert notices_of(outline) == (
         "2 specks dropped (0.01% of the subject)",
-        "1 hole filled, 0.15% of the subject, too small to stay open",
+        "1 hole filled, 0.17% of the subject, too small to stay open",
     )
     assert len(outline.holes) == 1
     assert not contains(outline.outline, np.array([5.5 + 294.5j])).any()

@@ -114,7 +114,7 @@ def test_holes_are_numbered_by_their_size() -> None:
     assert piece.hole_areas.tolist() == [1600, 400, 100]
     assert [piece.holes[row, 105] for row in (65, 110, 165)] == [3, 1, 2]
     assert_array_equal(piece.mask, mask | (piece.holes > 0))
-    assert piece.filled_notice([2, 3]) == ("2 holes filled, the largest 1.4% of the subject",)
+    assert piece.largest_share([2, 3]) == 400 / (170 * 167)
 
 
 def test_holes_that_bridges_enclose_are_filled() -> None:
