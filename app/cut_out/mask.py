@@ -1,23 +1,20 @@
 """From a picture to the mask of its subject."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from math import pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
 from app.cut_out.background import Background, flood_background
 from app.cut_out.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
+from app.cut_out.transparency import VISIBLE_ALPHA, of_alpha, without_transparency
 from app.texts import _, ngettext
 from engine.arrays import Booleans, Bytes, freeze
 from engine.errors import EngineError
 
-VISIBLE_ALPHA = 8  # of 255: pixels with less may be left out, others are kept
-FAINT_GROWTH = 1.10  # fainter pixels are kept if the subject grows by no more than this
 OPAQUE_SHARE = 0.998  # share of visible pixels from which the picture counts as opaque
 SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # share of the border with the background's colour
@@ -90,28 +87,28 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
         raise EngineError(PICTURE_TYPE, dtype=rgba.dtype, shape=rgba.shape)
     if rgba.size == 0:
         raise EngineError("The picture has no pixels; give one with a drawing.")
-    seen = int(np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)))
+    seen = int(np.count_nonzero(of_alpha(rgba, VISIBLE_ALPHA)))
     if not seen:
         raise EngineError(TRANSPARENT)
     notices: tuple[str, ...] = ()
     background: Background | None = None
     # A mask takes a quarter of a picture's memory: free each one that can be computed again.
     if cut_out.mask is not None:
-        subject = _masked(_of_alpha(rgba, 1), cut_out.mask)
+        subject = _masked(of_alpha(rgba, 1), cut_out.mask)
     elif isinstance(cut_out.background, tuple):
         subject, notices, background = _without_colour(rgba, cut_out.tolerance, cut_out.background)
     elif seen < OPAQUE_SHARE * rgba[..., 3].size:
-        subject, notices = _without_transparency(rgba)
+        subject, notices = without_transparency(rgba)
     elif cut_out.background == "none":
-        subject = _of_alpha(rgba, VISIBLE_ALPHA)
+        subject = of_alpha(rgba, VISIBLE_ALPHA)
     else:
         subject, notices, background = _without_background(rgba[..., :3], cut_out.tolerance)
-        subject &= _of_alpha(rgba, VISIBLE_ALPHA)
+        subject &= of_alpha(rgba, VISIBLE_ALPHA)
     within = _enclosed(subject, background, cut_out)
     del background
     subject, notices = within.subject, notices + within.notices
     if cut_out.strokes:
-        subject, notices = _brushed(subject, cut_out.strokes) & _of_alpha(rgba, 1), ()
+        subject, notices = _brushed(subject, cut_out.strokes) & of_alpha(rgba, 1), ()
     _require_size(subject)
     area = within.area
     return Subject(
@@ -226,55 +223,6 @@ def _without_colour(
         )
     notice = _("background removed ({share:.0%} of the picture)").format(share=flooded.mean())
     return visible & ~flooded, (notice,), background
-
-
-def _of_alpha(rgba: Bytes, least: int) -> Booleans:
-    """Return the pixels (h, w) of at least this alpha."""
-    enough: Booleans = rgba[..., 3] >= least
-    return enough
-
-
-def _without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
-    """Return all pixels that are not fully transparent, without a wide and nearly invisible haze.
-
-    Nearly invisible islands are left out too: a sharp scaling filter leaves them around edges.
-    """
-    present = _of_alpha(rgba, 1)
-    if np.count_nonzero(present) == np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)):
-        return present, ()
-    del present
-    present, visible = _seen_parts(rgba), _of_alpha(rgba, VISIBLE_ALPHA)
-    faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
-    if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
-        return present, ()
-    notice = ngettext(
-        "{count:,} nearly invisible pixel (alpha below {alpha}) left out",
-        "{count:,} nearly invisible pixels (alpha below {alpha}) left out",
-        faint,
-    )
-    return visible, (notice.format(count=faint, alpha=VISIBLE_ALPHA),)
-
-
-def _seen_parts(rgba: Bytes) -> Booleans:
-    """Return all parts that are not fully transparent and have a visible pixel."""
-    present = _of_alpha(rgba, 1)
-    labels, count = _labelled(present)
-    seen = np.zeros(count + 1, dtype=np.bool_)
-    for numbers, row in zip(labels, rgba, strict=True):  # all at once take eight bytes a pixel
-        seen[numbers[row[:, 3] >= VISIBLE_ALPHA]] = True
-    for row, numbers in zip(present, labels, strict=True):
-        row[...] = seen[numbers]
-    return present
-
-
-def _labelled(mask: Booleans) -> tuple[npt.NDArray[Any], int]:
-    """Return the number of each pixel's part, 0 outside, and the number of parts."""
-    # Most pictures have few parts; wider numbers would take as much memory as the picture.
-    for dtype in (np.uint16, np.int32):
-        labels: npt.NDArray[Any] = np.empty(mask.shape, dtype=dtype)
-        with suppress(RuntimeError):  # more parts than the type can count
-            return labels, int(ndimage.label(mask, np.ones((3, 3)), output=labels))
-    raise EngineError("The picture has too many parts; scale it down.")
 
 
 def _without_background(

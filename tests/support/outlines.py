@@ -5,8 +5,8 @@ import shapely
 from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Floats
+from engine.domain.mask.parts import WholePiece
 from engine.domain.outline.enclosure import Enclosure
-from engine.domain.outline.parts import WholePiece
 from engine.geometry import Hole
 from engine.geometry.polygon import (
     as_xy,

@@ -8,14 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Indices, readonly, require_word
+from engine.domain.mask.grid import working_grid
+from engine.domain.mask.parts import WholePiece, join_parts
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.cuts import cut_region
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.grid import working_grid
 from engine.domain.outline.holes import SMALLEST_HOLE, find_visible_holes, make_hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.outline.parts import WholePiece, join_parts
-from engine.errors import EngineError, Message, count_message
+from engine.domain.outline.remedies import describe_curve, describe_filled_holes
+from engine.errors import EngineError, Message
 from engine.geometry import Hole, require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
@@ -35,8 +36,6 @@ WIDEST_GAP = 0.2  # of the diagonal: widest gap that is closed to save vertices
 WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
 DISC = 2.5  # area of a disc of radius 1, with some room for pixels
-LEAST_ENCLOSED = 0.001  # of the subject's area: smallest area that is reported
-LEAST_JOINED = 0.03  # of the subject's outline: smallest part that is reported
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -150,8 +149,8 @@ def enclose_subject(
         closed=None if closed is None else readonly(grid.to_picture(closed)),
         notices=(
             *piece.notices,
-            *_describe_filled(piece, filled, small, crowded),
-            *_describe_draft(fit.draft, int(np.count_nonzero(piece.mask))),
+            *describe_filled_holes(piece, filled, small, crowded),
+            *describe_curve(fit.draft.curve, fit.draft.widening, int(np.count_nonzero(piece.mask))),
         ),
     )
 
@@ -258,72 +257,6 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
         fits += [] if fit is None else [fit]
         closing *= 2
     return min(fits, key=lambda fit: len(fit.outline))
-
-
-def _describe_filled(
-    piece: WholePiece, filled: Indices, small: Indices, crowded: Sequence[int]
-) -> tuple[Message, ...]:
-    """Describe in words the filled holes: by request, since they are small, and since too many."""
-    described = (
-        (
-            filled,
-            count_message(
-                "{count:,} hole filled, {share:.2%} of the subject",
-                "{count:,} holes filled, the largest {share:.2%} of the subject",
-                len(filled),
-                share=piece.largest_share(filled),
-            ),
-        ),
-        (
-            small,
-            count_message(
-                "{count:,} hole filled, {share:.2%} of the subject, too small to stay open",
-                "{count:,} holes filled, the largest {share:.2%} of the subject, too small to "
-                "stay open",
-                len(small),
-                share=piece.largest_share(small),
-            ),
-        ),
-        (
-            crowded,
-            count_message(
-                "{count:,} hole filled, {share:.2%} of the subject, since too many open holes "
-                "make posing slow",
-                "{count:,} holes filled, the largest {share:.2%} of the subject, since too many "
-                "open holes make posing slow",
-                len(crowded),
-                share=piece.largest_share(crowded),
-            ),
-        ),
-    )
-    return tuple(message for numbers, message in described if len(numbers))
-
-
-def _describe_draft(draft: _Draft, area: int) -> tuple[Message, ...]:
-    """Describe in words the remedies of a draft, for a subject of `area` cells."""
-    notices = []
-    fused = draft.curve.joined_gap_share()
-    if fused >= LEAST_JOINED:
-        notices.append(
-            Message(
-                "limbs too close together for outlines of their own are fused and move as one, "
-                "along {share:.0%} of the edge",
-                {"share": fused},
-            )
-        )
-    if draft.widening > 1:
-        notices.append(
-            Message(
-                "margin widened {factor:.1f} times for an outline of few vertices",
-                {"factor": draft.widening},
-            )
-        )
-    share = draft.curve.enclosed / area
-    if share >= LEAST_ENCLOSED:
-        notices.append(
-            Message("the outline closes over gaps of {share:.1%} of the subject", {"share": share})
-        )
-    return tuple(notices)
 
 
 def _draft(

@@ -9,10 +9,10 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from engine.arrays import Bytes, Complexes
+from engine.domain.mask.parts import FRAGMENTED
 from engine.domain.outline import enclosure, fitting
 from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose_subject
 from engine.domain.outline.fitting import Candidates
-from engine.domain.outline.parts import FRAGMENTED
 from engine.errors import EngineError
 from engine.geometry.polygon import as_xy, contains, signed_area
 

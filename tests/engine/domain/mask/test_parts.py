@@ -6,7 +6,7 @@ from outlines import notices_of
 from scipy import ndimage
 
 from engine.arrays import Booleans
-from engine.domain.outline.parts import FRAGMENTED, join_parts
+from engine.domain.mask.parts import FRAGMENTED, join_parts
 from engine.errors import EngineError
 
 
