@@ -21,6 +21,9 @@ from engine.errors import EngineError
 NOT_COMPLEX = "{name} must be complex numbers, not {dtype}."
 NOT_FINITE = "{name} must be finite, but entry {index} is {value}."
 NOT_A_NUMBER = "{name} must be a finite number, not {value!r}."
+BELOW_LEAST = "{name} must be at least {least:,g}, not {value}."
+ABOVE_MOST = "{name} must be at most {most:,g}, not {value}."
+NOT_ABOVE = "{name} must be above {above:,g}, not {value}."
 NO_WORD = "{name} is one of {words}, not {value!r}."
 TOO_LARGE = "{name} must be within {most:g} of the origin, but entry {index} is {value}."
 FEW_ENTRIES = "{name} must have at least {at_least} entries, not {count}."
@@ -123,17 +126,11 @@ def as_number(
         raise EngineError(NOT_A_NUMBER, name=name, value=value)
     number = float(array)
     if number < least:
-        raise EngineError(
-            "{name} must be at least {least:,g}, not {value}.", name=name, least=least, value=value
-        )
+        raise EngineError(BELOW_LEAST, name=name, least=least, value=value)
     if number > most:
-        raise EngineError(
-            "{name} must be at most {most:,g}, not {value}.", name=name, most=most, value=value
-        )
+        raise EngineError(ABOVE_MOST, name=name, most=most, value=value)
     if number <= above:
-        raise EngineError(
-            "{name} must be above {above:,g}, not {value}.", name=name, above=above, value=value
-        )
+        raise EngineError(NOT_ABOVE, name=name, above=above, value=value)
     return number
 
 

@@ -10,6 +10,7 @@ from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.maps.boundary import Boundary
 
+IMPOSSIBLE_SIGMA_A = "The bound on sigma_a must be a finite number above 1, not {value:g}."
 IMPOSSIBLE_BOUND = "The bound on {name} must be between 0 and 1, not {value:g}."
 
 
@@ -121,7 +122,7 @@ class Bounds(LocalBounds):
             raise EngineError(IMPOSSIBLE_BOUND, name="k", value=self.k)
         if not (self.sigma_a > 1 and isfinite(self.sigma_a)):
             raise EngineError(
-                "The bound on sigma_a must be a finite number above 1, not {value:g}.",
+                IMPOSSIBLE_SIGMA_A,
                 value=self.sigma_a,
             )
         if not 0 < self.sigma_b < 1:

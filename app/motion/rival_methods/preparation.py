@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy.typing as npt
 
+from app.baseline import Baseline
 from app.motion.rival_methods.arap import ArapInbetweens
 from app.motion.rival_methods.blended_metric import FlatInbetweens
 from app.motion.rival_methods.ffmp import FfmpInbetweens
@@ -30,7 +31,6 @@ from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Domain, diameter, require_inside
 from engine.interpolation import Variant, prepare, require_keyframes, segment_at
 from engine.maps import Boundary, Bounds, HarmonicMap
-from engine.variant import Baseline
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -52,7 +52,7 @@ class Enclosure:
     holes : tuple of Hole
         Inside the outline and apart, the largest first.
     notices : tuple of Message
-        Every remedy that was applied, in words.
+        Every remedy that was applied.
     closed : complex128, shape (m,), optional
         Painted places of the vertices of the outline, and then of the holes' outlines: both sides
         of a slit meet. None without slits.

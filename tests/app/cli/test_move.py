@@ -102,7 +102,7 @@ def test_motions_are_listed_with_their_kinds(capsys):
         (["--motion", "dance"], "There is no motion 'dance'; the motions are walk"),
         (["--motion", "trot", "--kind", "chain"], "'trot' is not a motion of 'chain'"),
         (["--motion", "wag", "--kind", "worm"], "There is no kind 'worm'"),
-        (["--motion", "walk", "--size", "9"], "size is from 0.05 to 2, not 9"),
+        (["--motion", "walk", "--size", "9"], "size must be from 0.05 to 2, not 9"),
         (
             ["--motion", "wag", "--travel", "--kind", "chain"],
             "'wag' has no steps; leave out travel",
