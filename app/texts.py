@@ -10,6 +10,7 @@ where it is shown.
 
 import gettext
 from pathlib import Path
+from typing import cast
 
 from engine.errors import EngineError, Message
 
@@ -37,4 +38,7 @@ def message_of(said: Exception | Message | str) -> str:
         name: _(value) if isinstance(value, str) and value else value
         for name, value in said.values.items()
     }
-    return _(said.template).format(**values) if values else _(said.template)
+    template = _(said.template)
+    if isinstance(said, Message) and said.plural:
+        template = ngettext(said.template, said.plural, cast("int", said.values["count"]))
+    return template.format(**values) if values else template

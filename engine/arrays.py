@@ -20,7 +20,10 @@ from engine.errors import EngineError
 
 NOT_COMPLEX = "{name} must be complex numbers, not {dtype}."
 NOT_FINITE = "{name} must be finite, but entry {index} is {value}."
-NOT_A_NUMBER = "{name} must be a {kind}{range}, not {value!r}."
+NOT_A_NUMBER = "{name} must be a finite number, not {value!r}."
+BELOW_LEAST = "{name} must be at least {least:,g}, not {value}."
+ABOVE_MOST = "{name} must be at most {most:,g}, not {value}."
+NOT_ABOVE = "{name} must be above {above:,g}, not {value}."
 NO_WORD = "{name} is one of {words}, not {value!r}."
 TOO_LARGE = "{name} must be within {most:g} of the origin, but entry {index} is {value}."
 FEW_ENTRIES = "{name} must have at least {at_least} entries, not {count}."
@@ -117,21 +120,25 @@ def as_number(
 ) -> float:
     """Return a finite number in a range, or raise an `EngineError` that names it."""
     array = _as_array(value)  # type: ignore[arg-type]
-    if not array.ndim and array.dtype.kind in ("biu" if is_whole else "biuf"):
-        number = float(array)
-        if np.isfinite(number) and least <= number <= most and number > above:
-            return number
-    limits = [("above", above), ("at least", least), ("at most", most)]
-    words = " and".join(f" {word} {limit:,g}" for word, limit in limits if np.isfinite(limit))
-    kind = "whole number" if is_whole else "finite number"
-    raise EngineError(NOT_A_NUMBER.format(name=name, kind=kind, range=words, value=value))
+    if is_whole and (array.ndim or array.dtype.kind not in "biu"):
+        raise EngineError(NOT_WHOLE, name=name, value=value)
+    if array.ndim or array.dtype.kind not in "biuf" or not np.isfinite(array):
+        raise EngineError(NOT_A_NUMBER, name=name, value=value)
+    number = float(array)
+    if number < least:
+        raise EngineError(BELOW_LEAST, name=name, least=least, value=value)
+    if number > most:
+        raise EngineError(ABOVE_MOST, name=name, most=most, value=value)
+    if number <= above:
+        raise EngineError(NOT_ABOVE, name=name, above=above, value=value)
+    return number
 
 
 def require_word(value: object, words: Iterable[str], name: str) -> None:
     """Raise an `EngineError` unless a value is one of these words."""
     known = list(words)
     if value not in known:
-        raise EngineError(NO_WORD.format(name=name, words=", ".join(map(repr, known)), value=value))
+        raise EngineError(NO_WORD, name=name, words=", ".join(map(repr, known)), value=value)
 
 
 def as_points(
@@ -157,18 +164,20 @@ def as_points(
     """
     array = _as_array(values)
     if array.dtype.kind not in "biufc":
-        raise EngineError(NOT_COMPLEX.format(name=name, dtype=array.dtype))
+        raise EngineError(NOT_COMPLEX, name=name, dtype=array.dtype)
     if array.ndim != 1:
-        raise EngineError(f"{name} must be one-dimensional, not of shape {array.shape}.")
+        raise EngineError(
+            "{name} must be one-dimensional, not of shape {shape}.", name=name, shape=array.shape
+        )
     if len(array) < at_least:
-        raise EngineError(FEW_ENTRIES.format(name=name, at_least=at_least, count=len(array)))
+        raise EngineError(FEW_ENTRIES, name=name, at_least=at_least, count=len(array))
     points = readonly(array.astype(np.complex128, copy=False))
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points))[0])
-        raise EngineError(NOT_FINITE.format(name=name, index=bad, value=points[bad]))
+        raise EngineError(NOT_FINITE, name=name, index=bad, value=points[bad])
     if most < np.inf and (np.abs(points) > most).any():
         bad = int(np.argmax(np.abs(points)))
-        raise EngineError(TOO_LARGE.format(name=name, most=most, index=bad, value=points[bad]))
+        raise EngineError(TOO_LARGE, name=name, most=most, index=bad, value=points[bad])
     return points
 
 
@@ -177,14 +186,14 @@ def as_count(value: object, name: str) -> int:
     try:
         return operator.index(value)  # type: ignore[arg-type]
     except TypeError:
-        raise EngineError(NOT_WHOLE.format(name=name, value=value)) from None
+        raise EngineError(NOT_WHOLE, name=name, value=value) from None
 
 
 def as_reals(values: npt.ArrayLike, name: str) -> Floats:
     """Return real numbers of any shape, NaN and infinity included, as float64."""
     array = _as_array(values)
     if array.dtype.kind not in "biuf":
-        raise EngineError(NOT_REAL.format(name=name, dtype=array.dtype))
+        raise EngineError(NOT_REAL, name=name, dtype=array.dtype)
     return array.astype(np.float64)
 
 
@@ -193,14 +202,14 @@ def as_tuple(values: Iterable[item_], name: str) -> tuple[item_, ...]:
     try:
         return tuple(values)
     except TypeError:
-        raise EngineError(NOT_LISTED.format(name=name, value=values)) from None
+        raise EngineError(NOT_LISTED, name=name, value=values) from None
 
 
 def require_kind(value: object, kind: type, name: str) -> None:
     """Raise `EngineError` unless a value is of a class."""
     if not isinstance(value, kind):
         given = type(value).__name__
-        raise EngineError(OTHER_KIND.format(name=name, kind=kind.__name__, given=given))
+        raise EngineError(OTHER_KIND, name=name, kind=kind.__name__, given=given)
 
 
 def _as_array(values: npt.ArrayLike) -> npt.NDArray[Any]:

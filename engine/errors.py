@@ -20,10 +20,20 @@ class EngineError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A sentence for the person: a template and the values in it; `str` gives it in English."""
+    """A sentence for the person: a template and the values in it; `str` gives it in English.
+
+    If there is a `plural`, it is the template for each `count` among the values but 1.
+    """
 
     template: str
     values: Mapping[str, object] = field(default_factory=dict)
+    plural: str = ""
 
     def __str__(self) -> str:
-        return self.template.format(**self.values) if self.values else self.template
+        template = self.plural if self.plural and self.values["count"] != 1 else self.template
+        return template.format(**self.values) if self.values else template
+
+
+def count_message(one: str, many: str, /, count: int, **values: object) -> Message:
+    """Return the message about one thing or many."""
+    return Message(one, {"count": count, **values}, many)

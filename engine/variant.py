@@ -1,4 +1,4 @@
-"""The variants of interpolation by name, their needs, and the rival methods."""
+"""The variants of interpolation by name, and their needs."""
 
 from enum import StrEnum
 
@@ -24,27 +24,3 @@ class Variant(StrEnum):
     def is_scaled(self) -> bool:
         """Whether its Ψ is scaled by a ρ."""
         return self is Variant.SCALED_ETA
-
-
-class Baseline(StrEnum):
-    """Methods that the paper compares its variants with (Section 8); the names in files.
-
-    `app.motion.rival_methods.preparation.prepare_baseline` builds them.
-    """
-
-    ARAP = "arap"
-    FFMP = "ffmp"
-    SIG13 = "sig13"
-    HANDLES = "handles"
-    CONFORMAL = "conformal"
-    MESH_ETA = "mesh-eta"
-
-    @property
-    def needs_maps(self) -> bool:
-        """Whether its keyframes must be harmonic maps; positions of a mesh do not suffice."""
-        return self in {Baseline.HANDLES, Baseline.CONFORMAL}
-
-    @property
-    def unwraps(self) -> bool:
-        """Whether it blends an angle of each triangle, whose branch must be chosen."""
-        return self in {Baseline.ARAP, Baseline.MESH_ETA}

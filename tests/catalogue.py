@@ -14,7 +14,21 @@ from app.texts import DOMAIN, LOCALE
 ROOT = Path(__file__).parents[1]
 TEMPLATE = LOCALE / f"{DOMAIN}.pot"
 # What takes a text as its first argument, and a text and its plural as the first two.
-MARKS, PLURALS = {"_", "N_", "EngineError", "Message", "gettext"}, {"ngettext"}
+MARKS, PLURALS = {"_", "N_", "EngineError", "Message", "gettext"}, {"ngettext", "count_message"}
+
+
+# Checks of the engine, whose messages have the name of a thing, and where they take it.
+CHECKS = {
+    "as_count": 1,
+    "as_number": 1,
+    "as_points": 1,
+    "as_reals": 1,
+    "as_tuple": 1,
+    "require_inside": 2,
+    "require_kind": 2,
+    "require_simple": 1,
+    "require_word": 2,
+}
 
 
 def source_files() -> list[Path]:
@@ -39,13 +53,15 @@ def marked_texts(source: str, name: str = "") -> Iterator[str | tuple[str, str]]
             continue
         function = node.func.attr if isinstance(node.func, ast.Attribute) else None
         function = node.func.id if isinstance(node.func, ast.Name) else function
-        if function not in MARKS | PLURALS:
+        first = CHECKS.get(function or "", 0)
+        if function not in MARKS | PLURALS | CHECKS.keys():
             continue
         count = 2 if function in PLURALS else 1
         texts = []
-        for argument in node.args[:count]:
+        for argument in node.args[first : first + count]:
             value = constants.get(argument.id) if isinstance(argument, ast.Name) else argument
-            assert not isinstance(value, ast.JoinedStr), f"{name}:{node.lineno}: has fields"
+            has_fields = isinstance(value, ast.JoinedStr) and function not in CHECKS
+            assert not has_fields, f"{name}:{node.lineno}: has fields"
             if isinstance(value, ast.Constant) and isinstance(value.value, str):
                 texts.append(value.value)
         if len(texts) == count:

@@ -12,10 +12,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from app.baseline import Baseline
 from app.errors import LissomError
 from app.export_formats import expand_colour
 from app.texts import N_, _
-from engine.variant import Baseline, Variant
+from engine.variant import Variant
 
 DETAILS = ("coarse", "normal", "fine")
 HOLES = ("keep", "fill")

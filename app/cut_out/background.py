@@ -7,8 +7,8 @@ from scipy import ndimage
 
 from app.cut_out.cut_out import BackgroundColour
 from engine.arrays import Booleans, Bytes, Indices, Integers
-from engine.domain.outline.grid import block_factor, reduce_blocks, repeat_blocks
-from engine.domain.outline.parts import WITH_CORNERS
+from engine.domain.mask.grid import block_factor, reduce_blocks, repeat_blocks
+from engine.domain.mask.parts import WITH_CORNERS
 
 WORKING_SIDE = 1400  # pixels: larger pictures are flooded in blocks
 COLOUR_BIN = 16  # levels: width of the colour bins in which the border's pixels are counted

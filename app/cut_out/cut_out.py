@@ -40,7 +40,10 @@ class Mask:
         width, height = self.size
         if self.bits.shape != (-(-width * height // 8),):
             raise EngineError(
-                f"A mask of {width} × {height} pixels is not of {self.bits.size} bytes."
+                "A mask of {width} × {height} pixels is not of {count} bytes.",
+                width=width,
+                height=height,
+                count=self.bits.size,
             )
 
     @classmethod
@@ -80,8 +83,10 @@ class Stroke:
         object.__setattr__(self, "points", points)
         if not SMALLEST_RADIUS <= self.radius <= LARGEST_RADIUS:
             raise EngineError(
-                f"The radius of a brush is {SMALLEST_RADIUS:g} to {LARGEST_RADIUS:g} pixels, not "
-                f"{self.radius:g}."
+                "The radius of a brush is {least:g} to {most:g} pixels, not {radius:g}.",
+                least=SMALLEST_RADIUS,
+                most=LARGEST_RADIUS,
+                radius=self.radius,
             )
         _require_near(points, "A stroke")
         discs = len(points) + np.abs(np.diff(points)).sum() / _spacing(self.radius)
@@ -143,19 +148,21 @@ class CutOut:
     def __post_init__(self) -> None:
         if not 0 <= self.tolerance <= 255:
             raise EngineError(
-                f"The tolerance must be between 0 and 255 levels, not {self.tolerance}."
+                "The tolerance must be between 0 and 255 levels, not {tolerance}.",
+                tolerance=self.tolerance,
             )
         if isinstance(self.background, tuple):
             levels = self.background
             if len(levels) != 3 or not all(0 <= level <= 255 for level in levels):
                 raise EngineError(
-                    f"The levels of a background's colour are three of 0 to 255, not {levels}."
+                    "The levels of a background's colour are three of 0 to 255, not {levels}.",
+                    levels=levels,
                 )
         else:
-            require_word(self.background, ("auto", "none"), "A background that is no colour")
-        require_word(self.enclosed, ("auto", "keep", "remove"), "What is done with enclosed parts")
-        require_word(self.holes, HOLES, "What is done with holes")
-        as_points(self.toggled_holes, "The points of swapped holes")
+            require_word(self.background, ("auto", "none"), "A background that is not a colour")
+        require_word(self.enclosed, ("auto", "keep", "remove"), "The treatment of enclosed parts")
+        require_word(self.holes, HOLES, "The treatment of holes")
+        as_points(self.toggled_holes, "The points of toggled holes")
         points = sum(len(line.points) for line in self.lines)
         if points > MOST_STROKE_POINTS or sum(stroke.rows for stroke in self.strokes) > MOST_ROWS:
             raise EngineError("There are too many strokes; save the mask and load it instead.")
@@ -178,7 +185,9 @@ class CutOut:
 def _require_near(points: Complexes, name: str) -> None:
     if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST_STROKE:
         raise EngineError(
-            f"{name} goes farther from the picture than {FARTHEST_STROKE:,.0f} pixels."
+            "{name} goes farther from the picture than {farthest:,.0f} pixels.",
+            name=name,
+            farthest=FARTHEST_STROKE,
         )
 
 

@@ -1,28 +1,27 @@
 """From a picture to the mask of its subject."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from math import pi
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from scipy import ndimage
 
 from app.cut_out.background import Background, flood_background
 from app.cut_out.cut_out import BackgroundColour, CutOut, Mask, Stroke, paint
+from app.cut_out.transparency import VISIBLE_ALPHA, of_alpha, without_transparency
+from app.texts import _, ngettext
 from engine.arrays import Booleans, Bytes, freeze
 from engine.errors import EngineError
 
-VISIBLE_ALPHA = 8  # of 255: pixels with less may be left out, others are kept
-FAINT_GROWTH = 1.10  # fainter pixels are kept if the subject grows by no more than this
 OPAQUE_SHARE = 0.998  # share of visible pixels from which the picture counts as opaque
 SMALLEST_SIDE = 8  # pixels
 LEAST_AGREEMENT = 0.80  # share of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture: range in which a background is removed
 MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more
 NOTICED_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: larger parts are reported
+NO_PICTURE = "A picture must be an array of uint8 (h, w, 4), not a {given}."
 PICTURE_TYPE = "A picture must be uint8 (h, w, 4), not {dtype} {shape}."
 TRANSPARENT = "The picture is fully transparent; give one with a visible drawing."
 ALL_REMOVED = "The brush has removed all of the picture; keep a part of it."
@@ -83,33 +82,33 @@ def subject_mask(rgba: Bytes, cut_out: CutOut | None = None) -> Subject:
     """
     cut_out = cut_out or CutOut()
     if not isinstance(rgba, np.ndarray):
-        raise EngineError(PICTURE_TYPE.format(dtype="a", shape=type(rgba).__name__))
+        raise EngineError(NO_PICTURE, given=type(rgba).__name__)
     if rgba.ndim != 3 or rgba.shape[2] != 4 or rgba.dtype != np.uint8:
-        raise EngineError(PICTURE_TYPE.format(dtype=rgba.dtype, shape=rgba.shape))
+        raise EngineError(PICTURE_TYPE, dtype=rgba.dtype, shape=rgba.shape)
     if rgba.size == 0:
         raise EngineError("The picture has no pixels; give one with a drawing.")
-    seen = int(np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)))
+    seen = int(np.count_nonzero(of_alpha(rgba, VISIBLE_ALPHA)))
     if not seen:
         raise EngineError(TRANSPARENT)
     notices: tuple[str, ...] = ()
     background: Background | None = None
     # A mask takes a quarter of a picture's memory: free each one that can be computed again.
     if cut_out.mask is not None:
-        subject = _masked(_of_alpha(rgba, 1), cut_out.mask)
+        subject = _masked(of_alpha(rgba, 1), cut_out.mask)
     elif isinstance(cut_out.background, tuple):
         subject, notices, background = _without_colour(rgba, cut_out.tolerance, cut_out.background)
     elif seen < OPAQUE_SHARE * rgba[..., 3].size:
-        subject, notices = _without_transparency(rgba)
+        subject, notices = without_transparency(rgba)
     elif cut_out.background == "none":
-        subject = _of_alpha(rgba, VISIBLE_ALPHA)
+        subject = of_alpha(rgba, VISIBLE_ALPHA)
     else:
         subject, notices, background = _without_background(rgba[..., :3], cut_out.tolerance)
-        subject &= _of_alpha(rgba, VISIBLE_ALPHA)
+        subject &= of_alpha(rgba, VISIBLE_ALPHA)
     within = _enclosed(subject, background, cut_out)
     del background
     subject, notices = within.subject, notices + within.notices
     if cut_out.strokes:
-        subject, notices = _brushed(subject, cut_out.strokes) & _of_alpha(rgba, 1), ()
+        subject, notices = _brushed(subject, cut_out.strokes) & of_alpha(rgba, 1), ()
     _require_size(subject)
     area = within.area
     return Subject(
@@ -158,16 +157,23 @@ def _enclosed(subject: Booleans, background: Background | None, cut_out: CutOut)
         if not number or cut_out.holes == "fill":
             others.append(point)
     opened[0] = False
-    told = sizes >= pi * (NOTICED_ENCLOSED * np.hypot(*area.shape)) ** 2
-    notices = tuple(
-        f"{count} enclosed {'part' if count == 1 else 'parts'} of the background's colour {what}"
-        for count, what in (
-            (int((told & opened[1:]).sum()), "removed too"),
-            (int((told & ~opened[1:]).sum()), "kept"),
+    seen = sizes >= pi * (NOTICED_ENCLOSED * np.hypot(*area.shape)) ** 2
+    notices = []
+    if removed := int((seen & opened[1:]).sum()):
+        notice = ngettext(
+            "{count:,} enclosed part of the background's colour removed too",
+            "{count:,} enclosed parts of the background's colour removed too",
+            removed,
         )
-        if count
-    )
-    return _Within(subject & ~opened[labels], area, opens, tuple(others), notices)
+        notices.append(notice.format(count=removed))
+    if kept := int((seen & ~opened[1:]).sum()):
+        notice = ngettext(
+            "{count:,} enclosed part of the background's colour kept",
+            "{count:,} enclosed parts of the background's colour kept",
+            kept,
+        )
+        notices.append(notice.format(count=kept))
+    return _Within(subject & ~opened[labels], area, opens, tuple(others), tuple(notices))
 
 
 def _masked(visible: Booleans, mask: Mask) -> Booleans:
@@ -175,8 +181,12 @@ def _masked(visible: Booleans, mask: Mask) -> Booleans:
     if mask.size != visible.shape[::-1]:
         height, width = visible.shape
         raise EngineError(
-            f"The mask has {mask.size[0]} × {mask.size[1]} pixels and the picture "
-            f"{width} × {height}; give a mask of the picture's size."
+            "The mask has {mask_width} × {mask_height} pixels and the picture {width} × "
+            "{height}; give a mask of the picture's size.",
+            mask_width=mask.size[0],
+            mask_height=mask.size[1],
+            width=width,
+            height=height,
         )
     subject: Booleans = visible & mask.kept
     if not subject.any():
@@ -204,57 +214,15 @@ def _without_colour(
     flooded = background.mask & visible
     name = "#{:02x}{:02x}{:02x}".format(*colour)
     if not flooded.any():
-        return visible, (f"no background of the colour {name} at the picture's border",), None
+        notice = _("no background of the colour {colour} at the picture's border")
+        return visible, (notice.format(colour=name),), None
     if not (visible & ~flooded).any():
         raise EngineError(
-            f"Nothing is left without the background of the colour {name}; lower the tolerance."
+            "Nothing is left without the background of the colour {name}; lower the tolerance.",
+            name=name,
         )
-    notice = f"background removed ({flooded.mean():.0%} of the picture)"
+    notice = _("background removed ({share:.0%} of the picture)").format(share=flooded.mean())
     return visible & ~flooded, (notice,), background
-
-
-def _of_alpha(rgba: Bytes, least: int) -> Booleans:
-    """Return the pixels (h, w) of at least this alpha."""
-    enough: Booleans = rgba[..., 3] >= least
-    return enough
-
-
-def _without_transparency(rgba: Bytes) -> tuple[Booleans, tuple[str, ...]]:
-    """Return all pixels that are not fully transparent, without a wide and nearly invisible haze.
-
-    Nearly invisible islands are left out too: a sharp scaling filter leaves them around edges.
-    """
-    present = _of_alpha(rgba, 1)
-    if np.count_nonzero(present) == np.count_nonzero(_of_alpha(rgba, VISIBLE_ALPHA)):
-        return present, ()
-    del present
-    present, visible = _seen_parts(rgba), _of_alpha(rgba, VISIBLE_ALPHA)
-    faint = int(np.count_nonzero(present) - np.count_nonzero(visible))
-    if np.count_nonzero(present) <= FAINT_GROWTH * np.count_nonzero(visible):
-        return present, ()
-    return visible, (f"{faint:,} nearly invisible pixels (alpha below {VISIBLE_ALPHA}) left out",)
-
-
-def _seen_parts(rgba: Bytes) -> Booleans:
-    """Return all parts that are not fully transparent and have a visible pixel."""
-    present = _of_alpha(rgba, 1)
-    labels, count = _labelled(present)
-    seen = np.zeros(count + 1, dtype=np.bool_)
-    for numbers, row in zip(labels, rgba, strict=True):  # all at once take eight bytes a pixel
-        seen[numbers[row[:, 3] >= VISIBLE_ALPHA]] = True
-    for row, numbers in zip(present, labels, strict=True):
-        row[...] = seen[numbers]
-    return present
-
-
-def _labelled(mask: Booleans) -> tuple[npt.NDArray[Any], int]:
-    """Return the number of each pixel's part, 0 outside, and the number of parts."""
-    # Most pictures have few parts; wider numbers would take as much memory as the picture.
-    for dtype in (np.uint16, np.int32):
-        labels: npt.NDArray[Any] = np.empty(mask.shape, dtype=dtype)
-        with suppress(RuntimeError):  # more parts than the type can count
-            return labels, int(ndimage.label(mask, np.ones((3, 3)), output=labels))
-    raise EngineError("The picture has too many parts; scale it down.")
 
 
 def _without_background(
@@ -265,14 +233,20 @@ def _without_background(
     share = 1 - float(background.mask.mean())
     least, most = SUBJECT_SHARES
     if background.agreement >= LEAST_AGREEMENT and least <= share <= most:
-        notice = f"uniform background removed ({1 - share:.0%} of the picture)"
-        return ~background.mask, (notice,), background
+        notice = _("uniform background removed ({share:.0%} of the picture)")
+        return ~background.mask, (notice.format(share=1 - share),), background
     if background.agreement < LEAST_AGREEMENT:
-        reason = f"only {background.agreement:.0%} of the border has one colour"
+        share = background.agreement
+        notice = _(
+            "opaque picture kept as a whole rectangle: only {share:.0%} of the border has one "
+            "colour"
+        )
     else:
-        reason = f"removing the background would leave {share:.1%} of the picture"
-    whole = np.ones(rgb.shape[:2], dtype=np.bool_)
-    return whole, (f"opaque picture kept as a whole rectangle: {reason}",), None
+        notice = _(
+            "opaque picture kept as a whole rectangle: removing the background would leave "
+            "{share:.1%} of the picture"
+        )
+    return np.ones(rgb.shape[:2], dtype=np.bool_), (notice.format(share=share),), None
 
 
 def _require_size(mask: Booleans) -> None:
@@ -280,4 +254,4 @@ def _require_size(mask: Booleans) -> None:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     height, width = int(np.ptp(rows)) + 1, int(np.ptp(columns)) + 1
     if max(height, width) < SMALLEST_SIDE:
-        raise EngineError(SMALL_SUBJECT.format(width=width, height=height, smallest=SMALLEST_SIDE))
+        raise EngineError(SMALL_SUBJECT, width=width, height=height, smallest=SMALLEST_SIDE)

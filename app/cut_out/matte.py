@@ -23,7 +23,7 @@ from app.cut_out.soft_edge import (
     weigh_hues,
 )
 from engine.arrays import Booleans, Bytes, Floats, readonly
-from engine.domain.outline.parts import SPECK, WITH_CORNERS
+from engine.domain.mask.parts import SPECK, WITH_CORNERS
 
 TILE = 256  # pixels: side of the square tiles
 ROOM = WIDEST_EDGE + NEARBY + 4  # pixels of context around a tile

@@ -3,6 +3,7 @@
 from app.cut_out.cut_out import CutOut
 from app.cut_out.mask import Subject, subject_mask
 from app.cut_out.matte import matte_picture
+from app.texts import message_of
 from engine.arrays import Bytes
 from engine.domain import MeshedDomain, build_domain
 from engine.domain.outline.enclosure import Detail
@@ -26,7 +27,7 @@ def build_picture_domain(
         toggled_holes=subject.toggled_holes,
         cut_lines=[line.points for line in cut_out.cut_lines],
     )
-    return domain, subject.notices + notices
+    return domain, subject.notices + tuple(map(message_of, notices))
 
 
 def texture(rgba: Bytes, subject: Subject) -> Bytes:

@@ -6,6 +6,7 @@ Imports: `engine`, `app.rigging`, `app.cut_out`, `app.errors`, `app.export_forma
 graphics, window or clock.
 """
 
+from app.baseline import Baseline as Baseline
 from app.document.checks import LAST_FRAME as LAST_FRAME
 from app.document.commands import (
     cycle_commands as cycle_commands,
@@ -222,4 +223,4 @@ from app.document.timing.easing import (
 from app.document.timing.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
 from app.document.timing.tangent_mode import TangentMode as TangentMode
 from app.document.timing.tracks import Track as Track, TrackKey as TrackKey
-from engine.variant import Baseline as Baseline, Variant as Variant
+from engine.variant import Variant as Variant

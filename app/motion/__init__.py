@@ -2,7 +2,7 @@
 
 In: a clip (a layer on its document's timeline) and a frame.
 Out: positions of the vertices, and their bounding boxes.
-Imports: `app.document`.
+Imports: `app.document`, `app.rigging`, `engine`.
 """
 
 from app.motion.corrected_frames import (

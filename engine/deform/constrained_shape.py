@@ -31,7 +31,7 @@ class ConstrainedShape:
             k=proven.k, sigma_a=proven.sigma_a, sigma_b=proven.sigma_b
         )
 
-    def measure_state(self, state: State, wish: HandleTargets) -> tuple[Objective, Evaluation]:
+    def measure_state(self, state: State, targets: HandleTargets) -> tuple[Objective, Evaluation]:
         """Return the objective without a barrier, over the shape's samples, and the evaluation."""
-        objective = Objective(boundary=self.boundary, handles=self.handles, targets=wish)
+        objective = Objective(boundary=self.boundary, handles=self.handles, targets=targets)
         return objective, objective.evaluate(*state.map.columns)

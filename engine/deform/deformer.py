@@ -57,9 +57,10 @@ class Deformer(ConstrainedShape):
         certificate = certify(first, self.boundary, self.bounds)
         if not certificate.is_certified:
             raise EngineError(
-                UNCERTIFIED_START.format(
-                    k=certificate.k, sigma_a=certificate.sigma_a, sigma_b=certificate.sigma_b
-                )
+                UNCERTIFIED_START,
+                k=certificate.k,
+                sigma_a=certificate.sigma_a,
+                sigma_b=certificate.sigma_b,
             )
         return State(map=first, certificate=certificate, limits=self.bounds, boundary=self.boundary)
 
@@ -119,7 +120,7 @@ class Deformer(ConstrainedShape):
         phi, psi = state.map.columns
         return coordinates @ phi + (coordinates @ psi).conj()
 
-    def step(self, state: State, wish: HandleTargets) -> State:
+    def step(self, state: State, targets: HandleTargets) -> State:
         """Take one Newton step towards the targets; the new map is certified like the old one.
 
         Call it once for each picture while the targets move: the shape follows. Call it again with
@@ -134,18 +135,18 @@ class Deformer(ConstrainedShape):
         from the bounds both serve several steps, and each such step costs 32 m n for m samples a
         round.
         """
-        self._require_own(wish)
-        if len(wish.positions) == 0 and self.allows(state):
-            return replace(state, limits=self.bounds, status=Status.FREE, targets=wish)
-        if not self._is_same_request(state, wish):
+        self._require_own(targets)
+        if len(targets.positions) == 0 and self.allows(state):
+            return replace(state, limits=self.bounds, status=Status.FREE, targets=targets)
+        if not self._is_same_request(state, targets):
             if state.search or state.outcome or state.starting_points:
                 state = replace(state, search=None, outcome=None, starting_points=())
         elif state.status.is_final:
             return state
         elif state.search is None and self._has_tracked(state):
-            state = begin_searches(self, state, wish, tuple(StartingPoint))
+            state = begin_searches(self, state, targets, tuple(StartingPoint))
         if state.search is None:
-            return take_drag_step(self, state, wish)
+            return take_drag_step(self, state, targets)
         return advance_searches(self, state, state.search)
 
     def release(self, state: State, left: HandleTargets) -> State:
@@ -154,25 +155,25 @@ class Deformer(ConstrainedShape):
         A minimum stays final if `left` comes from `HandleTargets.released`: the gradient is the
         same. From any other state further steps continue the search.
         """
-        wish, is_minimum = state.targets, state.status in (Status.CONVERGED, Status.AT_LIMITS)
-        if is_minimum and wish is not None:
-            exact = wish.released(self.positions(state), self.handles.stiffness)
+        targets, is_minimum = state.targets, state.status in (Status.CONVERGED, Status.AT_LIMITS)
+        if is_minimum and targets is not None:
+            exact = targets.released(self.positions(state), self.handles.stiffness)
             if exact.is_same(left):
                 return replace(state, targets=left)
         return replace(state, status=Status.MOVING, search=None, outcome=None, starting_points=())
 
-    def _require_own(self, wish: HandleTargets) -> None:
-        require_kind(wish, HandleTargets, "targets")
-        if len(wish.positions) != len(self.handles.points):
+    def _require_own(self, targets: HandleTargets) -> None:
+        require_kind(targets, HandleTargets, "targets")
+        if len(targets.positions) != len(self.handles.points):
             raise EngineError(
-                TARGET_COUNT.format(count=len(self.handles.points), given=len(wish.positions))
+                TARGET_COUNT, count=len(self.handles.points), given=len(targets.positions)
             )
 
-    def _is_same_request(self, state: State, wish: HandleTargets) -> bool:
+    def _is_same_request(self, state: State, targets: HandleTargets) -> bool:
         """Whether the last step had these targets, handles and bounds."""
         return (
             state.handles is self.handles
-            and wish.is_same(state.targets)
+            and targets.is_same(state.targets)
             and self.bounds.include(state.limits)
             and state.limits.include(self.bounds)
         )
@@ -192,7 +193,7 @@ class Deformer(ConstrainedShape):
     def settle(
         self,
         state: State,
-        wish: HandleTargets,
+        targets: HandleTargets,
         *,
         ways: tuple[StartingPoint, ...] = tuple(StartingPoint),
         at_most: int = 600,
@@ -210,34 +211,34 @@ class Deformer(ConstrainedShape):
             If the shape did not come to rest within the bounds. With `throw=False` the last state
             is returned, certified for its `limits`, and `status` is the reason.
         """
-        self._require_own(wish)
-        state, count = self._settled(state, wish, ways, as_count(at_most, "at_most"))
+        self._require_own(targets)
+        state, count = self._settled(state, targets, ways, as_count(at_most, "at_most"))
         if throw and not state.status.is_solved:
-            raise EngineError(UNSETTLED.format(count=count, status=state.status.value))
+            raise EngineError(UNSETTLED, count=count, status=state.status.value)
         return state, count
 
     def _settled(
-        self, state: State, wish: HandleTargets, ways: tuple[StartingPoint, ...], at_most: int
+        self, state: State, targets: HandleTargets, ways: tuple[StartingPoint, ...], at_most: int
     ) -> tuple[State, int]:
         count = 0
-        if not (self._is_same_request(state, wish) and state.status.is_final):
+        if not (self._is_same_request(state, targets) and state.status.is_final):
             while count < at_most and not self.allows(state):
-                state, count = take_drag_step(self, state, wish), count + 1
+                state, count = take_drag_step(self, state, targets), count + 1
                 if state.status.is_final:
                     return state, count
-            if len(wish.positions) > 0 and count < at_most:
-                state = begin_searches(self, state, wish, ways)
+            if len(targets.positions) > 0 and count < at_most:
+                state = begin_searches(self, state, targets, ways)
         while count < at_most:
-            state, count = self.step(state, wish), count + 1
+            state, count = self.step(state, targets), count + 1
             if state.status.is_final:
                 break
         return state, count
 
-    def track_path_row(self, state: State, wish: HandleTargets) -> tuple[State, int]:
+    def track_path_row(self, state: State, targets: HandleTargets) -> tuple[State, int]:
         """Take up to `PATH_STEPS` steps towards one row of a recorded path; return their number."""
-        self._require_own(wish)
+        self._require_own(targets)
         for count in range(1, PATH_STEPS + 1):
-            state = take_drag_step(self, state, wish)
+            state = take_drag_step(self, state, targets)
             done = state.statistics
             if done is None or (
                 done.length > FULL

@@ -27,6 +27,14 @@ MOST_VERTICES = 400
 OUTSIDE = 1e-9
 MOST_HANDLES = 1_000
 TARGET_COUNT = "{count} handles need as many targets, not {given}."
+OTHER_TARGETS = (
+    "Handles {first} and {second} are at the same point of the shape but have different targets; "
+    "remove one of the handles."
+)
+OTHER_ROTATIONS = (
+    "Handles {first} and {second} are at the same point of the shape but have different rotations; "
+    "remove one of the handles."
+)
 TARGET_FAR = (
     "Handle {handle} is wanted at {place:.3g}, more than {farthest:.0e} times the size of the "
     "shape away; give it a target near the shape."
@@ -60,8 +68,8 @@ class HandleTargets(NamedTuple):
         if other is None or other is self:
             return other is self
         ours, theirs = (
-            [*wish[:2], *(wish.pulls or ()), *(wish.distance_constraints or ())]
-            for wish in (self, other)
+            [*targets[:2], *(targets.pulls or ()), *(targets.distance_constraints or ())]
+            for targets in (self, other)
         )
         return len(ours) == len(theirs) and all(
             one is two or np.array_equal(one, two, equal_nan=one is self.rotations)
@@ -197,16 +205,14 @@ class Handles:
         """
         targets = as_points(positions, "targets")
         if len(targets) != len(self.points):
-            raise EngineError(TARGET_COUNT.format(count=len(self.points), given=len(targets)))
+            raise EngineError(TARGET_COUNT, count=len(self.points), given=len(targets))
         size = self.lever / LEVER
         far = np.flatnonzero(np.abs(targets - self.points) > FARTHEST * size)
         if len(far):
-            raise EngineError(
-                TARGET_FAR.format(handle=far[0], place=targets[far[0]], farthest=FARTHEST)
-            )
+            raise EngineError(TARGET_FAR, handle=far[0], place=targets[far[0]], farthest=FARTHEST)
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:
-                raise _conflict_at_one_point(i, j, "targets")
+                raise EngineError(OTHER_TARGETS, first=i, second=j)
         pulling = BoundedPulls.of(hands, self.stiffness, self.around, size)
         linked = DistanceConstraints.of(links, self.around * STIFFNESS / size**2)
         if rotations is None:
@@ -214,20 +220,16 @@ class Handles:
         angles = as_reals(rotations, "rotations")
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
-                f"Rotations must be {len(targets)} finite angles, or NaN where a handle may turn "
-                f"freely; got {angles.shape} {angles}."
+                "Rotations must be {count} finite angles, or NaN where a handle may turn "
+                "freely; got {shape} {angles}.",
+                count=len(targets),
+                shape=angles.shape,
+                angles=angles,
             )
         for i, j in self.coincident:
             if abs(np.exp(1j * angles[i]) - np.exp(1j * angles[j])) > APART:
-                raise _conflict_at_one_point(i, j, "rotations")
+                raise EngineError(OTHER_ROTATIONS, first=i, second=j)
         return HandleTargets(targets, angles, pulling, linked)
-
-
-def _conflict_at_one_point(i: int, j: int, what: str) -> EngineError:
-    return EngineError(
-        f"Handles {i} and {j} are at the same point of the shape but have different {what}; remove "
-        "one of them."
-    )
 
 
 def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:
@@ -238,12 +240,14 @@ def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:
     points = as_points(points, "handles")
     if len(points) > MOST_HANDLES:
         raise EngineError(
-            f"{len(points):,} handles are too many, as their memory grows with their square; "
-            f"give at most {MOST_HANDLES:,}."
+            "{count:,} handles are too many, as their memory grows with their square; give "
+            "at most {most:,}.",
+            count=len(points),
+            most=MOST_HANDLES,
         )
     count = sum(map(len, domain.cages))
     if count > MOST_VERTICES:
-        raise EngineError(MOST_CAGE.format(count=count, most=MOST_VERTICES))
+        raise EngineError(MOST_CAGE, count=count, most=MOST_VERTICES)
     outline, *inner = domain.loops
     near = OUTSIDE * diameter(outline)
     require_inside(outline, points, "handle", holes=inner, tolerance=near)
@@ -253,10 +257,12 @@ def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:
 def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
     factors = np.ones(count) if weights is None else as_reals(weights, "weights")
     if factors.shape != (count,):
-        raise EngineError(f"{count} handles need as many weights, not {factors.shape}.")
+        raise EngineError(
+            "{count} handles need as many weights, not {shape}.", count=count, shape=factors.shape
+        )
     if not (np.isfinite(factors) & (factors > 0)).all():
         bad = int(np.flatnonzero(~(np.isfinite(factors) & (factors > 0)))[0])
-        raise EngineError(WEIGHT_NOT_POSITIVE.format(handle=bad, weight=factors[bad]))
+        raise EngineError(WEIGHT_NOT_POSITIVE, handle=bad, weight=factors[bad])
     return factors
 
 

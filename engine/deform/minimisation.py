@@ -51,9 +51,9 @@ MISFIT = 0.12
 
 
 def begin_searches(
-    shape: ConstrainedShape, state: State, wish: HandleTargets, ways: tuple[StartingPoint, ...]
+    shape: ConstrainedShape, state: State, targets: HandleTargets, ways: tuple[StartingPoint, ...]
 ) -> State:
-    if wish.pulls is not None:
+    if targets.pulls is not None:
         # From the handles' present positions one search finds the same minimum as all, in half the
         # steps.
         ways = (StartingPoint.HERE,)
@@ -63,7 +63,7 @@ def begin_searches(
         state,
         limits=shape.bounds,
         status=Status.MOVING,
-        targets=wish,
+        targets=targets,
         handles=shape.handles,
         boundary=shape.boundary,
         schedule=BarrierSchedule(weight=LEAST_RESTING),
@@ -73,7 +73,7 @@ def begin_searches(
         outcome=None,
         search_steps=0,
     )
-    return replace(state, search=_search(shape, state, wish))
+    return replace(state, search=_search(shape, state, targets))
 
 
 def advance_searches(shape: ConstrainedShape, state: State, search: Search) -> State:
@@ -99,14 +99,14 @@ def advance_searches(shape: ConstrainedShape, state: State, search: Search) -> S
     return replace(state, search=_search(shape, state, search.targets))
 
 
-def _search(shape: ConstrainedShape, state: State, wish: HandleTargets) -> Search:
+def _search(shape: ConstrainedShape, state: State, targets: HandleTargets) -> Search:
     """Return the search from the next starting point, at its beginning."""
     way, outcome = state.starting_points[0], state.outcome
     first, turn, most = state.map, way.rotation, MOST_STEPS
     if way is not StartingPoint.HERE:
         if way is StartingPoint.WIDENING and outcome is not None:
             turn = outcome.start_rotation
-        first = align_rigidly(shape.handles, wish, shape.rest_map, turn)
+        first = align_rigidly(shape.handles, targets, shape.rest_map, turn)
         if way is StartingPoint.REST and len(state.starting_points) > 1:
             most = MOST_STEPS_REST
     elif outcome is not None:
@@ -119,7 +119,7 @@ def _search(shape: ConstrainedShape, state: State, wish: HandleTargets) -> Searc
         limits = shape.bounds
         certificate = certify(first, shape.boundary, limits)
     search = begin_search(
-        Objective(boundary=shape.boundary, handles=shape.handles, targets=wish),
+        Objective(boundary=shape.boundary, handles=shape.handles, targets=targets),
         first,
         certificate,
         inside=shape.bounds.towards_identity(MARGIN),

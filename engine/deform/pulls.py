@@ -75,15 +75,17 @@ class BoundedPulls(NamedTuple):
         weights = np.zeros((len(hands), len(stiffness)))
         for number, (handles, pull) in enumerate(hands):
             if not pull > 0:
-                raise EngineError(FORCE_NOT_POSITIVE.format(pull=pull))
+                raise EngineError(FORCE_NOT_POSITIVE, pull=pull)
             if len(handles) == 0:
                 raise EngineError("A hand pulls at nothing; leave it out.")
             if not all(handle in range(len(stiffness)) for handle in handles):
-                raise EngineError(PULL_HANDLES.format(handles=list(handles), count=len(stiffness)))
+                raise EngineError(PULL_HANDLES, handles=list(handles), count=len(stiffness))
             weights[number, list(handles)] = stiffness[list(handles)]
         twice = np.flatnonzero(np.count_nonzero(weights, axis=0) > 1)
         if len(twice):
-            raise EngineError(f"Two hands pull at handle {twice[0]}; let one of them do it.")
+            raise EngineError(
+                "Two hands pull at handle {handle}; let one of them do it.", handle=twice[0]
+            )
         totals = weights.sum(axis=1)
         forces = np.array([hand.max_force for hand in hands]) / size
         forces *= (weights * around).sum(axis=1) / totals
@@ -168,9 +170,9 @@ class DistanceConstraints(NamedTuple):
             return None
         for first, second, shortest, longest in links:
             if first == second or not all(end in range(len(stiffness)) for end in (first, second)):
-                raise EngineError(CONSTRAINT_ENDS.format(first=first, second=second))
+                raise EngineError(CONSTRAINT_ENDS, first=first, second=second)
             if not 0 <= shortest <= longest:
-                raise EngineError(CONSTRAINT_LENGTHS.format(shortest=shortest, longest=longest))
+                raise EngineError(CONSTRAINT_LENGTHS, shortest=shortest, longest=longest)
         ends = np.array([(link.first, link.second) for link in links], np.intp).T
         return cls(
             ends=readonly(ends),

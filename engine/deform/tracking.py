@@ -41,9 +41,9 @@ SOFTNESS = 0.003
 LEAST_WITH_SLACK = 0.03
 
 
-def take_drag_step(shape: ConstrainedShape, state: State, wish: HandleTargets) -> State:
+def take_drag_step(shape: ConstrainedShape, state: State, targets: HandleTargets) -> State:
     """Take one step of a drag towards the targets, or of the way into tightened bounds."""
-    step = _prepare(shape, state, wish)
+    step = _prepare(shape, state, targets)
     taken = take_certified_step(
         step.objective,
         step.evaluation,
@@ -55,7 +55,7 @@ def take_drag_step(shape: ConstrainedShape, state: State, wish: HandleTargets) -
     free = step.free
     schedule = step.schedule.after_step(
         length=taken.length,
-        shortfall=_excess(shape.bounds.at(state.boundary), taken)
+        error=_excess(shape.bounds.at(state.boundary), taken)
         if step.is_tightening
         else free.target_error(step.evaluation),
         moving=step.has_hit_radius or step.is_tightening,
@@ -84,7 +84,7 @@ def take_drag_step(shape: ConstrainedShape, state: State, wish: HandleTargets) -
         boundary=boundary,
         schedule=schedule,
         duals=duals,
-        targets=wish,
+        targets=targets,
         handles=shape.handles,
         preconditioner=taken.preconditioner,
         evaluation=taken.evaluation if boundary is state.boundary else None,
@@ -118,27 +118,29 @@ class _Step(NamedTuple):
         return self.barrier.next_duals(a, b, ahead.a - a, ahead.b - b)
 
 
-def _prepare(shape: ConstrainedShape, state: State, wish: HandleTargets) -> _Step:
+def _prepare(shape: ConstrainedShape, state: State, targets: HandleTargets) -> _Step:
     """Choose the objective of the next step, and the bounds that it must keep."""
-    free = Objective(boundary=state.boundary, handles=shape.handles, targets=wish)
+    free = Objective(boundary=state.boundary, handles=shape.handles, targets=targets)
     known = state.evaluation if state.handles is shape.handles else None
     jet = known or free.evaluate(*state.map.columns)
     reached = stack_distortions(jet.a, jet.b)
     limits = tighten_limits(shape.bounds, state.limits, state.boundary, reached)
     walls, required = place_barrier_bounds(limits, state.boundary, reached, state.certificate)
-    same = wish.is_same(state.targets)
+    same = targets.is_same(state.targets)
     schedule = state.schedule if same else state.schedule.for_new_targets()
     tightening = limits is not shape.bounds
     if tightening:
         # Held softly in place, the shape follows its own energy; later the handles pull again.
         handles, leashed = shape.handles.softened(SOFTNESS), False
-        wish = HandleTargets(jet.positions, np.full(len(jet.positions), np.nan))
+        targets = HandleTargets(jet.positions, np.full(len(jet.positions), np.nan))
         schedule = replace(schedule, weight=max(schedule.weight, LEAST_TIGHTENING))
     else:
         handles = shape.handles
-        if wish.pulls is not None:
+        if targets.pulls is not None:
             schedule = replace(schedule, weight=max(schedule.weight, LEAST_WITH_SLACK))
-        wish, leashed = cut_to_radius(handles, shape.boundary.size, schedule.step_radius, jet, wish)
+        targets, leashed = cut_to_radius(
+            handles, shape.boundary.size, schedule.step_radius, jet, targets
+        )
     # On the way into the bounds the barrier moves with the map, and dual variables would lag.
     barrier = Barrier(
         bounds=walls, weight=schedule.weight, duals=None if tightening else state.duals
@@ -147,7 +149,7 @@ def _prepare(shape: ConstrainedShape, state: State, wish: HandleTargets) -> _Ste
         evaluation=jet,
         free=free,
         barrier=barrier,
-        objective=replace(free, handles=handles, targets=wish, barrier=barrier, secant=True),
+        objective=replace(free, handles=handles, targets=targets, barrier=barrier, secant=True),
         limits=limits,
         required=required,
         schedule=schedule,

@@ -78,19 +78,19 @@ class BarrierSchedule:
         """Return the schedule with progress reset."""
         return replace(self, smallest_error=inf, idle_steps=0)
 
-    def after_step(self, *, length: float, shortfall: float, moving: bool) -> Self:
+    def after_step(self, *, length: float, error: float, moving: bool) -> Self:
         """Return the schedule of the next step.
 
         Parameters
         ----------
         length : float
             Part of the step that was taken.
-        shortfall : float
+        error : float
             Target error of the drag, over L.
         moving : bool
             Whether the handles are still far from their targets.
         """
-        progress = shortfall < self.smallest_error - PROGRESS
+        progress = error < self.smallest_error - PROGRESS
         weight, leash = self.weight, self.step_radius
         if length < SHORT:
             weight = min(RAISE * weight, MOST_WEIGHT)
@@ -102,7 +102,7 @@ class BarrierSchedule:
             self,
             weight=weight,
             step_radius=leash,
-            smallest_error=shortfall if progress else self.smallest_error,
+            smallest_error=error if progress else self.smallest_error,
             idle_steps=0 if progress else self.idle_steps + 1,
         )
 
@@ -113,7 +113,7 @@ class BarrierSchedule:
 
 
 def cut_to_radius(
-    handles: Handles, size: float, leash: float, jet: Evaluation, wish: HandleTargets
+    handles: Handles, size: float, leash: float, jet: Evaluation, targets: HandleTargets
 ) -> tuple[HandleTargets, bool]:
     """Return the targets cut to a part of the trust region, and whether the cut changed any.
 
@@ -121,29 +121,29 @@ def cut_to_radius(
     rotation would squeeze the shape.
     """
     distance, most = STEP_RADIUS * size * leash, TURN_RADIUS * leash
-    positions = _rotated_toward(handles, jet.positions, wish.positions, most)
-    pull = wish.positions - positions
+    positions = _rotated_toward(handles, jet.positions, targets.positions, most)
+    pull = targets.positions - positions
     cut = distance / np.maximum(np.abs(pull), distance)
-    near, turning = wish.rotations.copy(), np.isfinite(wish.rotations)
+    near, turning = targets.rotations.copy(), np.isfinite(targets.rotations)
     leashed = bool((cut < 1.0).any())
     if turning.any():
         now = np.angle(jet.fz[turning])
-        turn = np.angle(np.exp(1j * (wish.rotations[turning] - now)))
+        turn = np.angle(np.exp(1j * (targets.rotations[turning] - now)))
         near[turning] = now + np.minimum(np.maximum(turn, -most), most)
         leashed = leashed or bool(np.abs(turn).max() > most)
     return HandleTargets(
-        positions + cut * pull, near, wish.pulls, wish.distance_constraints
+        positions + cut * pull, near, targets.pulls, targets.distance_constraints
     ), leashed
 
 
 def align_rigidly(
-    handles: Handles, wish: HandleTargets, at_rest: HarmonicMap, turn: float = 0.0
+    handles: Handles, targets: HandleTargets, at_rest: HarmonicMap, turn: float = 0.0
 ) -> HarmonicMap:
     """Return the rigid motion that brings the shape at rest nearest to the targets.
 
     It is turned by a further angle `turn` around the centre of the targets.
     """
-    common = fit_rigid_motion(handles, handles.points, wish.positions)
+    common = fit_rigid_motion(handles, handles.points, targets.positions)
     factor = complex(np.exp(1j * (common.angle + turn)))
     return HarmonicMap.similarity(
         at_rest.cage,

@@ -190,7 +190,7 @@ class Extension:
         and its value there is meaningless.
         """
         if np.ndim(real_parts) != 2 or len(real_parts) != len(self.nodes):
-            raise EngineError(PARTS_SHAPE.format(count=len(self.nodes), shape=np.shape(real_parts)))
+            raise EngineError(PARTS_SHAPE, count=len(self.nodes), shape=np.shape(real_parts))
         densities = self.transform.solver(real_parts)
         return Extended(*self.integral(densities), self.transform.means @ densities)
 
@@ -215,7 +215,7 @@ def _strictly_inside(loops: Sequence[Complexes], points: Complexes, rounding: fl
     is_outside = ~contains(outline, outer, holes=holes)
     far = np.flatnonzero(is_outside & (distance > ON_OUTLINE * size + rounding))
     if len(far):
-        raise EngineError(OUTSIDE.format(count=len(far), distance=distance[far[0]]))
+        raise EngineError(OUTSIDE, count=len(far), distance=distance[far[0]])
     close = doubtful[(distance < EDGE_DEPTH * size) | is_outside]
     moved = points.copy()
     z, corners, ends = points[close], np.concatenate(loops), loop_ends(loops)

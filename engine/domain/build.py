@@ -14,7 +14,7 @@ from engine.domain.meshing.triangulation import triangulate
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.enclosure import MARGINS, Detail, Holes, enclose_subject
 from engine.domain.outline.holes import make_hole
-from engine.errors import EngineError
+from engine.errors import EngineError, Message
 from engine.geometry import (
     Domain,
     Pieces,
@@ -92,7 +92,7 @@ def build_domain(
     holes: Holes = "keep",
     toggled_holes: Sequence[complex] = (),
     cut_lines: Sequence[npt.ArrayLike] = (),
-) -> tuple[MeshedDomain, tuple[str, ...]]:
+) -> tuple[MeshedDomain, tuple[Message, ...]]:
     """Outline a subject, and build its domain.
 
     Parameters
@@ -113,8 +113,8 @@ def build_domain(
     Returns
     -------
     domain : MeshedDomain
-    notices : tuple of str
-        Every remedy that was applied, in words.
+    notices : tuple of Message
+        Every remedy that was applied.
 
     Raises
     ------
@@ -123,10 +123,10 @@ def build_domain(
     """
     _require_triangles(triangles)
     if detail not in tuple(MARGINS):
-        raise EngineError(NO_DETAIL.format(detail=detail, details=", ".join(MARGINS)))
+        raise EngineError(NO_DETAIL, detail=detail, details=", ".join(MARGINS))
     mask = np.asarray(mask)
     if mask.dtype != np.bool_ or mask.ndim != 2:
-        raise EngineError(NO_MASK.format(dtype=mask.dtype, shape=mask.shape))
+        raise EngineError(NO_MASK, dtype=mask.dtype, shape=mask.shape)
     enclosure = enclose_subject(
         mask,
         detail=detail,
@@ -190,8 +190,10 @@ def _with_short_edges(ring: Complexes, longest: float) -> Complexes:
 def _require_triangles(count: int) -> None:
     if not FEWEST_TRIANGLES <= as_count(count, "triangles") <= MOST_TRIANGLES:
         raise EngineError(
-            f"The number of triangles must be between {FEWEST_TRIANGLES:,} and "
-            f"{MOST_TRIANGLES:,}, not {count:,}."
+            "The number of triangles must be between {least:,} and {most:,}, not {count:,}.",
+            least=FEWEST_TRIANGLES,
+            most=MOST_TRIANGLES,
+            count=count,
         )
 
 

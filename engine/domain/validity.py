@@ -58,7 +58,7 @@ def require_domain(domain: MeshedDomain) -> None:
         count = sum(map(len, polygons))
         _require_near(np.concatenate(polygons), name)
         if count > LARGEST_OUTLINE:
-            raise EngineError(VERTEX_COUNT.format(name=name, most=LARGEST_OUTLINE, count=count))
+            raise EngineError(VERTEX_COUNT, name=name, most=LARGEST_OUTLINE, count=count)
     _require_near(domain.mesh.vertices, "mesh")
     # Far from the origin small shapes would have no digits left between vertices.
     domain = domain.moved(-complex(domain.outline[0]))
@@ -80,14 +80,14 @@ def require_domain(domain: MeshedDomain) -> None:
 
 def _require_near(points: Complexes, name: str) -> None:
     if not np.abs([points.real, points.imag]).max(initial=0.0) <= OUTERMOST:
-        raise EngineError(TOO_FAR.format(name=name, farthest=OUTERMOST))
+        raise EngineError(TOO_FAR, name=name, farthest=OUTERMOST)
 
 
 def _require_tiling(domain: MeshedDomain) -> None:
     mesh, outline, holes = domain.mesh, domain.outline, domain.loops[1:]
     vertices, triangles = mesh.vertices, mesh.triangles
     if not 1 <= len(triangles) <= MOST_MESH_TRIANGLES:
-        raise EngineError(MESH_SIZE.format(most=MOST_MESH_TRIANGLES, count=len(triangles)))
+        raise EngineError(MESH_SIZE, most=MOST_MESH_TRIANGLES, count=len(triangles))
     if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise EngineError(MESH_CORNERS)
     if not np.bincount(triangles.ravel(), minlength=len(vertices)).all():

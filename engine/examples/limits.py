@@ -17,7 +17,7 @@ for sigma_a in (3.0, 1.5, 1.2):
     for active in state.statistics.active if state.statistics else ():
         print(f"    {active.name} holds it back at {active.place:.2f}")
 
-# A solver that runs out of steps raises, unless it is told to return what it has.
+# A solver that runs out of steps raises an error; with throw=False it returns what it has.
 try:
     deformer.settle(deformer.start(), targets, at_most=3)
 except engine.EngineError as error:

@@ -29,7 +29,7 @@ def fit_rigid(
     places, offsets = as_points(places, "places"), as_points(offsets, "offsets")
     weights = as_reals(weights, "weights")
     if not (np.isfinite(weights) & (weights >= 0)).all():
-        raise EngineError(NEGATIVE_WEIGHTS.format(weights=weights))
+        raise EngineError(NEGATIVE_WEIGHTS, weights=weights)
     if not len(places) or not weights.any():
         return IDENTITY_MOTION
     total = weights + TOWARDS_REST / len(places)

@@ -50,9 +50,11 @@ def require_cages_in_holes(holes: Sequence[Hole], outline: Complexes) -> None:
     """Raise `EngineError` unless the holes lie apart inside the outline, each with a cage in it."""
     require_holes([hole.outline for hole in holes], outline)
     for number, hole in enumerate(holes):
-        name = f"cage of hole {number}"
-        require_simple(hole.cage, name, clockwise=True)
+        require_simple(hole.cage, f"cage of hole {number}", clockwise=True)
         if not lies_within(hole.cage, hole.outline):
-            raise EngineError(f"The {name} is not inside the hole; it must lie strictly within.")
+            raise EngineError(
+                "The cage of hole {number} is not inside the hole; it must lie strictly within.",
+                number=number,
+            )
         if not contains(hole.cage, np.array([hole.centre])).all():
-            raise EngineError(f"The centre of hole {number} is not inside its cage.")
+            raise EngineError("The centre of hole {number} is not inside its cage.", number=number)

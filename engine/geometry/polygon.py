@@ -105,18 +105,22 @@ def is_simple(polygon: Complexes) -> bool:
 def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) -> None:
     """Raise `EngineError` unless the polygon is simple, has an area and runs the right way."""
     if len(polygon) < 3:
-        raise EngineError(FEW_VERTICES.format(name=name, count=len(polygon)))
+        raise EngineError(FEW_VERTICES, name=name, count=len(polygon))
     if np.any(edge_vectors(polygon) == 0):
-        raise EngineError(f"The {name} repeats a vertex; give each vertex once.")
+        raise EngineError("The {name} repeats a vertex; give each vertex once.", name=name)
     size = diameter(polygon)
     if not SIZES[0] < size < SIZES[1] or np.abs(polygon).max() > FARTHEST * size:
-        raise EngineError(FEW_DIGITS.format(name=name, size=size, distance=np.abs(polygon).max()))
+        raise EngineError(FEW_DIGITS, name=name, size=size, distance=np.abs(polygon).max())
     if not is_simple(polygon):
-        raise EngineError(SELF_TOUCHING.format(name=name))
-    ways = ("counter-clockwise", "clockwise")
-    if clockwise == (signed_area(polygon) > 0):
+        raise EngineError(SELF_TOUCHING, name=name)
+    is_clockwise = signed_area(polygon) <= 0
+    if clockwise and not is_clockwise:
         raise EngineError(
-            f"The {name} runs {ways[not clockwise]}; give its vertices {ways[clockwise]}."
+            "The {name} runs counter-clockwise; give its vertices clockwise.", name=name
+        )
+    if is_clockwise and not clockwise:
+        raise EngineError(
+            "The {name} runs clockwise; give its vertices counter-clockwise.", name=name
         )
 
 
@@ -125,7 +129,7 @@ def require_holes(holes: Sequence[Complexes], outline: Complexes) -> None:
     for number, hole in enumerate(holes):
         require_simple(hole, f"outline of hole {number}", clockwise=True)
         if not lies_within(hole, outline, holes[:number]):
-            raise EngineError(HOLE_LEAVES.format(number=number))
+            raise EngineError(HOLE_LEAVES, number=number)
 
 
 def lies_within(inner: Complexes, polygon: Complexes, holes: Sequence[Complexes] = ()) -> bool:
@@ -191,7 +195,7 @@ def require_inside(
         count = f" ({len(outside)} of {len(points)} are)" if len(outside) > 1 else ""
         z = points[outside[0]]
         raise EngineError(
-            OUTSIDE_OUTLINE.format(name=name, number=number, x=z.real, y=z.imag, holes=count)
+            OUTSIDE_OUTLINE, name=name, number=number, x=z.real, y=z.imag, holes=count
         )
 
 
@@ -231,7 +235,7 @@ def constrained_delaunay(polygon: Complexes, holes: Sequence[Complexes] = ()) ->
     """
     for loop in (polygon, *holes):
         if not is_simple(loop):
-            raise EngineError(SELF_TOUCHING.format(name="polygon"))
+            raise EngineError(SELF_TOUCHING, name="polygon")
     parts = shapely.get_parts(
         shapely.constrained_delaunay_triangles(shapely_region(polygon, holes))
     )

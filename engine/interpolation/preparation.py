@@ -78,7 +78,7 @@ def segment_at(time: float, count: int) -> tuple[int, float]:
     """
     time = as_number(time, "time")
     if not 0.0 <= time <= count:
-        raise EngineError(TIME_RANGE.format(time=time, last=count))
+        raise EngineError(TIME_RANGE, time=time, last=count)
     interval = min(int(time), count - 1)
     return interval, time - interval
 
@@ -153,15 +153,15 @@ def prepare(
     intervals = []
     for i in range(len(around) - 1):
         ends = tangents[i], tangents[(i + 1) % len(maps)]
-        course = TimeWeights.between(*(1.0 if end is None else end for end in ends))
-        window = np.arange(course.count) + i - course.first
+        time_weights = TimeWeights.between(*(1.0 if end is None else end for end in ends))
+        window = np.arange(time_weights.count) + i - time_weights.first
         rounds, places = np.divmod(window, len(maps))
-        passage = KeyframeBlend.of(
+        keyframe_blend = KeyframeBlend.of(
             [samples[place] for place in places],
             sheets[places] + rounds.astype(np.int32) * (sheets[-1] - sheets[0]),
-            course,
+            time_weights,
         )
-        interval = KeyframeSegment(sites, passage, bounds, extension)
+        interval = KeyframeSegment(sites, keyframe_blend, bounds, extension)
         intervals.append(prepare_inbetweens(variant, interval))
     return Prepared(
         variant=variant,
@@ -177,7 +177,9 @@ def _known(variant: Variant | str) -> Variant:
         return Variant(variant)
     except ValueError:
         names = ", ".join(Variant)
-        raise EngineError(f"There is no variant {variant!r}; there are {names}.") from None
+        raise EngineError(
+            "There is no variant {variant!r}; there are {names}.", variant=variant, names=names
+        ) from None
 
 
 def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
@@ -189,11 +191,11 @@ def require_keyframes(maps: Sequence[HarmonicMap]) -> None:
         For the first violation.
     """
     if len(maps) < 2:
-        raise EngineError(TWO_KEYFRAMES.format(count=len(maps)))
+        raise EngineError(TWO_KEYFRAMES, count=len(maps))
     for i, f in enumerate(maps):
         require_kind(f, HarmonicMap, f"keyframe {i}")
         if not f.span.equals(maps[0].span):
-            raise EngineError(OTHER_CAGE.format(number=i))
+            raise EngineError(OTHER_CAGE, number=i)
 
 
 def _neighbourhoods(

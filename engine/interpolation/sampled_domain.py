@@ -101,9 +101,7 @@ class SampledDomain:
         """
         own = self.boundary.loops
         if len(loops) != len(own) or not all(map(np.array_equal, loops, own)):
-            raise EngineError(
-                OTHER_OUTLINE.format(others=sum(map(len, loops)), own=sum(map(len, own)))
-            )
+            raise EngineError(OTHER_OUTLINE, others=sum(map(len, loops)), own=sum(map(len, own)))
 
     def sample_nodes(self) -> Indices:
         """Return the nodes at the samples of the boundary, (p,).
@@ -207,7 +205,7 @@ def _arguments(paths: IntegrationPaths, centres: Complexes) -> Floats:
 
 def _single(anchor: npt.ArrayLike) -> Complexes:
     if np.size(anchor) != 1:
-        raise EngineError(ONE_ANCHOR.format(count=np.size(anchor)))
+        raise EngineError(ONE_ANCHOR, count=np.size(anchor))
     return as_points(np.reshape(anchor, (1,)), "anchor")
 
 
@@ -215,7 +213,8 @@ def _as_triangles(values: npt.ArrayLike) -> npt.NDArray[np.int32]:
     triangles = np.asarray(values)
     if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
         raise EngineError(
-            f"triangles must be integers of shape (t, 3), not {triangles.dtype} of shape "
-            f"{triangles.shape}."
+            "triangles must be integers of shape (t, 3), not {dtype} of shape {shape}.",
+            dtype=triangles.dtype,
+            shape=triangles.shape,
         )
     return triangles.astype(np.int32)

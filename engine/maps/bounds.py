@@ -10,7 +10,8 @@ from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.maps.boundary import Boundary
 
-IMPOSSIBLE_BOUND = "The bound on {name} must be {allowed}, not {value:g}."
+IMPOSSIBLE_SIGMA_A = "The bound on sigma_a must be a finite number above 1, not {value:g}."
+IMPOSSIBLE_BOUND = "The bound on {name} must be between 0 and 1, not {value:g}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,16 +116,11 @@ class Bounds(LocalBounds):
         for name in ("k", "sigma_a", "sigma_b"):
             as_reals(getattr(self, name), f"The bound on {name}")
         if not 0 < self.k < 1:
-            raise EngineError(
-                IMPOSSIBLE_BOUND.format(name="k", allowed="between 0 and 1", value=self.k)
-            )
+            raise EngineError(IMPOSSIBLE_BOUND, name="k", value=self.k)
         if not (self.sigma_a > 1 and isfinite(self.sigma_a)):
             raise EngineError(
-                IMPOSSIBLE_BOUND.format(name="sigma_a", allowed="above 1", value=self.sigma_a)
+                IMPOSSIBLE_SIGMA_A,
+                value=self.sigma_a,
             )
         if not 0 < self.sigma_b < 1:
-            raise EngineError(
-                IMPOSSIBLE_BOUND.format(
-                    name="sigma_b", allowed="between 0 and 1", value=self.sigma_b
-                )
-            )
+            raise EngineError(IMPOSSIBLE_BOUND, name="sigma_b", value=self.sigma_b)

@@ -56,13 +56,12 @@ class HarmonicMap:
         object.__setattr__(self, "logs", as_points(self.logs, "logs"))
         count = len(self.cage) + sum(len(hole.cage) for hole in self.holes)
         if not count == len(self.phi) == len(self.psi):
-            raise EngineError(
-                COEFFICIENT_COUNT.format(count=count, phi=len(self.phi), psi=len(self.psi))
-            )
+            raise EngineError(COEFFICIENT_COUNT, count=count, phi=len(self.phi), psi=len(self.psi))
         if len(self.logs) != len(self.holes):
             raise EngineError(
-                f"A map around holes needs a logarithm for each of the {len(self.holes)}, not "
-                f"{len(self.logs)}."
+                "A map around holes needs a logarithm for each of the {count}, not {given}.",
+                count=len(self.holes),
+                given=len(self.logs),
             )
 
     @classmethod

@@ -37,16 +37,12 @@ def require_stiffness(stiffness: npt.ArrayLike, count: int) -> Floats:
     """
     values = np.asarray(stiffness)
     if values.shape != (count,) or values.dtype.kind not in "biuf":
-        raise EngineError(
-            STIFFNESS_SHAPE.format(count=count, shape=values.shape, dtype=values.dtype)
-        )
+        raise EngineError(STIFFNESS_SHAPE, count=count, shape=values.shape, dtype=values.dtype)
     values = values.astype(np.float64)
     fits = (values >= SOFTEST * (1 - ROUNDING)) & (values <= STIFFEST * (1 + ROUNDING))
     if not fits.all():
         first = int(np.flatnonzero(~fits)[0])
-        raise EngineError(
-            STIFFNESS_RANGE.format(stiffest=STIFFEST, value=values[first], vertex=first)
-        )
+        raise EngineError(STIFFNESS_RANGE, stiffest=STIFFEST, value=values[first], vertex=first)
     return values
 
 

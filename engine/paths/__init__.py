@@ -17,12 +17,12 @@ from engine.paths.loops import Loops as Loops
 from engine.paths.path_network import (
     MESH_POINTS as MESH_POINTS,
     chain_starts as chain_starts,
-    leave_region as leave_region,
     mesh_network as mesh_network,
     scattered_network as scattered_network,
     with_chains as with_chains,
     with_loops as with_loops,
 )
+from engine.paths.region import leave_region as leave_region
 from engine.paths.spanning_tree import (
     SpanningTree as SpanningTree,
     breadth_first_parents as breadth_first_parents,

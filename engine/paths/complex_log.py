@@ -79,18 +79,19 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     extra = np.zeros(len(anchor_fz) - 1, np.int32) if turns is None else np.asarray(turns)
     if extra.shape != (len(anchor_fz) - 1,) or extra.dtype.kind not in "iu":
         raise EngineError(
-            TURN_COUNT.format(
-                keyframes=len(anchor_fz),
-                count=len(anchor_fz) - 1,
-                dtype=extra.dtype,
-                shape=extra.shape,
-            )
+            TURN_COUNT,
+            keyframes=len(anchor_fz),
+            count=len(anchor_fz) - 1,
+            dtype=extra.dtype,
+            shape=extra.shape,
         )
     principal = np.angle(anchor_fz)
     shorter = np.angle(anchor_fz[1:] / anchor_fz[:-1])
     sheets = np.cumsum(np.round((shorter - np.diff(principal)) / (2 * np.pi)) + extra)
     if np.abs(sheets).max(initial=0.0) > MOST_TURNS:
-        raise EngineError(f"The keyframes make more than {MOST_TURNS:,} turns; give smaller turns.")
+        raise EngineError(
+            "The keyframes make more than {most:,} turns; give smaller turns.", most=MOST_TURNS
+        )
     return freeze(np.concatenate([[0], sheets]).astype(np.int32))
 
 
@@ -116,5 +117,6 @@ def _turns_along(
             return turns
         pieces *= 2
     raise EngineError(
-        f"f_z vanishes, or nearly so, close to {starts[todo[0]]:.6g}; the keyframe folds there."
+        "f_z vanishes, or nearly so, close to {place:.6g}; the keyframe folds there.",
+        place=starts[todo[0]],
     )

@@ -10,26 +10,21 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
-from scipy import ndimage
 from scipy.sparse import csr_array
 
-from engine.arrays import Booleans, Complexes, Indices, Integers, ragged_indices
+from engine.arrays import Booleans, Complexes, Indices, Integers
 from engine.domain.meshing.mesh import Mesh, sides_of
 from engine.errors import EngineError
 from engine.geometry import (
-    ON_OUTLINE,
     as_xy,
     constrained_delaunay,
     diameter,
-    edge_vectors,
-    loop_ends,
-    shapely_region,
 )
 from engine.paths.loops import Loops
+from engine.paths.region import leave_region
 from engine.paths.spanning_tree import breadth_first_parents, shortest_parents
 
 CELL = 1 / 50  # longest edge of the triangles between scattered points, relative to the diameter
-MOST_CELLS = 2000  # cells per diameter, in the search for segments near the boundary
 NEIGHBOURS = 64  # nodes that are tried for a straight path to the anchor, or to a loop
 TRIES = 32  # points of a loop around a hole from which the search for nodes starts
 
@@ -112,9 +107,7 @@ def mesh_network(
         raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
     if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
         raise EngineError(
-            MESH_POINTS.format(
-                smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
-            )
+            MESH_POINTS, smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
         )
     loops = (outline, *holes)
     along, against = _directed(triangles, len(vertices))
@@ -127,16 +120,17 @@ def mesh_network(
     crossing = leave_region(loops, vertices[ends[:, 0]], vertices[ends[:, 1]])
     if crossing.any():
         first, second = ends[np.flatnonzero(crossing)[0]]
-        raise EngineError(EDGE_LEAVES.format(first=first, second=second))
+        raise EngineError(EDGE_LEAVES, first=first, second=second)
     nearest = np.argsort(np.abs(vertices - anchor), kind="stable")[:NEIGHBOURS]
     seen = nearest[~leave_region(loops, np.repeat(anchor, len(nearest)), vertices[nearest])]
     if not len(seen):
-        raise EngineError(ANCHOR_UNREACHED.format(anchor=anchor[0]))
+        raise EngineError(ANCHOR_UNREACHED, anchor=anchor[0])
     reached = shortest_parents(along + against, int(seen[0]))
     if np.any(reached < 0):
         raise EngineError(
-            f"Point {np.flatnonzero(reached < 0)[0]} is not joined to the anchor by triangles; "
-            "leave the triangles out and the engine finds its own paths."
+            "Point {point} is not joined to the anchor by triangles; leave the triangles "
+            "out and the engine finds its own paths.",
+            point=np.flatnonzero(reached < 0)[0],
         )
     nodes, parents = np.concatenate([anchor, vertices]), np.concatenate([[0], reached + 1])
     parents[seen[0] + 1] = 0
@@ -223,7 +217,9 @@ def with_loops(
             if len(seen):
                 break
         else:
-            raise EngineError(f"No point near hole {number} sees it; give more points around it.")
+            raise EngineError(
+                "No point near hole {number} sees it; give more points around it.", number=number
+            )
         order = first + np.roll(np.arange(len(along)), -begin)
         own = np.empty(len(along), dtype=np.intp)
         own[order - first] = np.concatenate([seen[:1], order[:-1]])
@@ -240,58 +236,6 @@ def _directed(triangles: Integers, count: int) -> tuple[csr_array, csr_array]:
     ones = np.ones(len(starts), dtype=np.int32)
     along = csr_array((ones, (starts, ends)), shape=(count, count))
     return along, along.T.tocsr()
-
-
-def leave_region(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
-    """Return which segments leave the region by more than rounding."""
-    if not len(starts):
-        return np.empty(0, dtype=np.bool_)
-    tolerance = 2 * ON_OUTLINE * diameter(loops[0])
-    # Nearly all segments are far from the boundary; only the others need the exact test.
-    near = np.flatnonzero(_near_boundary(loops, starts, ends))
-    segments = shapely.linestrings(np.stack([as_xy(starts[near]), as_xy(ends[near])], axis=1))
-    corners = np.concatenate(loops)
-    sides = shapely.linestrings(np.stack([as_xy(corners), as_xy(loop_ends(loops))], axis=1))
-    touching, _ = shapely.STRtree(sides).query(segments, predicate="dwithin", distance=tolerance)
-    touching = np.unique(touching)
-    area = shapely_region(loops[0], loops[1:])
-    room = area.buffer(tolerance, join_style="mitre")
-    shapely.prepare(room)
-    crosses = np.zeros(len(starts), dtype=np.bool_)
-    crosses[near[touching]] = ~shapely.covers(room, segments[touching])
-    return crosses
-
-
-def _near_boundary(loops: Sequence[Complexes], starts: Complexes, ends: Complexes) -> Booleans:
-    """Return which segments may come near the boundary, by a grid of cells.
-
-    Most segments are shorter than a cell. Such a segment stays in the cells around its start. The
-    boundary, sampled at points a cell apart, stays in the cells around these points.
-    """
-    lengths = np.abs(ends - starts)
-    cell = max(2 * float(np.median(lengths)), diameter(loops[0]) / MOST_CELLS)
-    boundary = np.concatenate([_dense(loop, cell) for loop in loops])
-    corner = complex(
-        min(boundary.real.min(), starts.real.min()), min(boundary.imag.min(), starts.imag.min())
-    )
-
-    def cells(points: Complexes) -> tuple[Indices, Indices]:
-        place = (points - corner) / cell
-        return place.real.astype(np.intp), place.imag.astype(np.intp)
-
-    size = np.max([*map(np.max, (*cells(boundary), *cells(starts)))]) + 1
-    marked = np.zeros((size, size), dtype=np.bool_)
-    marked[cells(boundary)] = True
-    marked = ndimage.binary_dilation(marked, np.ones((5, 5), dtype=np.bool_))
-    return np.asarray(marked[cells(starts)] | (lengths > cell))
-
-
-def _dense(loop: Complexes, spacing: float) -> Complexes:
-    """Return points along a closed polygon, no farther apart than `spacing`."""
-    sides = edge_vectors(loop)
-    counts = np.ceil(np.abs(sides) / spacing).astype(np.intp) + 1
-    side, place = ragged_indices(counts)
-    return loop[side] + sides[side] * (place / counts[side])
 
 
 def _refine(corners: Complexes, triangles: Indices, longest: float) -> tuple[Complexes, Indices]:

@@ -84,20 +84,20 @@ def build_morph_targets(
     """
     moments = as_reals(times, "times")
     if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
-        raise EngineError(NO_TIMES.format(times=moments))
+        raise EngineError(NO_TIMES, times=moments)
     if (np.diff(moments) <= 0).any():
         raise EngineError(TIMES_FALL)
     as_number(tolerance, "The tolerance of targets", above=0)
-    film = _Snapshots(base, OF_BASIS * tolerance)
-    film.append(times[0], film.take(sample(times[0])))
+    snapshots = _Snapshots(base, OF_BASIS * tolerance)
+    snapshots.append(times[0], snapshots.take(sample(times[0])))
     yield times[0]
     for start, end in pairwise(times):
-        yield from film.add_between(sample, start, end, OF_TIME * tolerance)
-    found = film.targets(0)
-    for rank in range(1, film.rank + 1):
+        yield from snapshots.add_between(sample, start, end, OF_TIME * tolerance)
+    found = snapshots.targets(0)
+    for rank in range(1, snapshots.rank + 1):
         if found.error <= (OF_RANK + OF_TIME) * tolerance:
             break
-        more = film.targets(rank)
+        more = snapshots.targets(rank)
         if most is not None and len(more.targets) > most:
             break
         found = more

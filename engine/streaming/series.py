@@ -80,10 +80,12 @@ class Series:
         """
         time = as_number(time, "time")
         if not 0.0 <= time <= 1.0:
-            raise EngineError(f"A series runs from time 0 to 1; {time} is outside.")
+            raise EngineError("A series runs from time 0 to 1; {time} is outside.", time=time)
         piece = self._piece_at(time)
         if piece is None:
-            raise EngineError(f"The series does not cover the time {time}; take the direct path.")
+            raise EngineError(
+                "The series does not cover the time {time}; take the direct path.", time=time
+            )
         return piece, piece.weights(time)
 
     def values(self, time: float, out: Singles | None = None) -> Singles:

@@ -69,22 +69,23 @@ def _drag(boundary: Boundary) -> Table:
     points = np.append(tips, 0.0)
     handles = Handles.place(boundary, points)
     deformer = Deformer(boundary=boundary, handles=handles, bounds=Bounds())
-    wish = handles.targets(points + 0.4 * np.exp(2j * np.arange(6)))
+    handle_targets = handles.targets(points + 0.4 * np.exp(2j * np.arange(6)))
     # The same distance, while the hand draws an arc.
     share = np.arange(1, MOVING_STEPS + 1)[:, None] / MOVING_STEPS
     arc = points + 0.4 * share * np.exp(2j * np.arange(6) + 1j * share)
     moving = _steps(deformer, [handles.targets(targets) for targets in arc])
-    resting = _steps(deformer, [wish] * DRAG_STEPS)
+    resting = _steps(deformer, [handle_targets] * DRAG_STEPS)
     state = resting[DRAG_STEPS // 2].start
-    objective = Objective(boundary=boundary, handles=handles, targets=wish)
+    objective = Objective(boundary=boundary, handles=handles, targets=handle_targets)
     jet = objective.evaluate(*state.map.columns)
     radial = objective.radial_derivatives(jet)
+    steps = _newton_steps(boundary, handles, handle_targets)
     rows = (
         *_split(deformer, moving),
         Row(
             name="certified step, the hand rests",
             seconds=_mean_step(deformer, resting),
-            note=f"mean of the first {DRAG_STEPS} towards one wish, "
+            note=f"mean of the first {DRAG_STEPS} towards the same targets, "
             f"{sum(step.end.search is not None for step in resting)} in search of rest",
         ),
         Row(name="Hessian", seconds=measure(lambda: projected_hessian(objective, jet, radial))),
@@ -99,25 +100,25 @@ def _drag(boundary: Boundary) -> Table:
         Row(
             name="minimum without bounds",
             seconds=None,
-            note=f"{_newton_steps(boundary, handles, wish)} Newton steps from the identity",
+            note=f"{steps} Newton steps from the identity",
         ),
     )
     return Table(title=f"Deformer, {len(boundary.cage)} cage vertices, 6 handles", rows=rows)
 
 
 class _Step(NamedTuple):
-    """A step of a drag, towards a wish."""
+    """A step of a drag, towards targets."""
 
     start: State
-    wish: HandleTargets
+    handle_targets: HandleTargets
     end: State
 
 
-def _steps(deformer: Deformer, wishes: Sequence[HandleTargets]) -> list[_Step]:
-    """Follow wishes with a step each."""
+def _steps(deformer: Deformer, requests: Sequence[HandleTargets]) -> list[_Step]:
+    """Follow targets with a step each."""
     steps, state = [], deformer.start()
-    for wish in wishes:
-        steps.append(_Step(state, wish, deformer.step(state, wish)))
+    for handle_targets in requests:
+        steps.append(_Step(state, handle_targets, deformer.step(state, handle_targets)))
         state = steps[-1].end
     return steps
 
@@ -125,7 +126,7 @@ def _steps(deformer: Deformer, wishes: Sequence[HandleTargets]) -> list[_Step]:
 def _mean_step(deformer: Deformer, steps: list[_Step]) -> float:
     def all_steps() -> None:
         for step in steps:
-            deformer.step(step.start, step.wish)
+            deformer.step(step.start, step.handle_targets)
 
     return measure(all_steps) / len(steps)
 
@@ -149,18 +150,18 @@ def _split(deformer: Deformer, steps: list[_Step]) -> Iterator[Row]:
             stack.enter_context(mock.patch.object(certified_step, name, function))
         start = time.process_time()
         for step in REPEATS * steps:
-            deformer.step(step.start, step.wish)
+            deformer.step(step.start, step.handle_targets)
         whole, count = time.process_time() - start, REPEATS * len(steps)
     samples = len(deformer.boundary.points)
-    note = f"mean of {len(steps)} wishes; {samples} samples"
+    note = f"mean of {len(steps)} requests; {samples} samples"
     yield Row(name="certified step, the hand moves", seconds=whole / count, note=note)
     for part, seconds in spent.items():
         yield Row(name=part, seconds=seconds / count)
     yield Row(name="  the rest of it", seconds=(whole - sum(spent.values())) / count)
 
 
-def _newton_steps(boundary: Boundary, handles: Handles, wish: HandleTargets) -> int:
-    objective = Objective(boundary=boundary, handles=handles, targets=wish)
+def _newton_steps(boundary: Boundary, handles: Handles, handle_targets: HandleTargets) -> int:
+    objective = Objective(boundary=boundary, handles=handles, targets=handle_targets)
     phi, psi = boundary.cage, np.zeros_like(boundary.cage)
     for steps in range(MOST_STEPS):
         jet = objective.evaluate(phi, psi)

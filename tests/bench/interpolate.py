@@ -82,8 +82,8 @@ class KeyframePair:
 
     def inbetweens(self, variant: Variant) -> Inbetweens:
         """Prepare the interval."""
-        passage = KeyframeBlend.of(self.keyframes, self.sheets)
-        interval = KeyframeSegment(self.sites, passage, Bounds(), transform=self.extension)
+        keyframe_blend = KeyframeBlend.of(self.keyframes, self.sheets)
+        interval = KeyframeSegment(self.sites, keyframe_blend, Bounds(), transform=self.extension)
         return prepare_inbetweens(variant, interval)
 
 
@@ -244,8 +244,8 @@ class _HoledPair:
 
         def prepared() -> Series:
             sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-            passage = KeyframeBlend.of(keyframes, sheets)
-            interval = KeyframeSegment(self.sites, passage, Bounds(), self.extension)
+            keyframe_blend = KeyframeBlend.of(keyframes, sheets)
+            interval = KeyframeSegment(self.sites, keyframe_blend, Bounds(), self.extension)
             inbetweens = prepare_inbetweens(variant, interval)
             return finish(build_series(Positions.of(inbetweens, self.sites)))
 

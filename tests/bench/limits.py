@@ -84,9 +84,9 @@ def _hard_requests(requests: list[_Request]) -> Table:
     optimal = certified = 0
     for number, request in enumerate(requests):
         deformer = request.deformer()
-        wish = deformer.handles.targets(request.targets)
+        handle_targets = deformer.handles.targets(request.targets)
         begun = time.process_time()
-        state, total = deformer.settle(deformer.start(), wish, throw=False)
+        state, total = deformer.settle(deformer.start(), handle_targets, throw=False)
         seconds.append(time.process_time() - begun)
         totals.append(total)
         last, found = state.statistics, state.outcome
@@ -95,7 +95,7 @@ def _hard_requests(requests: list[_Request]) -> Table:
         steps.append(found.steps)
         optimal += state.status in (Status.CONVERGED, Status.AT_LIMITS)
         certified += certify(state.map, request.boundary, request.bounds).is_certified
-        again, _ = deformer.settle(deformer.start(state.map), wish, throw=False)
+        again, _ = deformer.settle(deformer.start(state.map), handle_targets, throw=False)
         resumed.append(1.0 - _energy(again) / last.objective)
         if number % COMPARED == 0:
             paths.append(last.objective / _energy(_along_path(request)))
@@ -126,8 +126,10 @@ def _rows_of_bounds(requests: dict[str, _Request]) -> Table:
         energies = []
         for bounds in ROW_OF_BOUNDS:
             deformer = replace(request, bounds=bounds).deformer()
-            wish = deformer.handles.targets(request.targets)
-            energies.append(_energy(deformer.settle(deformer.start(), wish, throw=False)[0]))
+            handle_targets = deformer.handles.targets(request.targets)
+            energies.append(
+                _energy(deformer.settle(deformer.start(), handle_targets, throw=False)[0])
+            )
         rise = max(after / before - 1.0 for before, after in pairwise(energies))
         rows.append(_fact(f"largest rise of the energy, {name}", f"{max(rise, 0.0):.1e}"))
     return Table(
@@ -241,11 +243,11 @@ def _rest_after_release(request: _Request) -> float:
     for share in np.arange(1, DRAG_STEPS + 1) / DRAG_STEPS:
         row = request.points + share * (request.targets - request.points)
         state = deformer.step(state, deformer.handles.targets(row))
-    wish = deformer.handles.targets(request.targets)
+    handle_targets = deformer.handles.targets(request.targets)
     begun = time.process_time()
     seen = [(0.0, state)]
     while not state.status.is_final:
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         seen.append((time.process_time() - begun, state))
     outline = request.boundary.outline
     end = state.map(outline)

@@ -50,8 +50,11 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
     """Solve so many requests, hard and easy in turns, and yield what was found of each sort."""
     found: dict[str, list[tuple[float, int, int]]] = {}
     for number, request in enumerate(timed(requests(seed, amount))):
-        deformer, wish = request.deformer, request.deformer.handles.targets(request.targets)
-        state, tried = deformer.settle(deformer.start(), wish, throw=False)
+        deformer, handle_targets = (
+            request.deformer,
+            request.deformer.handles.targets(request.targets),
+        )
+        state, tried = deformer.settle(deformer.start(), handle_targets, throw=False)
         assert state.status in (Status.CONVERGED, Status.AT_LIMITS, Status.UNFINISHED)
         assert certify(state.map, deformer.boundary, deformer.bounds).is_certified
         assert state.steps <= MOST_STEPS
@@ -82,12 +85,14 @@ def layers(results: list[tuple[float, int, int]]) -> dict[str, float]:
 def best_known(request: Request) -> float:
     """Return the least energy that searches from every side find."""
     deformer = request.deformer
-    wish = deformer.handles.targets(request.targets)
-    objective = Objective(boundary=deformer.boundary, handles=deformer.handles, targets=wish)
+    handle_targets = deformer.handles.targets(request.targets)
+    objective = Objective(
+        boundary=deformer.boundary, handles=deformer.handles, targets=handle_targets
+    )
     rest = deformer.start().map
     least = np.inf
     for angle in ANGLES:
-        first = align_rigidly(deformer.handles, wish, rest, angle)
+        first = align_rigidly(deformer.handles, handle_targets, rest, angle)
         proven = certify(first, deformer.boundary, deformer.bounds)
         for way in (StartingPoint.REST, StartingPoint.WIDENING):
             search = begin_search(

@@ -7,12 +7,16 @@ from numpy.testing import assert_array_equal
 from scipy.sparse import csr_array
 
 from engine.arrays import (
+    ABOVE_MOST,
+    BELOW_LEAST,
     FEW_ENTRIES,
     NO_WORD,
     NOT_A_NUMBER,
+    NOT_ABOVE,
     NOT_COMPLEX,
     NOT_FINITE,
     NOT_REAL,
+    NOT_WHOLE,
     TOO_LARGE,
     as_number,
     as_points,
@@ -96,9 +100,22 @@ def test_memory_is_counted_once_and_not_what_others_hold():
     assert nbytes_of(thing, but=(thing,)) == nbytes_of() == 0
 
 
-@pytest.mark.parametrize("value", ["1", None, 1j, np.nan, np.inf, -1, 0, 5.5, np.ones(2), [1]])
-def test_number_is_refused_when_it_is_none_or_out_of_range(value) -> None:
+@pytest.mark.parametrize("value", ["1", None, 1j, np.nan, np.inf, np.ones(2), [1]])
+def test_number_is_refused_when_it_is_none(value) -> None:
     with pytest.raises(EngineError, match=says(NOT_A_NUMBER, name="Speed")):
+        as_number(value, "Speed", above=0, most=5)
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (-1, says(NOT_ABOVE, above=0.0, value=-1)),
+        (0, says(NOT_ABOVE, above=0.0, value=0)),
+        (5.5, says(ABOVE_MOST, most=5.0, value=5.5)),
+    ],
+)
+def test_number_is_refused_when_it_is_out_of_range(value, message) -> None:
+    with pytest.raises(EngineError, match=message):
         as_number(value, "Speed", above=0, most=5)
 
 
@@ -107,9 +124,10 @@ def test_number_may_be_of_any_real_type(value) -> None:
     assert as_number(value, "Speed", least=1, most=1) == 1
 
 
-def test_number_is_refused_by_its_range_in_words() -> None:
-    with pytest.raises(EngineError, match="whole number at least 1,000 and at most 2,000, not 2"):
-        as_number(2, "The count", least=1000, most=2000, is_whole=True)
+def test_number_is_refused_when_it_is_too_small_or_not_whole() -> None:
+    for value, message in ((2, says(BELOW_LEAST, least=1000)), (1000.5, says(NOT_WHOLE))):
+        with pytest.raises(EngineError, match=message):
+            as_number(value, "The count", least=1000, most=2000, is_whole=True)
 
 
 def test_reals_may_be_infinite_but_not_text() -> None:

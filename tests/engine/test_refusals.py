@@ -122,6 +122,6 @@ def test_extension_takes_points_of_the_boundary():
 
 
 def test_handles_are_held_by_whole_numbers_of_any_type():
-    wish = handles().targets([0j, 1], None, [BoundedPull(np.array([0]))])
-    assert wish.pulls is not None
+    handle_targets = handles().targets([0j, 1], None, [BoundedPull(np.array([0]))])
+    assert handle_targets.pulls is not None
     assert Deformer(boundary=boundary(), handles=handles(), bounds=Bounds()).start() is not None

@@ -5,6 +5,7 @@ import shapely
 from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Floats
+from engine.domain.mask.parts import WholePiece
 from engine.domain.outline.enclosure import Enclosure
 from engine.geometry import Hole
 from engine.geometry.polygon import (
@@ -18,6 +19,11 @@ from engine.geometry.polygon import (
 )
 
 SPECK = 2e-4
+
+
+def notices_of(enclosure: Enclosure | WholePiece) -> tuple[str, ...]:
+    """The notices of an outline or a piece, in words."""
+    return tuple(map(str, enclosure.notices))
 
 
 def check_cage(outline: Complexes, cage: Complexes) -> None:

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.baseline import Baseline
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
@@ -13,7 +14,6 @@ from app.document.queries.pose_tangents import adjacent_segments, pose_segments
 from app.document.settings import FrameRange
 from app.document.timing.easing import HOLD
 from engine.arrays import Booleans, Floats, freeze
-from engine.variant import Baseline
 
 SAME_TARGET_DISTANCE = 0.5  # pixels between two targets that count as equal
 

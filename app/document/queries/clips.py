@@ -3,12 +3,12 @@
 from dataclasses import dataclass, fields
 from operator import attrgetter
 
+from app.baseline import Baseline
 from app.document.keyframe import Handle, Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
 from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
-from engine.variant import Baseline
 
 # Fields of a layer, and of its handles, that do not affect its motion. All other fields do.
 UNMOVING = {

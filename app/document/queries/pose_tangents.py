@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.baseline import Baseline
 from app.document.keyframe import Keyframe
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
@@ -15,7 +16,6 @@ from app.document.queries.tangents import KeyTangent, TangentSegment, stop_facto
 from app.document.settings import FrameRange
 from app.document.timing.tangent_mode import TangentMode
 from engine.interpolation import InteriorKnot, support_of
-from engine.variant import Baseline
 
 # Pixels. Maps whose coefficients differ less are visually equal: the solver reproduces a pose only
 # to this accuracy.

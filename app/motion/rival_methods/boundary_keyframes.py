@@ -103,7 +103,9 @@ def discrete_harmonic(domain: TriangulatedDomain, positions: npt.ArrayLike) -> C
     found = as_points(positions, "positions").copy()
     if len(found) != len(domain.points):
         raise EngineError(
-            f"{len(domain.points)} vertices need as many positions, not {len(found)}."
+            "{count} vertices need as many positions, not {given}.",
+            count=len(domain.points),
+            given=len(found),
         )
     inner, outer = np.flatnonzero(~domain.border), np.flatnonzero(domain.border)
     if len(inner):
@@ -117,8 +119,11 @@ def _checked_targets(values: npt.ArrayLike, number: int, outline: Complexes) -> 
     targets = as_points(values, f"The boundary of keyframe {number}")
     if len(targets) != len(outline):
         raise EngineError(
-            f"The boundary of keyframe {number} has {len(targets)} places, but the outline "
-            f"{len(outline)} vertices."
+            "The boundary of keyframe {number} has {count} places, but the outline "
+            "{vertices} vertices.",
+            number=number,
+            count=len(targets),
+            vertices=len(outline),
         )
     return targets
 

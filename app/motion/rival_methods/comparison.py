@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from app.baseline import Baseline
 from app.document import Clip, keyed_pose_at, segment_keys, segment_time_at
 from app.motion.rival_methods.mesh_keyframes import MeshFrame, MeshInbetweens
 from app.motion.rival_methods.preparation import prepare_baseline
 from engine.domain import MeshedDomain
-from engine.variant import Baseline
 
 
 class MemoizedFrames:

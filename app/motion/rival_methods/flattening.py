@@ -36,7 +36,8 @@ class Flattening:
     place : intp, shape (n,)
         Index of each vertex among the inner ones; −1 on the border.
     hinges : intp, shape (m, 2)
-        The half-edge that joins each triangle to its parent in the tree of triangles, and its twin.
+        The half-edge that joins each triangle to its parent in the tree of triangles, and its
+        counterpart.
     reached : intp, shape (n,)
         A half-edge between each vertex and its parent in the tree of vertices.
     forward : bool, shape (n,)
@@ -60,10 +61,10 @@ class Flattening:
             If the mesh has holes: around them a flat metric need not close.
         """
         if domain.loops > 1:
-            count = domain.loops - 1
             raise EngineError(
-                f"This mesh has {count} {'hole' if count == 1 else 'holes'}; the method of Chen et "
-                "al. (2013) is for meshes without. Choose another."
+                "This mesh has holes: {count}. The method of Chen et al. (2013) is for meshes "
+                "without holes; choose another method.",
+                count=domain.loops - 1,
             )
         inner = np.flatnonzero(~domain.border)
         place = np.full(len(domain.points), -1)
@@ -79,7 +80,9 @@ class Flattening:
         )
 
     def flatten(self, lengths: Floats) -> tuple[Complexes, float]:
-        """Lay a metric out in the plane, given by the lengths (m, 3) of half-edges, equal in twins.
+        """Lay a metric out in the plane, given by the lengths (m, 3) of half-edges.
+
+        The lengths of counterparts are equal.
 
         Returns
         -------
@@ -148,9 +151,9 @@ class Flattening:
         turned = np.pi - angles
         turned[:, 0] = 0.0
         own = np.cumsum(turned, axis=1).ravel()
-        hinge, twin = self.hinges.T
-        # Twins lead in opposite directions.
-        steps = np.where(hinge == twin, 0.0, own[twin] + np.pi - own[hinge])
+        hinge, counterpart = self.hinges.T
+        # Counterparts lead in opposite directions.
+        steps = np.where(hinge == counterpart, 0.0, own[counterpart] + np.pi - own[hinge])
         direction = self.domain.crossings.sums(steps)
         edges = lengths.ravel() * np.exp(1j * (np.repeat(direction, 3) + own))
         ways = np.where(self.forward, edges[self.reached], -edges[self.reached])
@@ -188,12 +191,12 @@ def _angles(lengths: Floats) -> tuple[Floats, Floats]:
 
 def _hinges(domain: TriangulatedDomain) -> Indices:
     """Return the half-edges that join triangles to their parents; for the root twice its first."""
-    twins = np.concatenate([domain.twins, domain.twins[:, ::-1]])
-    child, parent = (twins // 3).T
+    counterparts = np.concatenate([domain.counterparts, domain.counterparts[:, ::-1]])
+    child, parent = (counterparts // 3).T
     root = domain.crossings.order[0]
     hinges = np.full((len(domain.areas), 2), 3 * root)
     used = (domain.crossings.parent[child] == parent) & (child != root)
-    hinges[child[used]] = twins[used]
+    hinges[child[used]] = counterparts[used]
     return hinges
 
 

@@ -75,7 +75,11 @@ def require_holomorphic(maps: Sequence[HarmonicMap], boundary: Boundary) -> None
         if k[worst] > HOLOMORPHIC:
             z = boundary.points[worst]
             raise EngineError(
-                f"Keyframe {number} is not holomorphic: at ({z.real:.6g}, {z.imag:.6g}) its "
-                f"conformal distortion k is {k[worst]:.3g}, and must be 0. Conformal interpolation "
-                "is for conformal keyframes; choose another method."
+                "Keyframe {number} is not holomorphic: at ({x:.6g}, {y:.6g}) its conformal "
+                "distortion k is {k:.3g}, and must be 0. Conformal interpolation is for "
+                "conformal keyframes; choose another method.",
+                number=number,
+                x=z.real,
+                y=z.imag,
+                k=k[worst],
             )

@@ -112,7 +112,7 @@ def mesh_keyframes(
     which is the same for the triangles on both sides. Around a hole the sum may be a whole turn.
     """
     if len(positions) < 2:
-        raise EngineError(TWO_KEYFRAMES.format(count=len(positions)))
+        raise EngineError(TWO_KEYFRAMES, count=len(positions))
     checked = [_checked(domain, each, number) for number, each in enumerate(positions)]
     derivatives = [domain.derivatives(each) for each in checked]
     for number, (each, (fz, fzbar)) in enumerate(zip(checked, derivatives, strict=True)):
@@ -164,9 +164,7 @@ def _require_unwound(
     if len(wound):
         at = domain.points[domain.corners[one[wound[0]]]].mean()
         raise EngineError(
-            WINDS.format(
-                number=number, x=at.real, y=at.imag, turns=abs(rest[wound[0]]) / (2 * np.pi)
-            )
+            WINDS, number=number, x=at.real, y=at.imag, turns=abs(rest[wound[0]]) / (2 * np.pi)
         )
 
 
@@ -174,8 +172,11 @@ def _checked(domain: TriangulatedDomain, values: npt.ArrayLike, number: int) -> 
     positions = as_points(values, f"The positions of keyframe {number}")
     if len(positions) != len(domain.points):
         raise EngineError(
-            f"Keyframe {number} has {len(positions)} points, but the triangles are of "
-            f"{len(domain.points)}; all keyframes must have the same triangles."
+            "Keyframe {number} has {count} points, but the triangles are of {points}; all "
+            "keyframes must have the same triangles.",
+            number=number,
+            count=len(positions),
+            points=len(domain.points),
         )
     return positions
 
@@ -188,9 +189,15 @@ def _require_unfolded(
     if sigma_b[worst] <= 0:
         at = domain.points[domain.corners[worst]].mean()
         raise EngineError(
-            f"Keyframe {number} folds: triangle {worst}, at ({at.real:.6g}, {at.imag:.6g}) of the "
-            f"domain, is turned over ({np.count_nonzero(sigma_b <= 0)} of {len(sigma_b)} are). "
-            "Pose it again without folds; of a harmonic map, take smaller triangles."
+            "Keyframe {number} folds: triangle {triangle}, at ({x:.6g}, {y:.6g}) of the "
+            "domain, is turned over ({count} of {all} are). Pose it again without folds; "
+            "of a harmonic map, take smaller triangles.",
+            number=number,
+            triangle=worst,
+            x=at.real,
+            y=at.imag,
+            count=np.count_nonzero(sigma_b <= 0),
+            all=len(sigma_b),
         )
     a, b, c = positions[domain.corners.T]
     angles = np.angle([(c - a) / (b - a), (a - b) / (c - b), (b - c) / (a - c)])
@@ -198,6 +205,8 @@ def _require_unfolded(
     double = np.flatnonzero(~domain.border & (np.abs(around - 2 * np.pi) > 1.0))
     if len(double):
         raise EngineError(
-            f"Keyframe {number} folds: the triangles around point {double[0]} lie over each other. "
-            "Pose it again without folds."
+            "Keyframe {number} folds: the triangles around point {point} lie over each "
+            "other. Pose it again without folds.",
+            number=number,
+            point=double[0],
         )

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy.typing as npt
 
+from app.baseline import Baseline
 from app.motion.rival_methods.arap import ArapInbetweens
 from app.motion.rival_methods.blended_metric import FlatInbetweens
 from app.motion.rival_methods.ffmp import FfmpInbetweens
@@ -30,7 +31,6 @@ from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, Domain, diameter, require_inside
 from engine.interpolation import Variant, prepare, require_keyframes, segment_at
 from engine.maps import Boundary, Bounds, HarmonicMap
-from engine.variant import Baseline
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -120,7 +120,9 @@ def prepare_baseline(
     if baseline.needs_maps:
         maps = _maps_over_one_cage(baseline, around)
         if border is None:
-            raise EngineError(f"The method {baseline} needs the domain's outline.")
+            raise EngineError(
+                "The method {baseline} needs the domain's outline.", baseline=baseline
+            )
         boundary = Boundary.sample(Domain(border, maps[0].cage, maps[0].holes))
         if baseline is Baseline.HANDLES:
             intervals = _by_handles(domain, boundary, maps, handles, bounds)
@@ -198,8 +200,9 @@ def _maps_over_one_cage(
     maps = [each for each in keyframes if isinstance(each, HarmonicMap)]
     if len(maps) < len(keyframes):
         raise EngineError(
-            f"The method {baseline} is for keyframes that are harmonic maps; positions of a mesh "
-            "do not do. Choose another method."
+            "The method {baseline} is for keyframes that are harmonic maps; positions of a "
+            "mesh do not do. Choose another method.",
+            baseline=baseline,
         )
     require_keyframes(maps)
     return maps
@@ -210,4 +213,6 @@ def _known_baseline(baseline: Baseline | str) -> Baseline:
         return Baseline(baseline)
     except ValueError:
         names = ", ".join(Baseline)
-        raise EngineError(f"There is no method {baseline!r}; there are {names}.") from None
+        raise EngineError(
+            "There is no method {baseline!r}; there are {names}.", baseline=baseline, names=names
+        ) from None

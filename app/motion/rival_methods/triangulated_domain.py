@@ -66,7 +66,7 @@ class TriangulatedDomain:
     gradient : complex128, sparse, shape (m, n)
         ∂φ_j/∂z of the hat functions: its product with the positions of the vertices is f_z of each
         triangle, and that of its conjugate is f_z̄.
-    twins : intp, shape (e, 2)
+    counterparts : intp, shape (e, 2)
         The two half-edges of each inner edge; number 3 t + k leads from corner k of triangle t to
         its next.
     border : bool, shape (n,)
@@ -84,7 +84,7 @@ class TriangulatedDomain:
     mesh: Mesh
     areas: Floats
     gradient: csr_array
-    twins: Indices
+    counterparts: Indices
     border: Booleans
     loops: int
     anchor: int
@@ -113,8 +113,8 @@ class TriangulatedDomain:
         points = as_points(points, "points", at_least=3)
         corners = _oriented(points, _as_corners(triangles, len(points)))
         mesh = Mesh(vertices=points, triangles=corners.astype(np.int32))
-        edges, sides, twins = _adjacency(corners)
-        pairs = twins // 3
+        edges, sides, counterparts = _adjacency(corners)
+        pairs = counterparts // 3
         _require_whole(corners, pairs, len(points))
         areas = mesh.areas()
         border = np.zeros(len(points), dtype=np.bool_)
@@ -125,7 +125,7 @@ class TriangulatedDomain:
             mesh=mesh,
             areas=freeze(areas),
             gradient=_gradient(points, corners, areas),
-            twins=freeze(twins),
+            counterparts=freeze(counterparts),
             border=freeze(border),
             # Euler: V − E + F = 2 − (loops), for a plane mesh without its outside.
             loops=2 - (len(points) - len(edges) + len(corners)),
@@ -146,7 +146,7 @@ class TriangulatedDomain:
     @property
     def pairs(self) -> Indices:
         """The two triangles at each inner edge, intp (e, 2)."""
-        return self.twins // 3
+        return self.counterparts // 3
 
     def derivatives(self, positions: Complexes) -> tuple[Complexes, Complexes]:
         """Return f_z and f_z̄ (m,) of the piecewise linear map to positions (n,)."""
@@ -194,14 +194,15 @@ def _as_corners(triangles: npt.ArrayLike, count: int) -> Indices:
     corners = np.asarray(triangles)
     if corners.ndim != 2 or corners.shape[1] != 3 or corners.dtype.kind not in "iu":
         raise EngineError(
-            f"triangles must be integers of shape (t, 3), not {corners.dtype} of shape "
-            f"{corners.shape}."
+            "triangles must be integers of shape (t, 3), not {dtype} of shape {shape}.",
+            dtype=corners.dtype,
+            shape=corners.shape,
         )
     if not len(corners):
         raise EngineError("A mesh needs at least one triangle; there is none.")
     if corners.min() < 0 or corners.max() >= count:
         raise EngineError(
-            MESH_POINTS.format(smallest=corners.min(), largest=corners.max(), last=count - 1)
+            MESH_POINTS, smallest=corners.min(), largest=corners.max(), last=count - 1
         )
     return corners.astype(np.intp)
 
@@ -213,44 +214,51 @@ def _oriented(points: Complexes, corners: Indices) -> Indices:
     longest = np.max(np.abs([b - a, c - b, a - c]), axis=0)
     flat = np.flatnonzero(np.abs(areas) <= FLAT * longest**2)
     if len(flat):
-        raise EngineError(f"Triangle {flat[0]} of the domain is flat; leave it out.")
+        raise EngineError(
+            "Triangle {triangle} of the domain is flat; leave it out.", triangle=flat[0]
+        )
     clockwise = areas < 0
     if clockwise.all():
         return corners[:, ::-1]
     if clockwise.any():
         rarer = clockwise if 2 * clockwise.sum() <= len(corners) else ~clockwise
         raise EngineError(
-            f"Triangle {np.flatnonzero(rarer)[0]} of the domain is turned over against the others: "
-            "the domain folds there. Give a mesh whose triangles all run the same way round."
+            "Triangle {triangle} of the domain is turned over against the others: the "
+            "domain folds there. Give a mesh whose triangles all run the same way round.",
+            triangle=np.flatnonzero(rarer)[0],
         )
     return corners
 
 
 def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
     """Return all edges (e, 2), those on the border (b, 2), and the half-edges of inner ones."""
-    edges, numbers, twins = sides_of(corners)
+    edges, numbers, counterparts = sides_of(corners)
     shared = np.bincount(numbers.ravel())
     if shared.max() > 2:
         first, second = edges[shared.argmax()]
         raise EngineError(
-            f"The edge from point {first} to point {second} is in {shared.max()} triangles; an "
-            "edge of a plane mesh is in one or two."
+            "The edge from point {first} to point {second} is in {count} triangles; an "
+            "edge of a plane mesh is in one or two.",
+            first=first,
+            second=second,
+            count=shared.max(),
         )
-    return edges, edges[shared == 1], twins
+    return edges, edges[shared == 1], counterparts
 
 
 def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
     """Raise an `EngineError` for points without triangles, and for triangles in several pieces."""
     unused = np.flatnonzero(np.bincount(corners.ravel(), minlength=count) == 0)
     if len(unused):
-        raise EngineError(f"Point {unused[0]} is in no triangle; leave it out.")
+        raise EngineError("Point {point} is in no triangle; leave it out.", point=unused[0])
     graph = csr_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(corners),) * 2)
     pieces, number = connected_components(graph, directed=False)
     if pieces > 1:
         apart = np.flatnonzero(number != number[0])[0]
         raise EngineError(
-            f"Triangle {apart} is not joined to triangle 0 by common edges; give a mesh of one "
-            "piece."
+            "Triangle {triangle} is not joined to triangle 0 by common edges; give a mesh "
+            "of one piece.",
+            triangle=apart,
         )
 
 
@@ -272,6 +280,6 @@ def _nearest(points: Complexes, anchor: npt.ArrayLike) -> int:
     place = as_points(np.ravel(anchor), "anchor")
     if len(place) != 1:
         raise EngineError(
-            f"One anchor is needed, not {len(place)}; leave it out to have one found."
+            "One anchor is needed, not {count}; leave it out to have one found.", count=len(place)
         )
     return int(np.abs(points - place[0]).argmin())

@@ -63,9 +63,9 @@ def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
     ]
     vertices = np.concatenate(fine)
     triangles = constrained_delaunay(fine[0], fine[1:])
-    _, _, twins = sides_of(triangles)
+    _, _, counterparts = sides_of(triangles)
     is_shared = np.zeros(triangles.size, dtype=np.bool_)
-    is_shared[twins] = True
+    is_shared[counterparts] = True
     places = _between_shared_sides(vertices[triangles], is_shared.reshape(-1, 3))
     radii = distance_to_boundary(loops[0], places, loops[1:])
     centres, apart = _circumcircles(vertices[triangles])
@@ -74,7 +74,9 @@ def medial_axis(loops: Sequence[Complexes]) -> MedialAxis:
     is_empty = depth >= EMPTY * apart[inside]
     places[inside[is_empty]], radii[inside[is_empty]] = centres[inside[is_empty]], depth[is_empty]
     sides = np.roll(vertices[triangles], -1, 1) - vertices[triangles]
-    return MedialAxis(places, radii, twins // 3, np.abs(sides.ravel()[twins[:, 0]]) / 2)
+    return MedialAxis(
+        places, radii, counterparts // 3, np.abs(sides.ravel()[counterparts[:, 0]]) / 2
+    )
 
 
 def _between_shared_sides(corners: Complexes, is_shared: Booleans) -> Complexes:

@@ -83,15 +83,17 @@ def fit_keys(
     where = as_points(places, "Recorded places", most=FARTHEST)
     if when.shape != where.shape or not len(where):
         raise EngineError(
-            f"A recording has a time for each place and at least one, not {when.shape} times and "
-            f"{len(where)} places."
+            "A recording has a time for each place and at least one, not {times} times and "
+            "{count} places.",
+            times=when.shape,
+            count=len(where),
         )
     if not np.isfinite(when).all():
         raise EngineError("The times of a recording must be finite.")
     if (np.diff(when) < 0).any():
         raise EngineError("The times of a recording must not go back.")
     if np.abs(when).max() > LATEST or when[-1] - when[0] > MOST_FRAMES:
-        raise EngineError(TOO_LONG.format(most=MOST_FRAMES, first=when[0], last=when[-1]))
+        raise EngineError(TOO_LONG, most=MOST_FRAMES, first=when[0], last=when[-1])
     as_number(tolerance, TOLERANCE, least=0)
     is_last = np.append(np.diff(when) > 0, True)
     when, where = _filled(when[is_last], where[is_last])

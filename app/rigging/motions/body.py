@@ -12,6 +12,7 @@ from engine.arrays import as_points
 from engine.errors import EngineError
 
 JOINTS_MEET = "The joints {one} and {other} are at one place; move them apart."
+JOINTS_MISSING = "{what} needs {joints} of {kind!r}."
 NO_BOX = "The box of a body leads from {low} to {high}, and has no width or no height."
 SIDES = {"L": "R", "R": "L"}
 
@@ -62,11 +63,11 @@ class Body:
         as_points(list(joints.values()), "The joints of a body")
         for name, parent in parents.items():
             if parent and joints[name] == joints[parent]:
-                raise EngineError(JOINTS_MEET.format(one=parent, other=name))
+                raise EngineError(JOINTS_MEET, one=parent, other=name)
         low, high = as_points(self.box, "The corners of a body's box").tolist()
         is_flat = not (low.real < high.real and low.imag < high.imag)
         if is_flat and not self.kind.parents:
-            raise EngineError(NO_BOX.format(low=low, high=high))
+            raise EngineError(NO_BOX, low=low, high=high)
         object.__setattr__(self, "joints", MappingProxyType(joints))
         object.__setattr__(self, "parents", MappingProxyType(parents))
 
@@ -74,7 +75,9 @@ class Body:
         """Raise an `EngineError` if a joint that `what` needs is missing."""
         missing = [name for name in names if name not in self.joints]
         if missing:
-            raise EngineError(f"{what} needs {', '.join(missing)} of {self.kind.name!r}")
+            raise EngineError(
+                JOINTS_MISSING, what=what, joints=", ".join(missing), kind=self.kind.name
+            )
 
     def mirrored(self) -> Self:
         """Return the body with its sides swapped, facing the other way."""

@@ -8,5 +8,9 @@ from engine.errors import EngineError
 def find_motion(name: str) -> Motion:
     """Return the motion with this name; raise an `EngineError` if there is none."""
     if name not in MOTIONS:
-        raise EngineError(f"there is no motion {name!r}; the motions are {', '.join(MOTIONS)}")
+        raise EngineError(
+            "There is no motion {name!r}; the motions are {motions}.",
+            name=name,
+            motions=", ".join(MOTIONS),
+        )
     return MOTIONS[name]

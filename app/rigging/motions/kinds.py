@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from app.texts import _
 from engine.errors import EngineError
 
 _TRUNK = {"hips": "", "chest": "hips", "neck": "chest", "head": "neck", "tail": "hips"}
@@ -71,8 +72,16 @@ class BodyKind:
         """Raise an `EngineError` for a joint that the kind does not have."""
         for joint in joints:
             if joint not in self.parents:
-                known = ", ".join(self.parents) or "none: it moves as a whole"
-                raise EngineError(f"{self.name!r} has no joint {joint!r}; it has {known}")
+                if not self.parents:
+                    raise EngineError(
+                        "{kind!r} moves as a whole; it has no joints.", kind=self.name
+                    )
+                raise EngineError(
+                    "{kind!r} has no joint {joint!r}; its joints are {joints}.",
+                    kind=self.name,
+                    joint=joint,
+                    joints=", ".join(self.parents),
+                )
 
 
 _LOWER_ARMS = ("elbow.L", "hand.L", "elbow.R", "hand.R")
@@ -81,36 +90,38 @@ _ALWAYS = ("hips", "chest", "head", *_ARMS, *_LEGS)
 
 BIPED_FRONT = BodyKind(
     name="biped-front",
-    label="Two legs, from the front",
-    hint="A person, a robot, a bear that stands",
+    label=_("Two legs, from the front"),
+    hint=_("A person, a robot, a bear that stands"),
     parents=_BODY,
     usual=_ALWAYS,
 )
 BIPED_SIDE = BodyKind(
     name="biped-side",
-    label="Two legs, from the side",
-    hint="A person, a bird, a kangaroo",
+    label=_("Two legs, from the side"),
+    hint=_("A person, a bird, a kangaroo"),
     parents=_BODY,
     usual=("hips", "chest", "head", *_LOWER_ARMS, *_LOWER_LEGS),
 )
 FOUR_LEGS = BodyKind(
     name="four-legs",
-    label="Four legs, from the side",
-    hint="A horse, a dog, a lizard",
+    label=_("Four legs, from the side"),
+    hint=_("A horse, a dog, a lizard"),
     parents=_BODY,
     usual=("hips", "chest", "head", "tail", *_LOWER_ARMS, *_LOWER_LEGS),
 )
 CHAIN = BodyKind(
     name="chain",
-    label="A chain",
-    hint="A snake, a fish, a tail, a scarf: from the end that leads, or is held, to the other one",
+    label=_("A chain"),
+    hint=_(
+        "A snake, a fish, a tail, a scarf: from the end that leads, or is held, to the other one"
+    ),
     parents=_LINKS,
     usual=("joint.1", "joint.2", "joint.3", "joint.4", "joint.5", "joint.6", "joint.7"),
 )
 ANYTHING = BodyKind(
     name="anything",
-    label="Anything else",
-    hint="A ghost, a tree, a teapot: it moves as a whole, without joints",
+    label=_("Anything else"),
+    hint=_("A ghost, a tree, a teapot: it moves as a whole, without joints"),
     parents=MappingProxyType({}),
     usual=(),
 )
@@ -128,5 +139,7 @@ KINDS: Mapping[str, BodyKind] = MappingProxyType(
 def find_kind(name: str) -> BodyKind:
     """Return the kind with this name; raise an `EngineError` if there is none."""
     if name not in KINDS:
-        raise EngineError(f"there is no kind {name!r}; the kinds are {', '.join(KINDS)}")
+        raise EngineError(
+            "There is no kind {name!r}; the kinds are {kinds}.", name=name, kinds=", ".join(KINDS)
+        )
     return KINDS[name]

@@ -52,13 +52,13 @@ class LimbMotion(MotionTemplate):
 class _LimbInstance(MotionInstance):
     """Rotating joints and stepping feet of one body."""
 
-    def __init__(self, course: LimbMotion, body: Body, parameters: Parameters) -> None:
-        self.template, self.body, self.parameters = course, body, parameters
-        gait = course.gait or STANDING
+    def __init__(self, template: LimbMotion, body: Body, parameters: Parameters) -> None:
+        self.template, self.body, self.parameters = template, body, parameters
+        gait = template.gait or STANDING
         self.steps = FootSteps(body, gait, parameters)
         self.hips = next(iter(body.joints))
         # A motion of one side is done by the other side if the first side is missing.
-        self.is_first_side = not course.either or course.either[0] in body.joints
+        self.is_first_side = not template.either or template.either[0] in body.joints
         tall = (body.box[1] - body.box[0]).imag
         self.reach = self.steps.reach or tall / 3
         self.lowered = STEADY
@@ -106,9 +106,9 @@ class _LimbInstance(MotionInstance):
 
     def _trunk_and_arms(self, phase: float) -> tuple[dict[str, complex], dict[str, float]]:
         """Return the positions of all joints that no step moves, and their bones' rotations."""
-        body, course = self.body, self.template
+        body, template = self.body, self.template
         amount = self.parameters.size * self.parameters.energy * self.reach
-        moved = body.facing * course.shift(phase) + 1j * course.rise(phase)
+        moved = body.facing * template.shift(phase) + 1j * template.rise(phase)
         height = self.steps.raised - self.lowered(phase)
         places = {self.hips: body.joints[self.hips] + amount * moved + 1j * height}
         turned = {self.hips: self._turn(self.hips, phase)}
@@ -123,15 +123,15 @@ class _LimbInstance(MotionInstance):
 
     def _turn(self, name: str, phase: float) -> float:
         """Return the rotation of a joint's bone against its parent bone, in radians."""
-        course, kept = self.template, without_side(name)
+        template, kept = self.template, without_side(name)
         has_side = kept != name
-        late = course.lag if name.endswith(".R") else 0.0
-        curve = course.turns.get(kept)
+        late = template.lag if name.endswith(".R") else 0.0
+        curve = template.turns.get(kept)
         if curve is None and self.body.kind.name != "biped-front":
-            curve = course.leans.get(kept)
+            curve = template.leans.get(kept)
         alone = name if self.is_first_side else other_side(name)
-        if alone in course.single:
-            curve, late = course.single[alone], 0.0
+        if alone in template.single:
+            curve, late = template.single[alone], 0.0
         if curve is None:
             return 0.0
         way = self.body.facing

@@ -39,10 +39,16 @@ class Parameters:
         for name, (least, most) in RANGES.items():
             value = getattr(self, name)
             if not least <= value <= most:
-                raise EngineError(f"{name} is from {least:g} to {most:g}, not {value:g}")
+                raise EngineError(
+                    "{name} must be from {least:g} to {most:g}, not {value:g}.",
+                    name=name,
+                    least=least,
+                    most=most,
+                    value=value,
+                )
         if not 0 <= self.start < 1:
             raise EngineError(
-                f"start is a share of the cycle, from 0 to below 1, not {self.start:g}"
+                "start is a share of the cycle, from 0 to below 1, not {start:g}.", start=self.start
             )
 
 
@@ -105,13 +111,17 @@ class Motion:
     @property
     def can_travel(self) -> bool:
         """Whether its steps move the body forward."""
-        return any(course.can_travel for course in self.templates.values())
+        return any(template.can_travel for template in self.templates.values())
 
     def template_for(self, kind: str) -> MotionTemplate:
         """Return the template for bodies of a kind; raise an `EngineError` if there is none."""
         if kind not in self.templates:
-            fitting = " or ".join(repr(each) for each in self.templates)
-            raise EngineError(f"{self.name!r} is a motion of {fitting}, and not of {kind!r}")
+            raise EngineError(
+                "{motion!r} is not a motion of {kind!r}; it fits these kinds: {kinds}.",
+                motion=self.name,
+                kinds=", ".join(self.templates),
+                kind=kind,
+            )
         return self.templates[kind]
 
     def frames(self, parameters: Parameters, fps: float) -> int:
@@ -134,14 +144,14 @@ class Motion:
         """
         for share in shares:
             as_number(share, "A share of a motion's cycle")
-        course = self.template_for(body.kind.name)
-        if parameters.travel and not course.can_travel:
-            raise EngineError(f"{self.name!r} has no steps to travel by")
+        template = self.template_for(body.kind.name)
+        if parameters.travel and not template.can_travel:
+            raise EngineError("{motion!r} has no steps; leave out travel.", motion=self.name)
         body = body.mirrored() if parameters.mirrored else body
-        body.require_joints(course.needed, f"{self.name!r}")
-        if course.either and not any(name in body.joints for name in course.either):
-            body.require_joints(course.either[:1], f"{self.name!r}")
-        performed = course.instantiate(body, parameters)
+        body.require_joints(template.needed, f"{self.name!r}")
+        if template.either and not any(name in body.joints for name in template.either):
+            body.require_joints(template.either[:1], f"{self.name!r}")
+        performed = template.instantiate(body, parameters)
         ways = [share * performed.stride if parameters.travel else 0.0 for share in shares]
         moments = [performed.pose_at((share + parameters.start) % 1.0) for share in shares]
         if parameters.mirrored:

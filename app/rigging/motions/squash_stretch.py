@@ -29,18 +29,18 @@ class SquashStretch(MotionTemplate):
 
 
 class _SquashStretchInstance(MotionInstance):
-    def __init__(self, course: SquashStretch, body: Body, parameters: Parameters) -> None:
-        self.template, self.body, self.parameters = course, body, parameters
+    def __init__(self, template: SquashStretch, body: Body, parameters: Parameters) -> None:
+        self.template, self.body, self.parameters = template, body, parameters
         low, high = body.box
         self.tall = (high - low).imag
         self.base = complex((low + high).real / 2, low.imag)
 
     def pose_at(self, phase: float) -> JointPose:
-        course, size = self.template, self.parameters.size
-        stretch = 1 + size * self.parameters.energy * course.stretch(phase)
-        swell = size * course.swell(phase)
-        rise = size * self.tall * course.rise(phase)
-        lean = -self.body.facing * size * math.radians(course.lean(phase))
+        template, size = self.template, self.parameters.size
+        stretch = 1 + size * self.parameters.energy * template.stretch(phase)
+        swell = size * template.swell(phase)
+        rise = size * self.tall * template.rise(phase)
+        lean = -self.body.facing * size * math.radians(template.lean(phase))
         places, standing = {}, set()
         for name, place in self.body.joints.items():
             beside = place - self.base

@@ -24,24 +24,24 @@ class Wave(MotionTemplate):
 
 
 class _WaveInstance(MotionInstance):
-    def __init__(self, course: Wave, body: Body, parameters: Parameters) -> None:
-        self.template, self.parameters, self.facing = course, parameters, body.facing
+    def __init__(self, template: Wave, body: Body, parameters: Parameters) -> None:
+        self.template, self.parameters, self.facing = template, parameters, body.facing
         self.names = tuple(body.joints)
         self.rest = tuple(body.joints.values())
 
     def pose_at(self, phase: float) -> JointPose:
-        course, links = self.template, len(self.rest) - 1
-        most = self.facing * math.radians(course.degrees) * self.parameters.size
+        template, links = self.template, len(self.rest) - 1
+        most = self.facing * math.radians(template.degrees) * self.parameters.size
         # The amplitude grows towards the tip, faster with more energy.
-        growth = (1 - course.first) * self.parameters.energy
+        growth = (1 - template.first) * self.parameters.energy
         places = [self.rest[0]]
         for number in range(links):
             share = number / max(1, links - 1)
-            swing = most * (course.first + growth * share)
-            turn = swing * math.sin(math.tau * (phase - course.waves * share))
+            swing = most * (template.first + growth * share)
+            turn = swing * math.sin(math.tau * (phase - template.waves * share))
             bone = self.rest[number + 1] - self.rest[number]
             places.append(places[-1] + bone * cmath.exp(1j * turn))
-        if not course.held:
+        if not template.held:
             off = sum(a - b for a, b in zip(self.rest, places, strict=True)) / len(places)
             places = [place + off for place in places]
         return JointPose(dict(zip(self.names, places, strict=True)), {}, frozenset())

@@ -137,7 +137,7 @@ def solve_correction(
         at = problem.state(start.x, start.shift)
     found = problem.solve_steps(at)
     if throw and not found.is_finished:
-        raise EngineError(UNFINISHED.format(steps=found.steps, miss=found.target_errors.max()))
+        raise EngineError(UNFINISHED, steps=found.steps, miss=found.target_errors.max())
     return found
 
 
@@ -151,7 +151,7 @@ def _require_targets(targets: PointTargets, count: int) -> None:
         ("give", targets.compliances, targets.compliances is None or targets.compliances >= 0),
     ):
         if values is not None and (len(values) != count or not np.all(fits)):
-            raise EngineError(BAD_TARGETS.format(name=name, count=count, values=values))
+            raise EngineError(BAD_TARGETS, name=name, count=count, values=values)
 
 
 class _State(NamedTuple):

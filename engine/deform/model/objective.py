@@ -209,8 +209,8 @@ class Objective:
 
     def rotation_errors(self, jet: Evaluation) -> Floats:
         """Return the rotation errors of these handles in radians, float64 (t,)."""
-        wished = np.exp(-1j * self.targets.rotations[self.rotation_constraints])
-        angles: Floats = np.angle(jet.fz[self.rotation_constraints] * wished)
+        back = np.exp(-1j * self.targets.rotations[self.rotation_constraints])
+        angles: Floats = np.angle(jet.fz[self.rotation_constraints] * back)
         return angles
 
     def rotation_frames(self, jet: Evaluation, *, removed: bool = False) -> list[Complexes]:

@@ -34,7 +34,7 @@ def copy_nearest_stiffness(
     corners, ends = np.concatenate(loops), loop_ends(loops)
     stiffness = as_reals(stiffness, "stiffness")
     if stiffness.shape != corners.shape or not ((stiffness > 0) & np.isfinite(stiffness)).all():
-        raise EngineError(NO_STIFFNESS.format(count=len(corners), stiffness=stiffness))
+        raise EngineError(NO_STIFFNESS, count=len(corners), stiffness=stiffness)
     starts = np.cumsum([0, *map(len, loops[:-1])])
     following = next_on_loop(starts, len(corners))
     both = np.column_stack([corners, ends])

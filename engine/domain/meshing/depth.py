@@ -87,10 +87,10 @@ def _ways(mesh: Mesh) -> scipy.sparse.csr_array:
 
 def _across(mesh: Mesh) -> Indices:
     """Return the vertices (n, 2) on both sides of an edge whose straight connection is inside."""
-    _, _, twins = sides_of(mesh.triangles)
+    _, _, counterparts = sides_of(mesh.triangles)
     corners = mesh.triangles.ravel().astype(np.intp)
-    a, b = corners[twins[:, 0]], corners[following(twins[:, 0])]
-    c, d = corners[preceding(twins.T)]
+    a, b = corners[counterparts[:, 0]], corners[following(counterparts[:, 0])]
+    c, d = corners[preceding(counterparts.T)]
     # The line from c to d stays inside if the four corners are convex.
     seen = np.ones(len(a), dtype=np.bool_)
     for end, sign in ((a, 1.0), (b, -1.0)):

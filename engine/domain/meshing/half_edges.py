@@ -1,8 +1,8 @@
 """A triangulation that can be edited in bulk: edge flips, new points, split boundary edges.
 
-Half-edge 3t + k leads from corner k of triangle t to the next corner, counter-clockwise. Its twin
-is the same edge in the neighbouring triangle. Every operation takes many half-edges or triangles at
-once and keeps the triangulation a conforming manifold, whatever the coordinates are.
+Half-edge 3t + k leads from corner k of triangle t to the next corner, counter-clockwise. Its
+counterpart is the same edge in the neighbouring triangle. Every operation takes many half-edges or
+triangles at once and keeps the triangulation a conforming manifold, whatever the coordinates are.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from engine.arrays import Booleans, Complexes, Floats, Indices
 from engine.domain.meshing.mesh import sides_of
 
-# Twins of half-edges on the outline, and of those at the limit of the edited region.
+# Counterparts of half-edges on the outline, and of those at the limit of the edited region.
 OUTLINE, SEAM = -1, -2
 ROUNDING = 1e-11  # where a sign decides, smaller numbers are zero; the region must be of size 1
 FLAT = (
@@ -62,7 +62,7 @@ class HalfEdgeMesh:
     ----------
     origins : intp, shape (3 m,)
         Vertex at which each half-edge starts.
-    twins : intp, shape (3 m,)
+    counterparts : intp, shape (3 m,)
         Half-edge of the neighbour, or `OUTLINE` or `SEAM`.
     waiting : intp, shape (w,)
         Vertices without triangles that are still to be inserted.
@@ -70,14 +70,14 @@ class HalfEdgeMesh:
         Triangle around each waiting vertex, kept up to date by `flip` and `insert`.
     """
 
-    __slots__ = ("origins", "places", "points", "twins", "waiting")
+    __slots__ = ("counterparts", "origins", "places", "points", "waiting")
 
     def __init__(self, points: Complexes, triangles: Indices) -> None:
         self.points = points
         self.origins = np.array(triangles, dtype=np.intp).ravel()  # A copy, to be edited.
-        self.twins = np.full(len(self.origins), OUTLINE)
-        _, _, twins = sides_of(self.triangles)
-        self._join(*twins.T)
+        self.counterparts = np.full(len(self.origins), OUTLINE)
+        _, _, counterparts = sides_of(self.triangles)
+        self._join(*counterparts.T)
         self.waiting = self.places = np.empty(0, dtype=np.intp)
 
     @property
@@ -108,7 +108,7 @@ class HalfEdgeMesh:
 
         No triangle may occur twice. Returns the half-edges around the quadrilaterals.
         """
-        ab, ba = half_edges, self.twins[half_edges]
+        ab, ba = half_edges, self.counterparts[half_edges]
         ca, db = preceding(ab), preceding(ba)
         bc, ad = following(ab), following(ba)
         c, d = self.origins[ca], self.origins[db]
@@ -134,7 +134,7 @@ class HalfEdgeMesh:
         nearest = np.argmin(height, axis=1)
         # A point on an edge makes a flat triangle with it, which is flipped away at once.
         flat = height.min(axis=1, initial=1.0) < FLAT
-        across = np.where(flat, self.twins[3 * triangles + nearest] // 3, -1)
+        across = np.where(flat, self.counterparts[3 * triangles + nearest] // 3, -1)
         inserted = disjoint(triangles, across, among=self.count)
         around = self.insert(vertices[inserted], triangles[inserted])
         flat &= across >= 0
@@ -162,31 +162,31 @@ class HalfEdgeMesh:
         return np.stack([ab, bc, ca])
 
     def split_border(self, vertices: Indices, half_edges: Indices) -> Indices:
-        """Split half-edges a-b without twin at new vertices, and their triangles abc in two.
+        """Split half-edges a-b without counterpart at new vertices, and their triangles abc in two.
 
         No triangle may occur twice. Returns the half-edges around the former triangles.
         """
         ab, bc, ca = half_edges, following(half_edges), preceding(half_edges)
         b, c = self.origins[bc], self.origins[ca]
         rest = 3 * (self.count + np.arange(len(vertices)))
-        border = self.twins[ab]
+        border = self.counterparts[ab]
         self._grow(len(vertices))
         self._move(bc, rest + 1)
         self.origins[bc] = vertices
         self.origins[rest], self.origins[rest + 1], self.origins[rest + 2] = vertices, b, c
-        self.twins[rest] = border
+        self.counterparts[rest] = border
         self._join(bc, rest + 2)
         return np.concatenate([ab, ca, rest, rest + 1])
 
     def restore_delaunay(self, suspects: Indices) -> None:
         """Flip edges until all are Delaunay; `suspects` are all half-edges that may not be."""
         while len(suspects):
-            twins = self.twins[suspects]
-            once = np.zeros(len(self.twins), dtype=np.bool_)
-            once[np.minimum(suspects, twins)[twins >= 0]] = True
+            counterparts = self.counterparts[suspects]
+            once = np.zeros(len(self.counterparts), dtype=np.bool_)
+            once[np.minimum(suspects, counterparts)[counterparts >= 0]] = True
             suspects = np.flatnonzero(once)
             suspects = suspects[self._violates_delaunay(suspects)]
-            chosen = disjoint(suspects // 3, self.twins[suspects] // 3, among=self.count)
+            chosen = disjoint(suspects // 3, self.counterparts[suspects] // 3, among=self.count)
             around = self.flip(suspects[chosen])
             suspects = np.concatenate([suspects[~chosen], around])
 
@@ -196,10 +196,10 @@ class HalfEdgeMesh:
         For triangles of positive area this makes acbd convex, up to rounding, so convexity is
         tested as well.
         """
-        twins = self.twins[half_edges]
+        counterparts = self.counterparts[half_edges]
         a, b = self.end_points(half_edges)
         c = self.points[self.origins[preceding(half_edges)]]
-        d = self.points[self.origins[preceding(twins)]]
+        d = self.points[self.origins[preceding(counterparts)]]
         product = (b - c) * (a - c).conj() * (a - d) * (b - d).conj()
         across = c - d
         convex = ((across.conj() * (b - d)).imag < 0) & ((across.conj() * (a - d)).imag > 0)
@@ -220,10 +220,10 @@ class HalfEdgeMesh:
                 break
             leaving, edge = self._exit(triangles[walking], sources[walking], targets[walking])
             walking, edge = walking[leaving], edge[leaving]
-            twins = self.twins[edge]
-            exits[walking[twins < 0]] = edge[twins < 0]
-            walking, twins = walking[twins >= 0], twins[twins >= 0]
-            triangles[walking] = twins // 3
+            counterparts = self.counterparts[edge]
+            exits[walking[counterparts < 0]] = edge[counterparts < 0]
+            walking, counterparts = walking[counterparts >= 0], counterparts[counterparts >= 0]
+            triangles[walking] = counterparts // 3
         exits[walking] = 3 * triangles[walking]
         return triangles, exits
 
@@ -243,18 +243,18 @@ class HalfEdgeMesh:
         """Make room for more triangles."""
         empty = np.full(3 * triangles, OUTLINE)
         self.origins = np.concatenate([self.origins, empty])
-        self.twins = np.concatenate([self.twins, empty])
+        self.counterparts = np.concatenate([self.counterparts, empty])
 
     def _move(self, old: Indices, new: Indices) -> None:
-        """Update the twins of half-edges that have moved from `old` to `new` in the arrays."""
-        place: npt.NDArray[np.intp] = np.arange(len(self.twins))
+        """Update the counterparts of half-edges moved from `old` to `new` in the arrays."""
+        place: npt.NDArray[np.intp] = np.arange(len(self.counterparts))
         place[old] = new
-        twins = self.twins[old]
-        inner = twins >= 0
-        # Twins may move at the same time.
-        twins[inner] = place[twins[inner]]
-        self.twins[new] = twins
-        self.twins[twins[inner]] = new[inner]
+        counterparts = self.counterparts[old]
+        inner = counterparts >= 0
+        # Counterparts may move at the same time.
+        counterparts[inner] = place[counterparts[inner]]
+        self.counterparts[new] = counterparts
+        self.counterparts[counterparts[inner]] = new[inner]
 
     def _follow_flips(self, left: Indices, right: Indices) -> None:
         """Update the places of waiting vertices, for half-edges d-b and c-a of new dbc, cad."""
@@ -283,8 +283,8 @@ class HalfEdgeMesh:
         return found, column[found]
 
     def _join(self, first: Indices, second: Indices) -> None:
-        """Make half-edges each other's twins."""
-        self.twins[first], self.twins[second] = second, first
+        """Make half-edges each other's counterparts."""
+        self.counterparts[first], self.counterparts[second] = second, first
 
 
 def _height(corners: Complexes, along: Complexes, points: Complexes) -> Floats:

@@ -48,7 +48,7 @@ def sides_of(triangles: Integers | Indices) -> tuple[Indices, Indices, Indices]:
         As `Mesh.edges` has them.
     numbers : intp, shape (m, 3)
         The side from each corner of a triangle to its next.
-    twins : intp, shape (p, 2)
+    counterparts : intp, shape (p, 2)
         For each shared side, in order, its two positions in the flattened `numbers`.
     """
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
@@ -59,8 +59,8 @@ def sides_of(triangles: Integers | Indices) -> tuple[Indices, Indices, Indices]:
     numbers = np.empty_like(order)
     numbers[order] = np.cumsum(is_new) - 1
     again = np.flatnonzero(~is_new)
-    twins = np.column_stack([order[again - 1], order[again]])
-    return np.column_stack([low, high])[order[is_new]], numbers.reshape(-1, 3), twins
+    counterparts = np.column_stack([order[again - 1], order[again]])
+    return np.column_stack([low, high])[order[is_new]], numbers.reshape(-1, 3), counterparts
 
 
 def signed_areas(vertices: Complexes, triangles: Integers | Indices) -> Floats:

@@ -35,7 +35,7 @@ def refine_mesh(mesh: HalfEdgeMesh, smallest: float) -> None:
         centres = _off_centres(mesh, bad, smallest)
         triangles, exits = mesh.walk(bad, centres)
         reached = exits < 0
-        hidden = exits[~reached & (mesh.twins[exits] == OUTLINE)]
+        hidden = exits[~reached & (mesh.counterparts[exits] == OUTLINE)]
         encroached = _encroached(mesh, triangles[reached], centres[reached])
         reached[reached] = encroached < 0
         split = np.unique(np.concatenate([hidden, encroached[encroached >= 0]]))
@@ -64,7 +64,7 @@ def _shortest_edges(mesh: HalfEdgeMesh, triangles: Indices) -> Indices:
 def _enforced(mesh: HalfEdgeMesh, triangles: Indices) -> Booleans:
     """Mark the triangles whose smallest angle lies between two edges of the outline."""
     opposite = _shortest_edges(mesh, triangles)
-    sides = mesh.twins[[following(opposite), preceding(opposite)]]
+    sides = mesh.counterparts[[following(opposite), preceding(opposite)]]
     return np.asarray((sides == OUTLINE).all(axis=0))
 
 
@@ -90,7 +90,7 @@ def _encroached(mesh: HalfEdgeMesh, triangles: Indices, points: Complexes) -> In
     half_edges = 3 * triangles[:, None] + np.arange(3)
     a, b = mesh.end_points(half_edges)
     cosine = ((a - points[:, None]).conj() * (b - points[:, None])).real
-    cosine[mesh.twins[half_edges] != OUTLINE] = np.inf
+    cosine[mesh.counterparts[half_edges] != OUTLINE] = np.inf
     widest = np.argmin(cosine / np.abs(b - a) ** 2, axis=1)
     row = np.arange(len(widest))
     return np.where(cosine[row, widest] < 0, half_edges[row, widest], -1)
@@ -112,7 +112,7 @@ def _insert(mesh: HalfEdgeMesh, points: Complexes, triangles: Indices, touched: 
     """
     free = ~np.isin(triangles, touched // 3)
     points, triangles = points[free], triangles[free]
-    around = mesh.twins[3 * triangles[:, None] + np.arange(3)] // 3
+    around = mesh.counterparts[3 * triangles[:, None] + np.arange(3)] // 3
     apart = disjoint(triangles, *around.T, among=mesh.count)
     vertices = mesh.add_points(points[apart])
     _, suspects = mesh.insert_where_possible(vertices, triangles[apart])

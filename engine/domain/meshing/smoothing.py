@@ -21,7 +21,7 @@ def smooth_mesh(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
     sweeps : int
         Number of moves of every vertex.
     """
-    border = np.flatnonzero(mesh.twins < 0)
+    border = np.flatnonzero(mesh.counterparts < 0)
     fixed = np.ones(len(mesh.points), dtype=np.bool_)
     fixed[mesh.origins] = False
     fixed[mesh.origins[border]] = True
@@ -37,7 +37,7 @@ def smooth_mesh(mesh: HalfEdgeMesh, corners: int, sweeps: int) -> None:
 
 def _cuts(mesh: HalfEdgeMesh, corners: int) -> tuple[Indices, Indices, Indices]:
     """Return the vertices that cut an edge of the outline, with those before and after them."""
-    start, end = mesh.ends(np.flatnonzero(mesh.twins == OUTLINE))
+    start, end = mesh.ends(np.flatnonzero(mesh.counterparts == OUTLINE))
     before = np.empty(len(mesh.points), dtype=np.intp)
     before[end] = start
     cut = start >= corners

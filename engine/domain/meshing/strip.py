@@ -65,7 +65,7 @@ def triangulate_strip(
     """
     mesh = HalfEdgeMesh(lattice.points, constrained_delaunay(loops[0], loops[1:]))
     _cut_border(mesh, rings)
-    rim = np.flatnonzero(lattice.twins == OUTLINE)
+    rim = np.flatnonzero(lattice.counterparts == OUTLINE)
     _insert_all(mesh, np.concatenate([np.unique(lattice.origins[rim]), loose]))
     return mesh.triangles[~_enclosed(mesh, *lattice.ends(rim))]
 
@@ -74,7 +74,7 @@ def _cut_border(mesh: HalfEdgeMesh, rings: Rings) -> None:
     """Split the border of a Delaunay mesh of the loops at all cuts of the rings."""
     position = np.argsort(rings.order)
     while True:
-        border = np.flatnonzero(mesh.twins < 0)
+        border = np.flatnonzero(mesh.counterparts < 0)
         start, end = mesh.ends(border)
         place = position[start]
         steps = (position[end] - place) % rings.size[place]
@@ -116,8 +116,8 @@ def _enclosed(mesh: HalfEdgeMesh, starts: Indices, ends: Indices) -> Booleans:
     start, end = mesh.ends(np.arange(len(mesh.origins)))
     left = np.isin(start * len(mesh.points) + end, fence)
     right = np.isin(end * len(mesh.points) + start, fence)
-    open_to = np.flatnonzero((mesh.twins >= 0) & ~left & ~right)
-    pairs = open_to // 3, mesh.twins[open_to] // 3
+    open_to = np.flatnonzero((mesh.counterparts >= 0) & ~left & ~right)
+    pairs = open_to // 3, mesh.counterparts[open_to] // 3
     graph = coo_array((np.ones(len(open_to)), pairs), shape=(mesh.count, mesh.count))
     _, part = connected_components(graph, directed=False)
     return np.isin(part, part[np.flatnonzero(left) // 3])

@@ -77,8 +77,10 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
     shortest = min(float(np.abs(edge_vectors(loop)).min()) for loop in loops)
     if shortest < SHORTEST_EDGE * diameter(outline):
         raise EngineError(
-            f"The outline has an edge of length {shortest:.3g}, which is too short for its size of "
-            f"{diameter(outline):.3g}; leave out one of its ends."
+            "The outline has an edge of length {shortest:.3g}, which is too short for its "
+            "size of {size:.3g}; leave out one of its ends.",
+            shortest=shortest,
+            size=diameter(outline),
         )
     centre = outline[0]
     # A power of two, so that scaling rounds nothing.
@@ -166,9 +168,9 @@ def _depth(loops: Sequence[Complexes], points: Complexes, spacing: float) -> Flo
 
 def _mark_seam(mesh: HalfEdgeMesh, deep: Booleans) -> None:
     """Mark the border of a mesh between deep vertices, where the core adjoins."""
-    border = np.flatnonzero(mesh.twins == OUTLINE)
+    border = np.flatnonzero(mesh.counterparts == OUTLINE)
     start, end = mesh.ends(border)
-    mesh.twins[border[deep[start] & deep[end]]] = SEAM
+    mesh.counterparts[border[deep[start] & deep[end]]] = SEAM
 
 
 def _compact(points: Complexes, triangles: Indices) -> Mesh:

@@ -2,5 +2,5 @@
 
 In: the mask of a subject in its picture.
 Out: an `Enclosure`: an outline and a cage of as many vertices, strictly apart.
-Imports: `engine.geometry`.
+Imports: `engine.domain.mask`, `engine.geometry`.
 """

@@ -51,7 +51,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
     """
     require_simple(outline, "outline", clockwise=hole)
     if not offset > 0:
-        raise EngineError(f"The cage's offset must be positive, not {offset}.")
+        raise EngineError("The cage's offset must be positive, not {offset}.", offset=offset)
     directions, arcs = _miters(outline), arc_lengths(outline)
     offsets = np.minimum(offset, ROOM * _room_outside(outline, directions))
     for _ in range(MOST_ROUNDS):
@@ -64,7 +64,7 @@ def offset_cage(outline: Complexes, offset: float, *, hole: bool = False) -> Com
     # Two polygons that do not cross are closest at a vertex of one of them.
     ways = distance_to_boundary(outline, cage), distance_to_boundary(cage, outline)
     if faulty.any() or np.min(ways) < LEAST_DISTANCE * diameter(outline):
-        raise EngineError(CLOSE_OUTLINE.format(count=len(outline)))
+        raise EngineError(CLOSE_OUTLINE, count=len(outline))
     return readonly(cage)
 
 

@@ -87,7 +87,7 @@ def cut_region(
     others = (part for part in parts if not shapely.equals(part, piece))
     cut_off = sum(_drawn_area(part, mask) for part in others) / np.count_nonzero(mask)
     if cut_off > SPECK:
-        raise EngineError(CUTS_OFF.format(cut_off=cut_off))
+        raise EngineError(CUTS_OFF, cut_off=cut_off)
     piece = _without_strips(piece, whole, mask, width)
     tips = np.concatenate([way[[0, -1]] for way in ways])
     new = [piece.exterior, *piece.interiors]

@@ -8,14 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Booleans, Complexes, Indices, readonly, require_word
+from engine.domain.mask.grid import working_grid
+from engine.domain.mask.parts import WholePiece, join_parts
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.cuts import cut_region
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.grid import working_grid
 from engine.domain.outline.holes import SMALLEST_HOLE, find_visible_holes, make_hole, trace_hole
 from engine.domain.outline.margin import DistanceField, MarginCurve, curve_at_margin, distance_field
-from engine.domain.outline.parts import WholePiece, join_parts
-from engine.errors import EngineError
+from engine.domain.outline.remedies import describe_curve, describe_filled_holes
+from engine.errors import EngineError, Message
 from engine.geometry import Hole, require_holes
 
 Detail = Literal["coarse", "normal", "fine"]
@@ -35,8 +36,6 @@ WIDEST_GAP = 0.2  # of the diagonal: widest gap that is closed to save vertices
 WIDENING, MOST_WIDENED = 1.42, 2.0
 MOST_DRAFTS = 6
 DISC = 2.5  # area of a disc of radius 1, with some room for pixels
-LEAST_ENCLOSED = 0.001  # of the subject's area: smallest area that is reported
-LEAST_JOINED = 0.03  # of the subject's outline: smallest part that is reported
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -52,8 +51,8 @@ class Enclosure:
         Simple, counter-clockwise, strictly around the outline, one vertex for each of its own.
     holes : tuple of Hole
         Inside the outline and apart, the largest first.
-    notices : tuple of str
-        Every remedy that was applied, in words.
+    notices : tuple of Message
+        Every remedy that was applied.
     closed : complex128, shape (m,), optional
         Painted places of the vertices of the outline, and then of the holes' outlines: both sides
         of a slit meet. None without slits.
@@ -62,7 +61,7 @@ class Enclosure:
     outline: Complexes
     cage: Complexes
     holes: tuple[Hole, ...]
-    notices: tuple[str, ...]
+    notices: tuple[Message, ...]
     closed: Complexes | None = None
 
 
@@ -124,7 +123,7 @@ def enclose_subject(
         cuts off a part of it, or separates nothing.
     """
     require_word(detail, MARGINS, "The detail")
-    require_word(holes, HOLES, "What is done with holes")
+    require_word(holes, HOLES, "The treatment of holes")
     grid = working_grid(mask)
     piece = join_parts(grid.mask, grid.diagonal)
     margin = max(MARGINS[detail] * grid.diagonal, LEAST_MARGIN * max(1.0, 1 / grid.cell))
@@ -150,10 +149,8 @@ def enclose_subject(
         closed=None if closed is None else readonly(grid.to_picture(closed)),
         notices=(
             *piece.notices,
-            *piece.filled_notice(filled),
-            *piece.filled_notice(small, "too small to stay open"),
-            *piece.filled_notice(crowded, "since too many open holes make posing slow"),
-            *_describe_draft(fit.draft, int(np.count_nonzero(piece.mask))),
+            *describe_filled_holes(piece, filled, small, crowded),
+            *describe_curve(fit.draft.curve, fit.draft.widening, int(np.count_nonzero(piece.mask))),
         ),
     )
 
@@ -260,23 +257,6 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
         fits += [] if fit is None else [fit]
         closing *= 2
     return min(fits, key=lambda fit: len(fit.outline))
-
-
-def _describe_draft(draft: _Draft, area: int) -> tuple[str, ...]:
-    """Describe in words the remedies of a draft, for a subject of `area` cells."""
-    notices = []
-    fused = draft.curve.joined_gap_share()
-    if fused >= LEAST_JOINED:
-        notices.append(
-            "limbs too close together for outlines of their own are fused and move as one, along "
-            f"{fused:.0%} of the edge"
-        )
-    if draft.widening > 1:
-        notices.append(f"margin widened {draft.widening:.1f} times for an outline of few vertices")
-    share = draft.curve.enclosed / area
-    if share >= LEAST_ENCLOSED:
-        notices.append(f"the outline closes over gaps of {share:.1%} of the subject")
-    return tuple(notices)
 
 
 def _draft(

@@ -12,11 +12,11 @@ import numpy as np
 from scipy import ndimage
 
 from engine.arrays import Booleans, Complexes, Indices, Integers
+from engine.domain.mask.grid import WorkingGrid, working_grid
+from engine.domain.mask.parts import WholePiece, join_parts
 from engine.domain.outline.cage import offset_cage
 from engine.domain.outline.fitting import Candidates, fit_polygon
-from engine.domain.outline.grid import WorkingGrid, working_grid
 from engine.domain.outline.margin import curve_at_margin, distance_field
-from engine.domain.outline.parts import WholePiece, join_parts
 from engine.errors import EngineError
 from engine.geometry import Hole, deepest_point
 

@@ -115,11 +115,11 @@ class MetricBlend(EtaBlend):
         modes.imag -= modes[0].imag
         # H_j' is unbounded there. The steps beside these nodes are so short that 0 changes nothing.
         modes_z[interval.sampled_domain.paths.cornered] = 0.0
-        known, passage = EtaBlend.of(interval), interval.keyframe_blend
+        known, keyframe_blend = EtaBlend.of(interval), interval.keyframe_blend
         # Everything but η keeps its velocities at keyframes.
-        passage = replace(passage, time_weights=passage.time_weights.unlimited)
+        keyframe_blend = replace(keyframe_blend, time_weights=keyframe_blend.time_weights.unlimited)
         return cls(
-            keyframe_blend=passage.with_residual(Residual.of(series, modes, modes_z)),
+            keyframe_blend=keyframe_blend.with_residual(Residual.of(series, modes, modes_z)),
             bounds=interval.bounds,
             conj_eta=known.conj_eta,
             conj_eta_z=known.conj_eta_z,
@@ -133,25 +133,25 @@ class MetricBlend(EtaBlend):
 
     def moduli(self, boundary: Boundary) -> Moduli:
         """Return moduli and limits at the boundary samples, before the periods are closed."""
-        course = self.keyframe_blend.eta_time_weights
+        time_weights = self.keyframe_blend.eta_time_weights
         fz, fzbar = derivatives_of(
             [key.map for key in self.keyframe_blend.keyframes], boundary.points
         )
-        metric = OutlineMetric.of(fz, fzbar, course, self.bounds)
+        metric = OutlineMetric.of(fz, fzbar, time_weights, self.bounds)
         counts = np.diff([*boundary.starts, len(boundary.points)])
         loops = np.repeat(np.arange(len(counts)), counts)
 
         def at(times: Floats) -> tuple[Floats, Floats]:
             logarithm = (
-                metric.residuals(times).T + course.unlimited.at(times).T @ metric.log_modulus
+                metric.residuals(times).T + time_weights.unlimited.at(times).T @ metric.log_modulus
             )
             lost = np.pad(self.lost.at(times), ((0, 0), (1, 0)))[:, loops]
             a = np.exp(logarithm - lost)
-            return a, np.abs(course.at(times).T @ metric.eta) / a
+            return a, np.abs(time_weights.at(times).T @ metric.eta) / a
 
         keyframes = zip(*at(np.array([0.0, 1.0])), strict=True)
         ends = [log_distortions(*each).max(axis=1) for each in keyframes]
-        bounds = [] if course.is_straight else [frame_limits(self.bounds, inside=0.0)]
+        bounds = [] if time_weights.is_straight else [frame_limits(self.bounds, inside=0.0)]
         return Moduli(at, np.max([*ends, *bounds], axis=0), self.lost)
 
     @staticmethod
@@ -200,16 +200,20 @@ def _resolved(interval: KeyframeSegment, times: Floats) -> tuple[OutlineMetric, 
     The nodes follow the shape. Keyframes at extreme bounds vary faster near a vertex of the cage;
     there panels are halved.
     """
-    passage, bounds = interval.keyframe_blend, interval.bounds
-    maps = [key.map for key in passage.keyframes]
+    keyframe_blend, bounds = interval.keyframe_blend, interval.bounds
+    maps = [key.map for key in keyframe_blend.keyframes]
     panels = Refinement.of(_matching(interval).transform)
-    metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.time_weights, bounds)
+    metric = OutlineMetric.of(
+        *derivatives_of(maps, panels.nodes), keyframe_blend.time_weights, bounds
+    )
     for _ in range(MOST_HALVINGS):
         coarse = panels.panels.unresolved(metric.residuals(times), RESOLVED)
         if not coarse.any():
             break
         panels = panels.halved(coarse)
-        metric = OutlineMetric.of(*derivatives_of(maps, panels.nodes), passage.time_weights, bounds)
+        metric = OutlineMetric.of(
+            *derivatives_of(maps, panels.nodes), keyframe_blend.time_weights, bounds
+        )
     return metric, panels
 
 

@@ -41,14 +41,14 @@ class OutlineMetric:
     eta: Complexes
 
     @classmethod
-    def of(cls, fz: Complexes, fzbar: Complexes, course: TimeWeights, bounds: Bounds) -> Self:
+    def of(cls, fz: Complexes, fzbar: Complexes, time_weights: TimeWeights, bounds: Bounds) -> Self:
         """Compute the metrics from the derivatives (q, N) of the weighted keyframes."""
         # The entries of the metric tensor, Equation (9).
         trace, eta = np.abs(fz) ** 2 + np.abs(fzbar) ** 2, fz * fzbar.conj()
         return cls(
-            time_weights=course,
+            time_weights=time_weights,
             log_modulus=np.log(np.abs(fz)),
-            trace=_controls(trace, eta, course, bounds),
+            trace=_controls(trace, eta, time_weights, bounds),
             eta=eta,
         )
 
@@ -70,18 +70,20 @@ class OutlineMetric:
         return residuals
 
 
-def trace_time_weights(course: TimeWeights) -> TimeWeights:
+def trace_time_weights(time_weights: TimeWeights) -> TimeWeights:
     """Return the time weights of the values or control values of 𝒜, given those of η."""
-    return course if course.is_straight else TimeWeights.cubic()
+    return time_weights if time_weights.is_straight else TimeWeights.cubic()
 
 
-def _controls(trace: Floats, eta: Complexes, course: TimeWeights, bounds: Bounds) -> Floats:
+def _controls(trace: Floats, eta: Complexes, time_weights: TimeWeights, bounds: Bounds) -> Floats:
     """Return the control values of 𝒜 (4, N), from 𝒜 and η (q, N) of the keyframes."""
-    full = course.unlimited.controls
+    full = time_weights.unlimited.controls
     if full is None:
         return trace
     controls: Floats = full @ trace
-    for row, end, window, arm in zip((1, 2), course.ends, course.support, (1, 0), strict=True):
+    for row, end, window, arm in zip(
+        (1, 2), time_weights.ends, time_weights.support, (1, 0), strict=True
+    ):
         if isinstance(end, Tangent):
             left = limit_velocity(trace[window], eta[window], end, bounds)
             controls[row] = trace[window[1]] + end.knot.control_offsets[arm] * left
@@ -91,7 +93,7 @@ def _controls(trace: Floats, eta: Complexes, course: TimeWeights, bounds: Bounds
 def control_curves(
     trace: BoundaryBezier[np.float64],
     eta: BoundaryBezier[np.complex128],
-    course: TimeWeights,
+    time_weights: TimeWeights,
     bounds: Bounds,
 ) -> BoundaryBezier[np.float64]:
     """Return the control values of 𝒜 with error bounds along pieces of the boundary.
@@ -104,15 +106,15 @@ def control_curves(
     velocity is limited, they interpolate linearly between both ends of the piece. The error is then
     the range of the limited velocity, which rises with the velocity and with its limits.
     """
-    full = course.unlimited.controls
+    full = time_weights.unlimited.controls
     if full is None:
         return trace
     controls = np.einsum("dq,pqb->pdb", full, trace.controls)
     errors = trace.errors @ np.abs(full).T
-    for index, (end, arm) in enumerate(zip(course.ends, (1, 0), strict=True)):
+    for index, (end, arm) in enumerate(zip(time_weights.ends, (1, 0), strict=True)):
         if not isinstance(end, Tangent):
             continue
-        own = course.support[index]
+        own = time_weights.support[index]
         here = trace.of(own)
         velocity, error = _velocity(here, eta.of(own), end, bounds)
         reach = end.knot.control_offsets[arm]

@@ -13,7 +13,7 @@ from engine.interpolation.series.residual import Residual, combine_arrays
 from engine.interpolation.time_weights.weights import TimeWeights
 
 KEYFRAMES_OF_SEGMENT = (
-    "An interval of this course has {wanted} keyframes, not {count} with {sheets} sheets."
+    "A segment with these time weights has {wanted} keyframes, not {count} with {sheets} sheets."
 )
 
 
@@ -60,7 +60,7 @@ class KeyframeBlend:
         cls,
         keyframes: Sequence[KeyframeSamples],
         sheets: Integers,
-        course: TimeWeights | None = None,
+        time_weights: TimeWeights | None = None,
     ) -> Self:
         """Combine keyframes and time weights; by default two keyframes are blended linearly.
 
@@ -69,14 +69,19 @@ class KeyframeBlend:
         EngineError
             If the numbers of keyframes, sheets and weights differ.
         """
-        course = TimeWeights.straight() if course is None else course
-        if not len(keyframes) == len(sheets) == course.count:
-            wanted = ("two", "three", "four", "five", "six")[course.count - 2]
+        time_weights = TimeWeights.straight() if time_weights is None else time_weights
+        if not len(keyframes) == len(sheets) == time_weights.count:
             raise EngineError(
-                KEYFRAMES_OF_SEGMENT.format(wanted=wanted, count=len(keyframes), sheets=len(sheets))
+                KEYFRAMES_OF_SEGMENT,
+                wanted=time_weights.count,
+                count=len(keyframes),
+                sheets=len(sheets),
             )
         return cls(
-            keyframes=tuple(keyframes), sheets=sheets, time_weights=course, eta_time_weights=course
+            keyframes=tuple(keyframes),
+            sheets=sheets,
+            time_weights=time_weights,
+            eta_time_weights=time_weights,
         )
 
     @property

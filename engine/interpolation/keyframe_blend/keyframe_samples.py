@@ -141,21 +141,29 @@ def _require_unfolded(f: HarmonicMap, sites: SampledDomain, number: int) -> None
     worst = int(sigma_b.argmin())
     if sigma_b[worst] <= 0 or certificate.winding == 0:
         z = sites.boundary.points[worst]
-        raise EngineError(FOLDS.format(number=number, x=z.real, y=z.imag, sigma_b=sigma_b[worst]))
+        raise EngineError(FOLDS, number=number, x=z.real, y=z.imag, sigma_b=sigma_b[worst])
     for hole, turns in enumerate(_turns(fz, sites), start=1):
         if turns:
             raise EngineError(
-                f"Keyframe {number} turns the drawing inside out around hole {hole} of "
-                f"{len(sites.loops.starts)}: along its edge f_z winds {turns} times around 0, and "
-                "must not wind. No motion without folds leads there. Pose it again from the "
-                "drawing at rest, by small steps."
+                "Keyframe {number} turns the drawing inside out around hole {hole} of {count}: "
+                "along its edge f_z winds {turns} times around 0, and must not wind. No motion "
+                "without folds leads there. Pose it again from the drawing at rest, by small "
+                "steps.",
+                number=number,
+                hole=hole,
+                count=len(sites.loops.starts),
+                turns=turns,
             )
     # By the argument principle, f_z has as many zeros inside as it winds around 0.
     nodes = sites.paths.nodes
     z = nodes[np.abs(f.derivatives(nodes)[0]).argmin()]
     raise EngineError(
-        f"Keyframe {number} folds inside: f_z winds {certificate.winding} times around 0 along the "
-        f"outline and vanishes near ({z.real:.6g}, {z.imag:.6g}). Pose it again within bounds."
+        "Keyframe {number} folds inside: f_z winds {winding} times around 0 along the "
+        "outline and vanishes near ({x:.6g}, {y:.6g}). Pose it again within bounds.",
+        number=number,
+        winding=certificate.winding,
+        x=z.real,
+        y=z.imag,
     )
 
 

@@ -35,11 +35,11 @@ class CorrectedCellEnclosures(CellEnclosures):
             )
             for known in (each.known for each in inbetweens.corrections)
         ]
-        passage, nodes = inbetweens.keyframe_blend, inbetweens.sampled_domain.sample_nodes()
-        logs = [key.log_fz[nodes] for key in passage.keyframes]
+        keyframe_blend, nodes = inbetweens.keyframe_blend, inbetweens.sampled_domain.sample_nodes()
+        logs = [key.log_fz[nodes] for key in keyframe_blend.keyframes]
         # log F of the keyframes at the start of each piece; its increase along the piece follows.
-        self._logs = np.array(logs).T + 2j * np.pi * np.asarray(passage.sheets)
-        self._time_weights = passage.time_weights
+        self._logs = np.array(logs).T + 2j * np.pi * np.asarray(keyframe_blend.sheets)
+        self._time_weights = keyframe_blend.time_weights
         self._log_changes = pieces.derivatives(0).log_change()
 
     @property

@@ -75,8 +75,8 @@ class CellEnclosures:
 
     def _blended(self, chosen: Cells) -> tuple[BernsteinPatch[Any], BernsteinPatch[Any]]:
         first, second = (
-            blend_curves(curves.at(chosen.piece), course.controls_on(chosen.start, chosen.end))
-            for curves, course in zip(self._curves, self._blend.curve_weights, strict=True)
+            blend_curves(curves.at(chosen.piece), weights.controls_on(chosen.start, chosen.end))
+            for curves, weights in zip(self._curves, self._blend.curve_weights, strict=True)
         )
         return first, second
 

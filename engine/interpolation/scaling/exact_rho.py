@@ -73,7 +73,7 @@ class ExactRho:
         cls,
         maps: Sequence[HarmonicMap],
         outline: Complexes,
-        course: TimeWeights,
+        time_weights: TimeWeights,
         bounds: Bounds,
         closings: tuple[Closing, ...] = (),
     ) -> Self:
@@ -101,10 +101,10 @@ class ExactRho:
         )
         samples = curves.samples_of(curves.coefficients[0])
         worst = keyframe_extremes(curves)
-        if not course.is_straight:
+        if not time_weights.is_straight:
             worst = worst.widened(bounds)
         return cls(
-            time_weights=course,
+            time_weights=time_weights,
             curves=curves,
             samples=samples,
             extremes=worst,

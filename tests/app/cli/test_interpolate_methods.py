@@ -228,7 +228,7 @@ def test_a_mesh_with_a_hole_is_refused_by_the_method_that_cannot_flatten_it(
     used, triangles = np.unique(MESH.triangles[inner], return_inverse=True)
     arrays = {"positions": POSES["positions"][:, used], "triangles": triangles.reshape(-1, 3)}
     path = write(arrays)
-    assert "has 1 hole" in error_of(capsys, [path], tmp_path / "out.npz", "sig13")
+    assert "has holes: 1" in error_of(capsys, [path], tmp_path / "out.npz", "sig13")
     frames = interpolate([path], tmp_path / "out", "arap")
     assert_allclose(frames["positions"][2], arrays["positions"][1], rtol=0, atol=1e-9)
 

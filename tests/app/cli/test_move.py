@@ -99,11 +99,14 @@ def test_motions_are_listed_with_their_kinds(capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--motion", "dance"], "there is no motion 'dance'; the motions are walk"),
-        (["--motion", "trot", "--kind", "chain"], "'trot' is a motion of 'four-legs'"),
-        (["--motion", "wag", "--kind", "worm"], "there is no kind 'worm'"),
-        (["--motion", "walk", "--size", "9"], "size is from 0.05 to 2, not 9"),
-        (["--motion", "wag", "--travel", "--kind", "chain"], "'wag' has no steps to travel by"),
+        (["--motion", "dance"], "There is no motion 'dance'; the motions are walk"),
+        (["--motion", "trot", "--kind", "chain"], "'trot' is not a motion of 'chain'"),
+        (["--motion", "wag", "--kind", "worm"], "There is no kind 'worm'"),
+        (["--motion", "walk", "--size", "9"], "size must be from 0.05 to 2, not 9"),
+        (
+            ["--motion", "wag", "--travel", "--kind", "chain"],
+            "'wag' has no steps; leave out travel",
+        ),
         (["--motion", "walk", "--kind", "biped-side"], "--kind is 'biped-side', but"),
         ([], "--motion is missing"),
         (["--motion", "wag"], "the joint 'joint.1' at (2, 3) is not on the drawing"),

@@ -98,7 +98,7 @@ def test_what_is_fully_transparent_cannot_be_kept():
     )
 
 
-def test_a_brush_that_removes_everything_is_told():
+def test_brush_that_removes_everything_is_refused():
     everything = Stroke(points=np.array([60 + 60j]), radius=200.0, keeps=False)
     with pytest.raises(EngineError, match=says(ALL_REMOVED)):
         subject_mask(pictures.star(5, 120), CutOut(strokes=(everything,)))
@@ -114,7 +114,7 @@ def test_a_mask_keeps_every_pixel(size):
 
 
 @pytest.mark.parametrize(
-    ("make", "told"),
+    ("make", "reported"),
     [
         (lambda: Mask(bits=np.zeros(3, np.uint8), size=(8, 8)), "3 bytes"),
         (lambda: Stroke(points=np.array([]), radius=1.0, keeps=True), "at least 1"),
@@ -137,8 +137,8 @@ def test_a_mask_keeps_every_pixel(size):
         ),
     ],
 )
-def test_a_cut_out_that_is_none_is_refused(make, told):
-    with pytest.raises(EngineError, match=told):
+def test_a_cut_out_that_is_none_is_refused(make, reported):
+    with pytest.raises(EngineError, match=reported):
         make()
 
 

@@ -202,7 +202,7 @@ def test_masks_and_colours_that_are_none_are_refused() -> None:
         (WHITE, "remove", "removed too"),
     ],
 )
-def test_what_is_enclosed_goes_with_a_vivid_background_or_when_it_is_told_to(
+def test_enclosed_parts_go_with_vivid_background_or_on_request(
     colour: BackgroundColour, enclosed: Enclosed, what: str
 ) -> None:
     ring = pictures.ring(300)

@@ -141,9 +141,15 @@ def test_legs_of_one_drawing_never_pass_through_each_other():
 @pytest.mark.parametrize(
     ("name", "kind", "joints", "parameters", "said"),
     [
-        ("slither", "biped-side", None, USUAL, "'slither' is a motion of 'chain', and not of"),
+        ("slither", "biped-side", None, USUAL, "'slither' is not a motion of 'biped-side'"),
         ("walk", "biped-side", {"hips": 0j, "head": 1j}, USUAL, "'walk' needs foot.L, foot.R"),
-        ("nod", "biped-side", None, Parameters(travel=True), "'nod' has no steps to travel by"),
+        (
+            "nod",
+            "biped-side",
+            None,
+            Parameters(travel=True),
+            "'nod' has no steps; leave out travel",
+        ),
     ],
 )
 def test_what_does_not_fit_is_refused(name, kind, joints, parameters, said):
@@ -158,7 +164,7 @@ def test_parameters_have_ranges():
     for given in ({"speed": 0.0}, {"size": 3.0}, {"energy": -1.0}, {"start": 1.0}):
         with pytest.raises(EngineError, match=next(iter(given))):
             Parameters(**given)
-    with pytest.raises(EngineError, match="there is no kind 'centaur'"):
+    with pytest.raises(EngineError, match="There is no kind 'centaur'"):
         find_kind("centaur")
     with pytest.raises(EngineError, match="'chain' has no joint 'wing'"):
         Body(kind=find_kind("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))

@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy.integrate import solve_ivp
 
 from app.rigging import FADE_FRAMES, simulate_spring, turn_arm
-from app.rigging.kinematics.springs import INVISIBLE, WIDEST, oscillator_flow
+from app.rigging.kinematics.oscillator import oscillator_flow
+from app.rigging.kinematics.springs import INVISIBLE, WIDEST
 from engine.errors import EngineError
 
 DAMPINGS = [0.0, 1e-9, 0.2, 1 - 1e-9, 1.0, 1 + 1e-9, 1.7, 100.0]

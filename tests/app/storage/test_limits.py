@@ -291,8 +291,8 @@ KNOWN = {
 }
 BETWEEN = KNOWN | {"first": 8, "start": 8, "last": 10}
 UNKNOWN_MOTIONS = (
-    (BETWEEN | {"motion": "nosuch"}, "there is no motion 'nosuch'"),
-    (BETWEEN | {"kind": "biped-side"}, "a motion of 'anything', and not of 'biped-side'"),
+    (BETWEEN | {"motion": "nosuch"}, "There is no motion 'nosuch'"),
+    (BETWEEN | {"kind": "biped-side"}, "'breathe' is not a motion of 'biped-side'"),
     (BETWEEN | {"motion": "wave", "kind": "biped-side"}, "has no joint 'top'"),
     (BETWEEN | {"joints": {"top": 7}}, "is the handle 7, which is not there"),
     (BETWEEN | {"first": -1}, "A motion goes from a frame to a later one"),

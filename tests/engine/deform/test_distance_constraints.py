@@ -23,8 +23,8 @@ LINKS = [
 
 
 def objective(*links):
-    wish = HANDLES.targets(BAR_POINTS + 0.1j, None, (), links)
-    return Objective(boundary=BOUNDARY, handles=HANDLES, targets=wish)
+    handle_targets = HANDLES.targets(BAR_POINTS + 0.1j, None, (), links)
+    return Objective(boundary=BOUNDARY, handles=HANDLES, targets=handle_targets)
 
 
 def bent_jet():
@@ -66,23 +66,27 @@ def test_their_derivatives_are_those_of_their_energy():
 
 def pulled(links):
     deformer = Deformer(boundary=BOUNDARY, handles=HANDLES, bounds=Bounds(k=0.6))
-    wish = HANDLES.targets(BAR_POINTS + np.array([0, 0, 2]), None, [BoundedPull([2])], links)
-    state, _ = deformer.settle(deformer.start(), wish)
+    handle_targets = HANDLES.targets(
+        BAR_POINTS + np.array([0, 0, 2]), None, [BoundedPull([2])], links
+    )
+    state, _ = deformer.settle(deformer.start(), handle_targets)
     assert state.certificate.is_certified
-    return deformer, wish, state
+    return deformer, handle_targets, state
 
 
 def test_a_link_stops_a_hand_that_pulls_too_far_and_the_pose_stays_when_it_lets_go():
-    deformer, wish, state = pulled([DistanceConstraint(1, 2, 0.0, 1.9)])
+    deformer, handle_targets, state = pulled([DistanceConstraint(1, 2, 0.0, 1.9)])
     places = deformer.positions(state)
     assert abs(places[2] - places[1]) < 1.9 * 1.01
     _, _, usual = pulled(())
     assert abs(np.diff(deformer.positions(usual))[1]) > 2.2
-    left = wish.released(places, HANDLES.stiffness)
+    left = handle_targets.released(places, HANDLES.stiffness)
     assert left.pulls is left.distance_constraints is None
     after, _ = deformer.settle(state, left)
     assert_allclose(deformer.positions(after), places, atol=1e-3)
-    assert not wish.is_same(HANDLES.targets(wish.positions, None, [BoundedPull([2])]))
+    assert not handle_targets.is_same(
+        HANDLES.targets(handle_targets.positions, None, [BoundedPull([2])])
+    )
 
 
 @pytest.mark.parametrize(

@@ -42,9 +42,9 @@ BENT = BAR_POINTS + np.array([0, 0.3j, 0])
 
 def dragged(deformer, targets, steps, state=None):
     state = deformer.start() if state is None else state
-    wish = deformer.handles.targets(targets)
+    handle_targets = deformer.handles.targets(targets)
     for _ in range(steps):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
     return state
 
 
@@ -164,10 +164,10 @@ WILD = {
 def test_wild_requests_stay_certified_and_the_shape_comes_back(name):
     deformer = star()
     state = deformer.start()
-    wish = deformer.handles.targets(WILD[name](np.random.default_rng(1)))
+    handle_targets = deformer.handles.targets(WILD[name](np.random.default_rng(1)))
     lengths = []
     for step in range(40):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         lengths.append(state.statistics.length)
         assert state.certificate.is_certified
         assert np.isfinite(state.map.phi).all()
@@ -204,12 +204,12 @@ def test_an_old_factor_follows_the_hand_like_a_new_one(monkeypatch):
 
 def test_dual_variables_follow_the_steps_of_a_drag():
     deformer = star()
-    wish = deformer.handles.targets(1.5 * STAR_POINTS)
+    handle_targets = deformer.handles.targets(1.5 * STAR_POINTS)
     state = deformer.start()
     for _ in range(6):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
     # Nothing is in the way: dual · c = weight of the barrier is all but reached.
-    step = tracking._prepare(deformer, state, wish)
+    step = tracking._prepare(deformer, state, handle_targets)
     products = step.barrier.duals * step.barrier.margins(step.evaluation.a, step.evaluation.b)
     assert_allclose(products, step.barrier.weight, rtol=0.05)
 
@@ -339,39 +339,39 @@ def test_tightened_bounds_are_walked_into_through_certified_maps():
     loose = state.certificate
     tight = Bounds(k=0.5 * loose.k, sigma_a=1 + 0.6 * (loose.sigma_a - 1), sigma_b=0.6)
     deformer = bar(tight)
-    wish = deformer.handles.targets(ARCHED)
+    handle_targets = deformer.handles.targets(ARCHED)
     with pytest.raises(EngineError, match=says(UNCERTIFIED_START)):
         deformer.start(state.map)
     for steps in range(200):  # noqa: B007 - the count is asserted
         at = deformer.positions(state)
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         assert np.abs(deformer.positions(state) - at).max() < 0.2
         assert state.certificate.is_certified
         assert state.certificate.k <= state.limits.k
         if state.status is not Status.TIGHTENING:
             break
     assert 0 < steps < 150
-    state, _ = deformer.settle(state, wish)
+    state, _ = deformer.settle(state, handle_targets)
     assert_sound(state, tight)
     resumed = deformer.resume(dragged(bar(), ARCHED, 60).map)
     assert resumed.status is Status.TIGHTENING
     assert resumed.certificate.is_certified
-    resumed, _ = deformer.settle(resumed, wish)
+    resumed, _ = deformer.settle(resumed, handle_targets)
     assert_sound(resumed, tight)
     # Wider bounds let the handles go on.
     wide = bar()
-    state, _ = wide.settle(state, wish)
+    state, _ = wide.settle(state, handle_targets)
     assert state.status is Status.CONVERGED
     assert state.certificate.k > tight.k
 
 
 def test_a_map_that_finds_no_way_into_its_bounds_says_so(monkeypatch):
-    state, wish = arched_bar(), bar().handles.targets(ARCHED)
+    state, handle_targets = arched_bar(), bar().handles.targets(ARCHED)
     # Steps that go nowhere.
     monkeypatch.setattr("engine.deform.certified_step.line_search", lambda _, jet, *__: (0.0, jet))
     with pytest.raises(EngineError, match=says(UNSETTLED, status=Status.OUTSIDE.value)):
-        bar(Bounds(k=0.05)).settle(state, wish)
-    stuck, steps = bar(Bounds(k=0.05)).settle(state, wish, throw=False)
+        bar(Bounds(k=0.05)).settle(state, handle_targets)
+    stuck, steps = bar(Bounds(k=0.05)).settle(state, handle_targets, throw=False)
     assert stuck.status is Status.OUTSIDE
     assert steps < 80
     assert stuck.certificate.is_certified
@@ -382,8 +382,8 @@ def test_rotations_are_met():
     deformer = star()
     angle = np.full(6, np.nan)
     angle[1] = 0.8
-    wish = deformer.handles.targets(STAR_POINTS, angle)
-    state, _ = deformer.settle(deformer.start(), wish)
+    handle_targets = deformer.handles.targets(STAR_POINTS, angle)
+    state, _ = deformer.settle(deformer.start(), handle_targets)
     assert state.status is Status.CONVERGED
     assert_sound(state, BOUNDS)
     turned = np.angle(state.map.derivatives(deformer.handles.points)[0])
@@ -435,7 +435,7 @@ def test_bad_handles_are_refused(points, weights, message):
         ([0.0, 0.0], [np.inf, 0.0], "angles"),
     ],
 )
-def test_bad_wishes_are_refused(targets, rotations, message):
+def test_bad_targets_are_refused(targets, rotations, message):
     handles = Handles.place(star_boundary(), [0.1, 0.1])
     with pytest.raises(EngineError, match=message):
         handles.targets(targets, rotations)
@@ -534,10 +534,10 @@ def test_samples_are_added_where_a_bound_was_broken():
 def test_a_wild_drag_adds_samples():
     deformer = star(Bounds(k=0.3, sigma_a=2.0, sigma_b=0.5))
     state = deformer.start()
-    wish = deformer.handles.targets(STAR_POINTS[::-1])
+    handle_targets = deformer.handles.targets(STAR_POINTS[::-1])
     most = 0
     for _ in range(40):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         most = max(most, len(state.boundary.points))
     assert most > len(deformer.boundary.points)
 

@@ -136,10 +136,10 @@ def test_margins_change_as_their_derivatives_say():
 def problem(*, rotations=None, barrier=True, seed=3):
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS, [1, 2, 1, 1, 0.5, 1])
-    wish = handles.targets(1.02 * STAR_POINTS + 0.01j, rotations)
+    handle_targets = handles.targets(1.02 * STAR_POINTS + 0.01j, rotations)
     all_walls = BarrierBounds.for_samples(WALLS, len(boundary.points))
     walls = Barrier(bounds=all_walls, weight=0.2) if barrier else None
-    objective = Objective(boundary=boundary, handles=handles, targets=wish, barrier=walls)
+    objective = Objective(boundary=boundary, handles=handles, targets=handle_targets, barrier=walls)
     rng = np.random.default_rng(seed)
     n = len(boundary.cage)
     noise = rng.normal(size=(2, n)) + 1j * rng.normal(size=(2, n))
@@ -173,12 +173,12 @@ def test_hessian_is_exact_where_nothing_is_projected(barrier):
     assert_products(objective, jet, len(phi), rng)
 
 
-def test_hessian_of_rotations_is_exact_at_their_wish():
+def test_hessian_of_rotations_is_exact_at_their_targets():
     objective, phi, psi, rng = problem()
     jet = objective.evaluate(phi, psi)
-    wish = objective.handles.targets(jet.positions, np.angle(jet.fz))
+    handle_targets = objective.handles.targets(jet.positions, np.angle(jet.fz))
     objective = Objective(
-        boundary=objective.boundary, handles=objective.handles, targets=wish, barrier=None
+        boundary=objective.boundary, handles=objective.handles, targets=handle_targets, barrier=None
     )
     assert_products(objective, jet, len(phi), rng)
 

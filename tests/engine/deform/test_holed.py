@@ -30,12 +30,17 @@ from engine.maps import Boundary, Bounds, HarmonicMap, LocalBounds, certify
 def problem(shape, name, seed=3):
     boundary = boundary_of(name, 3)
     handles = Handles.place(boundary, inner_points(shape, 200)[:5])
-    wish = handles.targets(1.02 * handles.points + 0.01j, [0.3, np.nan, np.nan, -0.2, np.nan])
+    handle_targets = handles.targets(
+        1.02 * handles.points + 0.01j, [0.3, np.nan, np.nan, -0.2, np.nan]
+    )
     walls = BarrierBounds.for_samples(
         LocalBounds(k=0.95, sigma_a=30.0, sigma_b=0.01), len(boundary.points)
     )
     objective = Objective(
-        boundary=boundary, handles=handles, targets=wish, barrier=Barrier(bounds=walls, weight=0.2)
+        boundary=boundary,
+        handles=handles,
+        targets=handle_targets,
+        barrier=Barrier(bounds=walls, weight=0.2),
     )
     phi, psi = random_map(shape, seed, 0.02).columns
     grown = HarmonicMap.similarity(shape.cage, shape.holes, factor=0.6).columns[0]
@@ -49,7 +54,7 @@ def test_derivatives_agree_with_finite_differences(shape, name):
     jet = objective.evaluate(phi, psi)
     radial = objective.radial_derivatives(jet)
     assert np.all(radial.around_a > 0)  # nothing is projected
-    # Only at their wish rotations have no projected part.
+    # Only at their targets rotations have no projected part.
     objective = replace(objective, targets=objective.handles.targets(objective.targets.positions))
     gradient = objective.gradient(jet, radial)
     hessian = np.triu(projected_hessian(objective, jet, radial))
@@ -91,10 +96,10 @@ def test_a_hard_drag_is_certified_at_each_step_and_comes_to_rest():
     points, targets = DRAGS["swirl"]
     boundary = boundary_of("ring")
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, points), bounds=Bounds())
-    wish = deformer.handles.targets(targets)
+    handle_targets = deformer.handles.targets(targets)
     state = deformer.start()
     for _ in range(150):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         assert state.certificate.is_certified
         if state.status.is_final:
             break

@@ -40,10 +40,10 @@ def extremes_of(f, half):
 
 
 def come_to_rest(deformer, start=None, wanted=WANTED):
-    wish = deformer.handles.targets(wanted)
+    handle_targets = deformer.handles.targets(wanted)
     state = deformer.start() if start is None else start
     for _ in range(500):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         if state.status.is_final:
             return state
     raise AssertionError("the shape does not come to rest")

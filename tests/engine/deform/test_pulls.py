@@ -28,8 +28,8 @@ TWO = (BoundedPull([1, 3], FORCE), BoundedPull([4], FORCE / 2))
 
 
 def objective(targets, hands, **more):
-    wish = HANDLES.targets(targets, None, hands)
-    return Objective(boundary=BOUNDARY, handles=HANDLES, targets=wish, **more)
+    handle_targets = HANDLES.targets(targets, None, hands)
+    return Objective(boundary=BOUNDARY, handles=HANDLES, targets=handle_targets, **more)
 
 
 def coefficients(seed=0):
@@ -39,10 +39,10 @@ def coefficients(seed=0):
     return cage + noise[0], noise[1]
 
 
-def settled(deformer, wish, state=None):
+def settled(deformer, handle_targets, state=None):
     state = deformer.start() if state is None else state
     for _ in range(500):
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         if state.status.is_final:
             return state
     raise AssertionError("the shape does not come to rest")
@@ -61,10 +61,10 @@ def shape():
 
 @cache
 def pulled_out():
-    """Return the star at rest with one arm pulled beyond reach, and its wish."""
+    """Return the star at rest with one arm pulled beyond reach, and its targets."""
     deformer = shape()
-    wish = deformer.handles.targets(OUT, None, (BoundedPull([1]),))
-    return wish, settled(deformer, wish)
+    handle_targets = deformer.handles.targets(OUT, None, (BoundedPull([1]),))
+    return handle_targets, settled(deformer, handle_targets)
 
 
 @pytest.mark.parametrize("away", [1e-4, 3e-3, 0.1, 1.0, 1e5])
@@ -131,16 +131,16 @@ def test_a_hand_beyond_reach_moves_what_it_holds_and_nothing_else():
         held = deformer.step(held, deformer.handles.targets(OUT))
     others = [0, 2, 3, 4, 5]
     assert pixels(deformer.positions(held)[others], STAR_POINTS[others]) > 10
-    wish, state = pulled_out()
+    handle_targets, state = pulled_out()
     assert state.status is Status.AT_LIMITS
     assert state.certificate.sigma_a > 0.99 * BOUNDS.sigma_a
     places = deformer.positions(state)
     assert pixels(places[others], STAR_POINTS[others]) < 3
     assert pixels(places[1], OUT[1]) > 100
     # All of its force is in use, and no more.
-    force = 2 * deformer.handles.stiffness[1] * abs(wish.target_errors(places)[1])
+    force = 2 * deformer.handles.stiffness[1] * abs(handle_targets.target_errors(places)[1])
     assert_allclose(force, 10.0 / SIZE, rtol=1e-9)
-    # A wish that is within reach is met like any other.
+    # Targets within reach are met like any others.
     near = STAR_POINTS.copy()
     near[1] *= 1.1
     one, two = (
@@ -152,9 +152,9 @@ def test_a_hand_beyond_reach_moves_what_it_holds_and_nothing_else():
 
 def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     deformer = star(BOUNDS)
-    wish, state = pulled_out()
+    handle_targets, state = pulled_out()
     places, shape = deformer.positions(state), state.map(BOUNDARY.outline)
-    left = wish.released(places, deformer.handles.stiffness)
+    left = handle_targets.released(places, deformer.handles.stiffness)
     assert left.pulls is None
     assert_array_equal(left.positions[[0, 2, 3, 4, 5]], STAR_POINTS[[0, 2, 3, 4, 5]])
     beyond = left.positions[1] - places[1]
@@ -166,12 +166,12 @@ def test_what_a_hand_lets_go_stays_where_it_is_and_is_found_again():
     for _ in range(50):
         again = deformer.step(again, left)
     assert pixels(again.map(BOUNDARY.outline), shape) < 3
-    # A wish that nothing bounds stays as it is.
+    # Targets that nothing bounds stay as they are.
     assert left.released(places, deformer.handles.stiffness) is left
 
 
 def within_reach():
-    """Return a wish that the star meets."""
+    """Return targets that the star meets."""
     targets = STAR_POINTS.copy()
     targets[1] *= 1 + 0.15 * SIZE / abs(targets[1])
     return shape().handles.targets(targets, None, (BoundedPull([1]),))
@@ -180,18 +180,18 @@ def within_reach():
 @pytest.mark.parametrize("is_reached", [True, False])
 def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
     deformer = shape()
-    wish, state = pulled_out()
+    handle_targets, state = pulled_out()
     if is_reached:
-        wish = within_reach()
-        state = settled(deformer, wish)
-    left = wish.released(deformer.positions(state), deformer.handles.stiffness)
+        handle_targets = within_reach()
+        state = settled(deformer, handle_targets)
+    left = handle_targets.released(deformer.positions(state), deformer.handles.stiffness)
     released = deformer.release(state, left)
     assert deformer.step(released, left) is released
     assert released.map is state.map
     assert deformer.release(released, left).status is state.status
-    # It is a minimum of the new wish as it was of the old one, and a new search finds it again.
+    # It is a minimum for the new targets as for the old ones, and a new search finds it again.
     gradients = []
-    for each in (wish, left):
+    for each in (handle_targets, left):
         mine, jet = deformer.measure_state(state, each)
         gradients.append(mine.gradient(jet, mine.radial_derivatives(jet)))
     assert_allclose(*gradients, rtol=0, atol=1e-9)
@@ -202,26 +202,26 @@ def test_a_pose_at_rest_stays_when_hands_let_go(is_reached):
 
 
 def test_a_pose_on_its_way_goes_on_when_hands_let_go():
-    deformer, wish = shape(), within_reach()
-    moving = deformer.step(deformer.start(), wish)
-    left = wish.released(deformer.positions(moving), deformer.handles.stiffness)
+    deformer, handle_targets = shape(), within_reach()
+    moving = deformer.step(deformer.start(), handle_targets)
+    left = handle_targets.released(deformer.positions(moving), deformer.handles.stiffness)
     going = deformer.release(moving, left)
     assert going.status is Status.MOVING
     assert settled(deformer, left, going).map is not moving.map
 
 
 def test_a_short_search_comes_to_rest_where_a_long_one_does(monkeypatch):
-    deformer, wish = shape(), within_reach()
+    deformer, handle_targets = shape(), within_reach()
     moved = deformer.start()
     for share in np.linspace(0, 1, 6)[1:]:
-        targets = STAR_POINTS + share * (wish.positions - STAR_POINTS)
+        targets = STAR_POINTS + share * (handle_targets.positions - STAR_POINTS)
         moved = deformer.step(moved, deformer.handles.targets(targets, None, (BoundedPull([1]),)))
-    short, few = deformer.settle(moved, wish)
+    short, few = deformer.settle(moved, handle_targets)
     # Heavier at first, slowly lighter, and hands with nothing along their pull in the Hessian.
     monkeypatch.setattr("engine.deform.interior_point.continuation.HERE_PER_ENERGY", 1e-2)
     monkeypatch.setattr("engine.deform.interior_point.continuation.LOWER_IN_THE_OPEN", 0.1)
     monkeypatch.setattr("engine.deform.interior_point.continuation.FAR_FROM_REST", np.inf)
-    long, many = deformer.settle(moved, wish)
+    long, many = deformer.settle(moved, handle_targets)
     assert few <= 6 < many
     for state in (short, long):
         assert state.status is Status.CONVERGED
@@ -235,8 +235,8 @@ def test_a_hand_that_comes_back_leaves_nothing_behind():
     state = deformer.start()
     for share in [*np.linspace(0, 1, 12), *np.linspace(1, 0, 12)]:
         targets = STAR_POINTS + share * (OUT - STAR_POINTS)
-        wish = deformer.handles.targets(targets, None, (BoundedPull([1]),))
-        state = deformer.step(deformer.step(state, wish), wish)
+        handle_targets = deformer.handles.targets(targets, None, (BoundedPull([1]),))
+        state = deformer.step(deformer.step(state, handle_targets), handle_targets)
     state = settled(
         deformer, deformer.handles.targets(STAR_POINTS, None, (BoundedPull([1]),)), state
     )
@@ -249,13 +249,13 @@ def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
     targets[[1, 2]] += 0.6 * SIZE * np.exp(2.2j)
     states = []
     for hands in ((BoundedPull([1, 2]),), (BoundedPull([1]), BoundedPull([2]))):
-        wish = deformer.handles.targets(targets, None, hands)
-        states.append((wish, deformer.positions(settled(deformer, wish))))
-    (wish, places), (wish_of_two, places_of_two) = states
-    force = (2 * deformer.handles.stiffness * wish.target_errors(places))[[1, 2]].sum()
+        handle_targets = deformer.handles.targets(targets, None, hands)
+        states.append((handle_targets, deformer.positions(settled(deformer, handle_targets))))
+    (handle_targets, places), (targets_of_two, places_of_two) = states
+    force = (2 * deformer.handles.stiffness * handle_targets.target_errors(places))[[1, 2]].sum()
     assert_allclose(abs(force), 10.0 / SIZE, rtol=1e-9)
     # Two hands pull twice as strongly, and do not keep the handles as they are to each other.
-    force = (2 * deformer.handles.stiffness * wish_of_two.target_errors(places_of_two))[[1, 2]]
+    force = (2 * deformer.handles.stiffness * targets_of_two.target_errors(places_of_two))[[1, 2]]
     assert_allclose(np.abs(force), 10.0 / SIZE, rtol=1e-9)
     asked = targets[1] - targets[2]
     assert (
@@ -263,7 +263,7 @@ def test_handles_that_one_hand_pulls_keep_their_formation_and_pull_as_one():
         < 5
         < pixels(places_of_two[1] - places_of_two[2], asked)
     )
-    left = wish.released(places, deformer.handles.stiffness)
+    left = handle_targets.released(places, deformer.handles.stiffness)
     assert_allclose(left.positions[1] - left.positions[2], asked, rtol=1e-12)
 
 
@@ -274,13 +274,13 @@ def test_around_a_hole_a_hand_pulls_as_bounded():
     handles = Handles.place(boundary, points)
     far = points.copy()
     far[0] *= 1 + boundary.size / abs(far[0])
-    wish = handles.targets(far, None, (BoundedPull([0]),))
+    handle_targets = handles.targets(far, None, (BoundedPull([0]),))
     deformer = Deformer(boundary=boundary, handles=handles, bounds=BOUNDS)
-    state = settled(deformer, wish)
+    state = settled(deformer, handle_targets)
     assert state.status is Status.AT_LIMITS
     places = deformer.positions(state)
     assert np.abs(places - points)[1:].max() < 3e-3 * boundary.size
-    mine = Objective(boundary=boundary, handles=handles, targets=wish)
+    mine = Objective(boundary=boundary, handles=handles, targets=handle_targets)
     jet = mine.evaluate(*state.map.columns)
     gradient = mine.gradient(jet, mine.radial_derivatives(jet))
     direction = np.random.default_rng(3).normal(size=len(gradient))
@@ -293,15 +293,15 @@ def test_around_a_hole_a_hand_pulls_as_bounded():
 def test_a_pull_of_everything_moves_the_whole_shape(far):
     deformer = bar()
     way = far * deformer.boundary.size * np.exp(0.4j)
-    wish = deformer.handles.targets(BAR_POINTS + way, None, (BoundedPull([0, 1, 2]),))
-    state = settled(deformer, wish)
+    handle_targets = deformer.handles.targets(BAR_POINTS + way, None, (BoundedPull([0, 1, 2]),))
+    state = settled(deformer, handle_targets)
     assert state.status is Status.CONVERGED
     outline = deformer.boundary.outline
     assert_allclose(state.map(outline), outline + way, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("hands", "told"),
+    ("hands", "reported"),
     [
         ((BoundedPull([1], 0.0),), says(FORCE_NOT_POSITIVE, pull=0)),
         ((BoundedPull([1], np.nan),), says(FORCE_NOT_POSITIVE, pull=float("nan"))),
@@ -311,18 +311,18 @@ def test_a_pull_of_everything_moves_the_whole_shape(far):
         ((BoundedPull([1, 2]), BoundedPull([2])), "Two hands pull at handle 2"),
     ],
 )
-def test_hands_that_cannot_pull_are_refused(hands, told):
-    with pytest.raises(EngineError, match=told):
+def test_hands_that_cannot_pull_are_refused(hands, reported):
+    with pytest.raises(EngineError, match=reported):
         HANDLES.targets(OUT, None, hands)
 
 
 def test_a_hand_of_unbounded_force_holds():
     deformer = star(BOUNDS)
-    wishes = [
+    requests = [
         deformer.handles.targets(OUT, None, hands) for hands in ((), (BoundedPull([1], np.inf),))
     ]
-    assert wishes[0].is_same(wishes[1])
-    assert not wishes[0].is_same(deformer.handles.targets(OUT, None, (BoundedPull([1]),)))
+    assert requests[0].is_same(requests[1])
+    assert not requests[0].is_same(deformer.handles.targets(OUT, None, (BoundedPull([1]),)))
     other = deformer.handles.targets(OUT, None, (BoundedPull([2]),))
     assert not other.is_same(deformer.handles.targets(OUT, None, (BoundedPull([1]),)))
 

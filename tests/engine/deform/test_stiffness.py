@@ -36,8 +36,8 @@ MIDDLE = np.exp(np.log(100) * np.clip(1.6 - np.abs(BAR.outline.real), 0.0, 1.0))
 def settled(boundary, points, targets, bounds=WIDE, hands=()):
     handles = Handles.place(boundary, points)
     deformer = Deformer(boundary=boundary, handles=handles, bounds=bounds)
-    wish = handles.targets(targets, None, hands)
-    state, _ = deformer.settle(deformer.start(), wish)
+    handle_targets = handles.targets(targets, None, hands)
+    state, _ = deformer.settle(deformer.start(), handle_targets)
     assert state.certificate.is_certified
     return deformer, state
 

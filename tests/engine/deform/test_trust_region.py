@@ -29,8 +29,8 @@ def certificate(k=0.26, sigma_a=1.51, sigma_b=0.89):
     return Certificate(k=k, sigma_a=sigma_a, sigma_b=sigma_b, winding=0, is_certified=True)
 
 
-def after(schedule, length, shortfall=0.5):
-    return schedule.after_step(length=length, shortfall=shortfall, moving=True)
+def after(schedule, length, error=0.5):
+    return schedule.after_step(length=length, error=error, moving=True)
 
 
 def test_short_steps_raise_the_barrier_and_draw_in_the_leash():
@@ -49,7 +49,7 @@ def test_a_drag_without_progress_is_at_rest():
         schedule = after(schedule, 0.1)
     assert schedule.is_at_rest
     assert not schedule.for_new_targets().is_at_rest
-    progress = after(schedule, 0.1, shortfall=0.4)
+    progress = after(schedule, 0.1, error=0.4)
     assert progress.idle_steps == 0
 
 
@@ -106,11 +106,11 @@ def test_limits_may_be_far_from_the_identity():
 def leashed(targets, rotations=None, leash=1.0):
     boundary = star_boundary()
     handles = Handles.place(boundary, STAR_POINTS)
-    wish = handles.targets(targets, rotations)
-    jet = Objective(boundary=boundary, handles=handles, targets=wish).evaluate(
+    handle_targets = handles.targets(targets, rotations)
+    jet = Objective(boundary=boundary, handles=handles, targets=handle_targets).evaluate(
         boundary.cage, 0 * boundary.cage
     )
-    near, cut = cut_to_radius(handles, boundary.size, leash, jet, wish)
+    near, cut = cut_to_radius(handles, boundary.size, leash, jet, handle_targets)
     return near, cut, STEP_RADIUS * boundary.size * leash
 
 

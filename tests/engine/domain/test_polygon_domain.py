@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from engine.arrays import FEW_ENTRIES, NOT_FINITE, NOT_WHOLE, OTHER_KIND
 from engine.domain import Domain, build_domain, domain_of_polygon, require_domain
 from engine.domain.build import LONGEST_EDGE, NO_DETAIL, NO_MASK
-from engine.domain.outline.grid import EMPTY_MASK
+from engine.domain.mask.grid import EMPTY_MASK
 from engine.errors import EngineError
 from engine.geometry import diameter, edge_vectors, signed_area
 from engine.geometry.polygon import HOLE_LEAVES

@@ -75,7 +75,7 @@ def test_every_domain_that_is_built_is_one(picture):
         (domain(vertices=0.9 * OUTLINE), says(MESH_UNFILLED)),
     ],
 )
-def test_what_is_wrong_is_told(broken, message):
+def test_fault_of_a_domain_is_named(broken, message):
     with pytest.raises(EngineError, match=message):
         require_domain(broken)
 
@@ -106,7 +106,7 @@ def altered(domain: MeshedDomain, **changes) -> MeshedDomain:
     return replace(domain, holes=(replace(domain.holes[0], **changes),))
 
 
-def test_what_is_wrong_with_a_hole_is_told(holed):
+def test_fault_of_a_hole_is_named(holed):
     (hole,) = holed.holes
     middle = hole.centre
     filled = build_domain(seen(ring()), triangles=1_000, detail="coarse", holes="fill")[0].mesh

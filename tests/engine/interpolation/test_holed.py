@@ -229,8 +229,10 @@ def test_handles_pulled_hard_keep_bounds_and_are_closed(name, variant):
     least_b = min(distortion.sigma_b(*end).min() for end in ends)
     keyframes = sample_keyframes(maps, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keyframes]))
-    passage = KeyframeBlend.of(keyframes, sheets)
-    motion = prepare_inbetweens(variant, KeyframeSegment(sites, passage, Bounds(), transform))
+    keyframe_blend = KeyframeBlend.of(keyframes, sheets)
+    motion = prepare_inbetweens(
+        variant, KeyframeSegment(sites, keyframe_blend, Bounds(), transform)
+    )
     assert 1e-4 < motion.correction < 0.3
     for time in (0.2, 0.5, 0.8):
         frame = motion.frame(time)
@@ -345,7 +347,7 @@ def test_the_correction_is_the_smallest():
         assert size(other) > 1.001 * smallest
 
 
-def test_a_key_that_is_turned_inside_out_around_a_hole_is_told_as_that():
+def test_key_turned_inside_out_around_a_hole_is_named():
     shape = ring()
     boundary = Boundary.sample(shape.domain)
     inside = shape.holes[0].cage

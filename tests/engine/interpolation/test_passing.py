@@ -149,10 +149,10 @@ def test_two_keyframes_have_the_in_betweens_of_the_paper(variant):
     # A stop at both ends is the same way at another pace.
     sites = plain.sampled_domain
     sheets = root_sheets(np.array([key.anchor_fz for key in plain.keyframes]))
-    passage = KeyframeBlend.of(plain.keyframes, sheets, TimeWeights.between(0.0, 0.0))
+    keyframe_blend = KeyframeBlend.of(plain.keyframes, sheets, TimeWeights.between(0.0, 0.0))
     extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
     stopped = prepare_inbetweens(
-        variant, KeyframeSegment(sites, passage, Bounds(), transform=extension)
+        variant, KeyframeSegment(sites, keyframe_blend, Bounds(), transform=extension)
     )
     if not variant.is_scaled:  # whose ρ is for other bounds
         eased = plain.frame(0.3**2 * (3 - 2 * 0.3))
@@ -182,7 +182,7 @@ def test_metric_keeps_the_bounds_everywhere(seed):
 
 
 @pytest.mark.parametrize("variant", [Variant.NU, Variant.SCALED_ETA])
-def test_what_the_other_variants_promise_is_kept(variant):
+def test_other_variants_keep_their_properties(variant):
     maps = [random_map(SHAPE, 30 + i, k=0.5, bend=0.8) for i in range(4)]
     along = scattered_on(OUTLINE, 25)
     bounds = Bounds(k=0.6, sigma_a=8.0, sigma_b=0.15)
@@ -288,8 +288,10 @@ def test_a_tangent_is_the_same_in_any_unit_of_time_and_shrinks_with_the_bounds()
 def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
     prepared = between(MAPS[:3], variant=variant, through=through)
     interval, sites = prepared.segments[0], prepared.sampled_domain
-    passage = interval.keyframe_blend
-    own = KeyframeBlend.of(passage.keyframes, passage.sheets, passage.eta_time_weights)
+    keyframe_blend = interval.keyframe_blend
+    own = KeyframeBlend.of(
+        keyframe_blend.keyframes, keyframe_blend.sheets, keyframe_blend.eta_time_weights
+    )
     alone = KeyframeSegment(
         sites, own, Bounds(), transform=transform_of(SHAPE).at(sites.paths.nodes)
     )
@@ -300,7 +302,7 @@ def test_a_frame_alone_is_the_same_as_among_the_others(variant, through):
         assert_allclose(frame.fz, expected.fz, rtol=0, atol=1e-5)
         assert_allclose(frame.fzbar, expected.fzbar, rtol=0, atol=1e-5)
         if time in (0.0, 1.0):
-            positions = passage.ends[int(time)].positions
+            positions = keyframe_blend.ends[int(time)].positions
             assert_allclose(frame.positions, positions, rtol=0, atol=1e-12)
     with pytest.raises(EngineError, match="from time 0 to 1"):
         frame_at(1.5, variant, alone)
@@ -311,7 +313,7 @@ def test_a_course_asks_for_its_keyframes():
     keys = sample_keyframes(MAPS[:2], sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     course = TimeWeights.between(Tangent(InteriorKnot(1.0, 1.0), 1.0, 1.0), 1.0)
-    with pytest.raises(EngineError, match=says(KEYFRAMES_OF_SEGMENT, wanted="three", count=2)):
+    with pytest.raises(EngineError, match=says(KEYFRAMES_OF_SEGMENT, wanted=3, count=2)):
         KeyframeBlend.of(keys, sheets, course)
 
 
@@ -363,10 +365,10 @@ def test_what_leads_to_another_motion_keeps_the_bounds_and_is_proven(variant, bo
     )
     course = TimeWeights.between(1.0, tangent, apart=(False, True))
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    passage = KeyframeBlend.of(keys, sheets, course)
+    keyframe_blend = KeyframeBlend.of(keys, sheets, course)
     extension = transform_of(SHAPE).at(sites.paths.nodes) if variant == "metric" else None
     interval = prepare_inbetweens(
-        Variant(variant), KeyframeSegment(sites, passage, bounds, extension)
+        Variant(variant), KeyframeSegment(sites, keyframe_blend, bounds, extension)
     )
     assert_allclose(interval.frame(1.0).positions, keys[1].positions, rtol=0, atol=1e-9)
     proof = prove(interval)

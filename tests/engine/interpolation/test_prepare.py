@@ -79,8 +79,10 @@ def test_intervals_are_prepared_one_at_a_time_and_keyframes_shared(variant):
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
     transform = stage_of(SHAPE, POINTS).transform.at(sites.paths.nodes)
     for i, pair in enumerate((keys[:2], keys[1:])):
-        passage = KeyframeBlend.of(pair, sheets[i : i + 2])
-        interval = prepare_inbetweens(variant, KeyframeSegment(sites, passage, Bounds(), transform))
+        keyframe_blend = KeyframeBlend.of(pair, sheets[i : i + 2])
+        interval = prepare_inbetweens(
+            variant, KeyframeSegment(sites, keyframe_blend, Bounds(), transform)
+        )
         frame = interval.frame(0.4)
         expected = whole.frame(i + 0.4)
         assert_allclose(frame.positions, expected.positions, rtol=0, atol=1e-12)
@@ -251,9 +253,7 @@ def test_what_a_variant_needs_is_asked_for():
     sites = sample_domain(boundary_of(SHAPE), POINTS)
     keys = sample_keyframes(MAPS, sites)
     sheets = root_sheets(np.array([key.anchor_fz for key in keys]))
-    with pytest.raises(
-        EngineError, match=says(KEYFRAMES_OF_SEGMENT, wanted="two", count=3, sheets=3)
-    ):
+    with pytest.raises(EngineError, match=says(KEYFRAMES_OF_SEGMENT, wanted=2, count=3, sheets=3)):
         KeyframeBlend.of(keys, sheets)
     interval = KeyframeSegment(sites, KeyframeBlend.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:

@@ -139,10 +139,10 @@ def test_around_holes_no_smaller_rho_leaves_the_bounds_and_no_larger_one_obeys_t
         return np.min(left, axis=0)
 
     largest = np.minimum(ratios, 1.0)
-    told = room(0 * a) > 0
+    reported = room(0 * a) > 0
     for share in np.linspace(0.0, 1.0, 33):
-        assert (room(share * largest)[told] > -1e-9).all()
-    binding = told & (ratios < 1)
+        assert (room(share * largest)[reported] > -1e-9).all()
+    binding = reported & (ratios < 1)
     assert (room(1.001 * largest)[binding] < 0).all()
 
 

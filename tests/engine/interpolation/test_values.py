@@ -63,9 +63,9 @@ def between(name, variant, points, beside=()):
         Boundary.sample(shape.domain), points, anchor=shape.anchor, values_at=beside
     )
     keys = sample_keyframes(maps, sites)
-    passage = KeyframeBlend.of(keys, root_sheets(np.array([key.anchor_fz for key in keys])))
+    keyframe_blend = KeyframeBlend.of(keys, root_sheets(np.array([key.anchor_fz for key in keys])))
     extension = transform_of(name).at(sites.paths.nodes) if variant.needs_transform else None
-    return prepare_inbetweens(variant, KeyframeSegment(sites, passage, Bounds(), extension))
+    return prepare_inbetweens(variant, KeyframeSegment(sites, keyframe_blend, Bounds(), extension))
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from engine.maps import (
     certify_segments,
     segment_enclosures,
 )
-from engine.maps.bounds import IMPOSSIBLE_BOUND
+from engine.maps.bounds import IMPOSSIBLE_BOUND, IMPOSSIBLE_SIGMA_A
 from engine.maps.cauchy import cauchy_derivatives
 from engine.maps.certificate import OTHER_SPAN
 from engine.maps.harmonic_map import HarmonicMap
@@ -271,7 +271,8 @@ def test_bad_shapes_are_refused(outline, cage, message):
     ],
 )
 def test_bounds_without_the_identity_are_refused(bounds):
-    with pytest.raises(EngineError, match=says(IMPOSSIBLE_BOUND)):
+    message = IMPOSSIBLE_SIGMA_A if "sigma_a" in bounds else IMPOSSIBLE_BOUND
+    with pytest.raises(EngineError, match=says(message)):
         Bounds(**bounds)
 
 

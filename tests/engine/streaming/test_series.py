@@ -233,7 +233,7 @@ def test_what_float32_cannot_hold_is_left_to_the_direct_path():
         series.values(0.3)
 
 
-def test_a_series_without_pieces_promises_nothing():
+def test_series_without_pieces_guarantees_nothing():
     rng = np.random.default_rng(0)
     series = finish(build_series(Curves(lambda _: rng.normal(size=5))))
     assert series.pieces == ()

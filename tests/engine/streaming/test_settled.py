@@ -1,4 +1,4 @@
-"""Motion between poses as a person makes them is always a series, and its error is told truly."""
+"""Motion between poses as a person makes them is always a series, and its error is true."""
 
 import pytest
 from settled_poses import SHAPES, series_of

@@ -5,6 +5,7 @@ from app.rigging.motions.leg_chains import STANDING, LimbMotion
 from app.rigging.motions.library.four_legs import WALK_ON_FOUR
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait
+from app.texts import _
 
 LEFT_RIGHT = (("foot.L", 0.0), ("foot.R", 0.5))
 FEET = ("hips", "foot.L", "foot.R")
@@ -14,8 +15,8 @@ LEAPERS = ("hips",)  # from the side both legs may be one joint chain
 # as the other foot passes it. Arms swing against legs.
 WALK = Motion(
     name="walk",
-    label="Walk",
-    hint="One foot after the other, arms against legs",
+    label=_("Walk"),
+    hint=_("One foot after the other, arms against legs"),
     seconds=1.0,
     keys=24,
     templates={
@@ -60,8 +61,8 @@ WALK = Motion(
 # Both feet leave the ground between steps.
 RUN = Motion(
     name="run",
-    label="Run",
-    hint="Long steps, and a moment in the air between them",
+    label=_("Run"),
+    hint=_("Long steps, and a moment in the air between them"),
     seconds=2 / 3,
     keys=24,
     templates={
@@ -116,8 +117,8 @@ _GREETING = {
 }
 WAVE = Motion(
     name="wave",
-    label="Wave",
-    hint="An arm goes up, waves and comes down",
+    label=_("Wave"),
+    hint=_("An arm goes up, waves and comes down"),
     seconds=2.0,
     keys=24,
     templates={
@@ -133,8 +134,8 @@ WAVE = Motion(
 
 NOD = Motion(
     name="nod",
-    label="Nod",
-    hint="The head says yes, twice",
+    label=_("Nod"),
+    hint=_("The head says yes, twice"),
     seconds=1.5,
     keys=24,
     templates={
@@ -201,8 +202,8 @@ _LEAP = LimbMotion(
 
 JUMP = Motion(
     name="jump",
-    label="Jump",
-    hint="Crouch, leap, land and rise again",
+    label=_("Jump"),
+    hint=_("Crouch, leap, land and rise again"),
     seconds=1.25,
     keys=15,
     templates={"biped-side": _LEAP, "biped-front": _LEAP},

@@ -2,11 +2,12 @@
 
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.waves import Wave
+from app.texts import _
 
 SLITHER = Motion(
     name="slither",
-    label="Slither",
-    hint="A wave runs from the head to the tail",
+    label=_("Slither"),
+    hint=_("A wave runs from the head to the tail"),
     seconds=1.5,
     keys=12,
     templates={"chain": Wave(degrees=32, waves=1.0, first=0.6)},
@@ -14,8 +15,8 @@ SLITHER = Motion(
 
 WAG = Motion(
     name="wag",
-    label="Wag",
-    hint="It is held at its first joint and swings, its tip last",
+    label=_("Wag"),
+    hint=_("It is held at its first joint and swings, its tip last"),
     seconds=1.0,
     keys=12,
     templates={"chain": Wave(degrees=34, waves=0.35, first=0.15, held=True)},

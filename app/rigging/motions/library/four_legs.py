@@ -4,6 +4,7 @@ from app.rigging.motions.curves import even_curve
 from app.rigging.motions.leg_chains import LimbMotion
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.steps import Gait
+from app.texts import _
 
 FEET = ("hips", "chest")
 _TRUNK = {
@@ -30,8 +31,8 @@ WALK_ON_FOUR = LimbMotion(
 # Two beats: diagonal feet move together.
 TROT = Motion(
     name="trot",
-    label="Trot",
-    hint="Feet that are across go together, with a spring between",
+    label=_("Trot"),
+    hint=_("Feet that are across go together, with a spring between"),
     seconds=0.75,
     keys=24,
     templates={

@@ -4,11 +4,12 @@ from app.rigging.motions.curves import Curve, Leap, even_curve
 from app.rigging.motions.library.bipeds import LEAPING
 from app.rigging.motions.motion import Motion
 from app.rigging.motions.squash_stretch import SquashStretch
+from app.texts import _
 
 BREATHE = Motion(
     name="breathe",
-    label="Breathe",
-    hint="It swells and sinks, slowly",
+    label=_("Breathe"),
+    hint=_("It swells and sinks, slowly"),
     seconds=3.0,
     keys=8,
     templates={
@@ -21,8 +22,8 @@ BREATHE = Motion(
 
 SWAY = Motion(
     name="sway",
-    label="Sway",
-    hint="It leans from side to side on its foot, as in the wind",
+    label=_("Sway"),
+    hint=_("It leans from side to side on its foot, as in the wind"),
     seconds=2.5,
     keys=12,
     templates={
@@ -34,8 +35,8 @@ SWAY = Motion(
 
 HOP = Motion(
     name="hop",
-    label="Hop",
-    hint="It leaves the ground and lands, with both feet at once, or squashed and stretched",
+    label=_("Hop"),
+    hint=_("It leaves the ground and lands, with both feet at once, or squashed and stretched"),
     seconds=1.0,
     keys=24,
     templates={

@@ -80,7 +80,7 @@ def test_of_discrete_harmonic_keyframes_only_scaled_eta_becomes_integrable(metho
     assert (order > fault) == (method == "mesh-eta")
 
 
-def test_what_does_not_fit_is_told():
+def test_positions_that_do_not_fit_are_refused():
     with pytest.raises(EngineError, match="keyframe 1 has 3 places, but the outline 24"):
         harmonic_coordinate_maps(OUTLINE, CAGE, [OUTLINE, OUTLINE[:3]])
     mesh = triangulate(bar()[0], 100)

@@ -65,7 +65,7 @@ def test_lengths_on_the_border_are_those_of_the_blended_metric(time):
     between = prepared(stretched_pair())
     domain, frame = between.domain, between.frame(time)
     start, end = domain.corners, np.roll(domain.corners, -1, axis=1)
-    outer = np.setdiff1d(np.arange(start.size), domain.twins.ravel())
+    outer = np.setdiff1d(np.arange(start.size), domain.counterparts.ravel())
     found = np.abs(frame.positions[end] - frame.positions[start]).ravel()[outer]
     blended = between.segments[0].blended_lengths(time).ravel()[outer]
     assert_allclose(found, blended, rtol=1e-8, atol=0)

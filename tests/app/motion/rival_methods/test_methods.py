@@ -77,7 +77,7 @@ def test_three_keyframes_and_a_loop_pass_every_keyframe_once(name):
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_an_in_between_is_told_with_the_derivatives_of_its_triangles(name):
+def test_in_between_has_the_derivatives_of_its_triangles(name):
     between = prepared(name, pair_for(name))
     frame = between.frame(0.4)
     corners = between.domain.corners.T

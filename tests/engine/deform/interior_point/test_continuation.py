@@ -130,7 +130,7 @@ def test_a_cage_that_is_denser_than_it_is_far_comes_to_rest():
     assert boundary.basis.shape[1] < 80
     handles = Handles.place(boundary, [-0.7, 0.0, 0.7])
     deformer = Deformer(boundary=boundary, handles=handles, bounds=Bounds())
-    wish = handles.targets([-0.7, 0.2j, 0.7])
-    state, _ = deformer.settle(deformer.start(), wish, at_most=60)
+    handle_targets = handles.targets([-0.7, 0.2j, 0.7])
+    state, _ = deformer.settle(deformer.start(), handle_targets, at_most=60)
     assert state.status is Status.CONVERGED
     assert len(state.outcome.boundary.points) <= 4 * len(boundary.points)

@@ -33,8 +33,10 @@ from engine.maps.cauchy import cauchy_coordinates, cauchy_derivatives
 
 
 def settled(deformer, targets, state=None, **options):
-    wish = deformer.handles.targets(targets)
-    return deformer.settle(deformer.start() if state is None else state, wish, **options)[0]
+    handle_targets = deformer.handles.targets(targets)
+    return deformer.settle(deformer.start() if state is None else state, handle_targets, **options)[
+        0
+    ]
 
 
 @pytest.mark.parametrize(
@@ -170,9 +172,9 @@ def wound_up():
 
 def test_a_turned_start_that_finds_a_better_pose_shows_it_once():
     deformer, shown = wound_up(), []
-    state, wish = deformer.start(), deformer.handles.targets(WOUND_UP)
+    state, handle_targets = deformer.start(), deformer.handles.targets(WOUND_UP)
     while not state.status.is_final:
-        before, state = state, deformer.step(state, wish)
+        before, state = state, deformer.step(state, handle_targets)
         if before.search_steps > 0 and state.map is not before.map:
             shown.append((before, state))
     # The aligned shape does not find it, and what is shown is clearly better.
@@ -186,7 +188,7 @@ def test_a_turned_start_that_finds_a_better_pose_shows_it_once():
     assert_sound(state, deformer.bounds)
     assert state.steps <= 60
     assert state.search_steps <= 250
-    assert deformer.step(state, wish) is state
+    assert deformer.step(state, handle_targets) is state
 
 
 @pytest.mark.long
@@ -229,18 +231,18 @@ def test_after_release_the_energy_only_falls_and_then_nothing_moves():
         row = BAR_POINTS + share * (ARCHED - BAR_POINTS)
         state = deformer.step(state, deformer.handles.targets(row))
     assert state.status is Status.MOVING
-    wish = deformer.handles.targets(ARCHED)
+    handle_targets = deformer.handles.targets(ARCHED)
     energies = []
     while not state.status.is_final:
-        state = deformer.step(state, wish)
+        state = deformer.step(state, handle_targets)
         assert state.certificate.is_certified
         if state.search is not None:
             energies.append(state.statistics.objective)
     assert len(energies) > 5
     assert all(after <= before for before, after in pairwise(energies))
     assert state.status is Status.AT_LIMITS
-    assert deformer.step(state, wish) is state
-    # A new wish sets it going again.
+    assert deformer.step(state, handle_targets) is state
+    # New targets set it going again.
     assert deformer.step(state, deformer.handles.targets(BAR_POINTS)).status is Status.MOVING
 
 
@@ -265,8 +267,8 @@ def test_resuming_never_loses_and_gains_little(targets):
     ids=["swapped", "collapsed", "far too large"],
 )
 def test_hard_requests_are_proven_minima_within_few_steps(deformer, targets):
-    wish = deformer.handles.targets(targets)
-    state, steps = deformer.settle(deformer.start(), wish)
+    handle_targets = deformer.handles.targets(targets)
+    state, steps = deformer.settle(deformer.start(), handle_targets)
     assert state.status in (Status.AT_LIMITS, Status.CONVERGED)
     assert state.statistics.optimality <= OPTIMAL
     assert state.steps <= 45
@@ -281,9 +283,9 @@ def test_a_drag_at_tight_bounds_comes_to_rest_after_release():
     for share in np.linspace(0, 1, 9)[1:]:
         row = STAR_POINTS + share * (targets - STAR_POINTS)
         state = deformer.step(state, deformer.handles.targets(row))
-    wish, steps = deformer.handles.targets(targets), 0
+    handle_targets, steps = deformer.handles.targets(targets), 0
     while not state.status.is_final:
-        state, steps = deformer.step(state, wish), steps + 1
+        state, steps = deformer.step(state, handle_targets), steps + 1
     assert state.status is Status.AT_LIMITS
     assert steps < 150
     afresh = settled(deformer, targets)
@@ -316,7 +318,7 @@ def test_bounds_next_to_the_identity_hold_back(play):
     state = settled(star(rigid), TWISTED)
     assert state.status is Status.AT_LIMITS
     assert state.statistics.active
-    # And nothing where the wish is rigid.
+    # And nothing where the targets are rigid.
     state = settled(star(rigid), np.exp(0.5j) * STAR_POINTS + 1)
     assert state.status is Status.CONVERGED
     assert state.statistics.active == ()
@@ -328,7 +330,7 @@ def test_bounds_that_hold_nothing_back_are_not_active():
     assert state.statistics.active == ()
 
 
-def test_a_rigid_wish_is_met_at_once_and_without_distortion():
+def test_rigid_targets_are_met_at_once_without_distortion():
     deformer = star(TIGHT)
     targets = np.exp(2.5j) * STAR_POINTS + 30 - 4j
     state, steps = deformer.settle(deformer.start(), deformer.handles.targets(targets))

@@ -16,11 +16,11 @@ HALVES = np.array([[0, 1, 2], [0, 2, 3]])
 
 def assert_consistent(mesh: HalfEdgeMesh, area: float) -> None:
     half_edges = np.arange(3 * mesh.count)
-    inner = half_edges[mesh.twins >= 0]
-    np.testing.assert_array_equal(mesh.twins[mesh.twins[inner]], inner)
+    inner = half_edges[mesh.counterparts >= 0]
+    np.testing.assert_array_equal(mesh.counterparts[mesh.counterparts[inner]], inner)
     start, end = mesh.ends(half_edges)
-    np.testing.assert_array_equal(start[mesh.twins[inner]], end[inner])
-    np.testing.assert_array_equal(end[mesh.twins[inner]], start[inner])
+    np.testing.assert_array_equal(start[mesh.counterparts[inner]], end[inner])
+    np.testing.assert_array_equal(end[mesh.counterparts[inner]], start[inner])
     areas = signed_areas(mesh.points, mesh.triangles)
     assert np.all(areas > 0)
     np.testing.assert_allclose(areas.sum(), area, rtol=1e-12)
@@ -43,9 +43,9 @@ def test_following_and_preceding_go_round_each_triangle() -> None:
     np.testing.assert_array_equal(preceding(following(np.arange(6))), np.arange(6))
 
 
-def test_twins_are_found_by_the_ends() -> None:
+def test_counterparts_are_found_by_the_ends() -> None:
     mesh = HalfEdgeMesh(SQUARE, HALVES)
-    np.testing.assert_array_equal(mesh.twins, [OUTLINE, OUTLINE, 3, 2, OUTLINE, OUTLINE])
+    np.testing.assert_array_equal(mesh.counterparts, [OUTLINE, OUTLINE, 3, 2, OUTLINE, OUTLINE])
 
 
 def test_a_flip_exchanges_the_diagonal() -> None:
@@ -57,17 +57,17 @@ def test_a_flip_exchanges_the_diagonal() -> None:
     np.testing.assert_array_equal(HALVES, [[0, 1, 2], [0, 2, 3]])
 
 
-def test_splits_of_neighbours_at_once_keep_the_twins() -> None:
+def test_splits_of_neighbours_at_once_keep_the_counterparts() -> None:
     mesh = HalfEdgeMesh(SQUARE, HALVES)
     vertices = mesh.add_points(np.array([0.3 + 0.1j, 0.1 + 0.3j]))
     mesh.insert(vertices, np.array([0, 1]))
     assert_consistent(mesh, 0.25)
-    border = np.flatnonzero(mesh.twins == OUTLINE)
+    border = np.flatnonzero(mesh.counterparts == OUTLINE)
     middle = mesh.add_points(np.mean(mesh.end_points(border), axis=0))
     mesh.split_border(middle, border)
     assert_consistent(mesh, 0.25)
     assert mesh.count == 10
-    assert np.count_nonzero(mesh.twins == OUTLINE) == 8
+    assert np.count_nonzero(mesh.counterparts == OUTLINE) == 8
 
 
 def test_two_points_on_one_edge_from_both_sides_make_no_flat_triangle() -> None:
@@ -121,7 +121,7 @@ def test_a_walk_ends_at_the_border_that_hides_its_target() -> None:
     mesh = square_with(points_inside_disc(0.24, 100, 2) + 0.25 + 0.25j)
     start, _ = mesh.walk(np.array([0]), np.array([0.25 + 0.25j]))
     _, exits = mesh.walk(start, np.array([0.9 + 0.25j]))
-    assert mesh.twins[exits[0]] == OUTLINE
+    assert mesh.counterparts[exits[0]] == OUTLINE
     assert set(mesh.origins[[exits[0], following(exits)[0]]]) == {1, 2}
 
 
@@ -141,7 +141,7 @@ def test_refinement_leaves_no_small_angle_and_is_sparing(smallest: float, most: 
     assert_consistent(mesh, 0.25)
     assert smallest_angles(mesh.points, mesh.triangles).min() >= smallest
     assert mesh.count <= most
-    border = mesh.points[mesh.origins[mesh.twins == OUTLINE]]
+    border = mesh.points[mesh.origins[mesh.counterparts == OUTLINE]]
     nearest = np.min([border.real, border.imag, 0.5 - border.real, 0.5 - border.imag], axis=0)
     np.testing.assert_allclose(nearest, 0, rtol=0, atol=1e-15)
 

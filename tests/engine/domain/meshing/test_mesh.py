@@ -29,13 +29,13 @@ def test_edges_are_undirected_and_unique() -> None:
     np.testing.assert_array_equal(edges, [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]])
 
 
-def test_sides_are_edges_and_twins_run_along_one_of_them_in_opposite_directions() -> None:
-    sides, numbers, twins = sides_of(RHOMBUS.triangles)
+def test_counterparts_run_along_one_edge_in_opposite_directions() -> None:
+    sides, numbers, counterparts = sides_of(RHOMBUS.triangles)
     np.testing.assert_array_equal(sides, RHOMBUS.edges())
     ends = np.stack([RHOMBUS.triangles, np.roll(RHOMBUS.triangles, -1, axis=1)], axis=-1)
     np.testing.assert_array_equal(sides[numbers], np.sort(ends, axis=-1))
-    np.testing.assert_array_equal(twins, [[1, 4]])
-    here, there = ends.reshape(-1, 2)[twins[0]]
+    np.testing.assert_array_equal(counterparts, [[1, 4]])
+    here, there = ends.reshape(-1, 2)[counterparts[0]]
     np.testing.assert_array_equal(here, there[::-1])
 
 

@@ -132,7 +132,7 @@ def interior_angles(outline: Complexes) -> Floats:
 
 
 def assert_conforming(outline: Complexes, mesh: Mesh, holes: tuple[Complexes, ...] = ()) -> None:
-    """Check everything that is promised of any mesh: a valid one, of this outline and holes."""
+    """Check everything that is required of any mesh: a valid one, of this outline and holes."""
     loops = (outline, *holes)
     vertices, triangles = mesh.vertices, mesh.triangles.astype(np.int64)
     assert mesh.triangles.dtype == np.int32

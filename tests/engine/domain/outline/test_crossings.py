@@ -18,7 +18,7 @@ def test_a_simple_polygon_crosses_nothing(polygon: Complexes) -> None:
     assert not any(edges.any() for edges in find_meeting_edges(polygon, 2 * polygon))
 
 
-def test_both_edges_of_a_crossing_are_told_and_no_other() -> None:
+def test_crossing_reports_both_edges_and_no_other() -> None:
     bow = np.array([0, 2 + 2j, 2, 2j, -1 + 1j])  # 0 to 1 crosses 2 to 3
     assert_array_equal(find_crossing_edges(bow), [True, False, True, False, False])
 

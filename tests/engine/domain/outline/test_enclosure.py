@@ -4,15 +4,15 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from messages import says
 from numpy.testing import assert_allclose
-from outlines import check_outline, diagonal, interior_angles
+from outlines import check_outline, diagonal, interior_angles, notices_of
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from engine.arrays import Bytes, Complexes
+from engine.domain.mask.parts import FRAGMENTED
 from engine.domain.outline import enclosure, fitting
 from engine.domain.outline.enclosure import LARGEST_OUTLINE, Detail, Enclosure, enclose_subject
 from engine.domain.outline.fitting import Candidates
-from engine.domain.outline.parts import FRAGMENTED
 from engine.errors import EngineError
 from engine.geometry.polygon import as_xy, contains, signed_area
 
@@ -136,13 +136,13 @@ def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
     assert contains(shut.outline, centre).all()
     assert len(shut.holes) == 1
     filled = enclose_subject(pictures.seen(pictures.ring(mouth=0)), detail="normal", holes="fill")
-    assert filled.notices == ("1 hole filled, 30.9% of the subject",)
+    assert notices_of(filled) == ("1 hole filled, 30.89% of the subject",)
 
 
-def test_a_gap_that_has_to_be_closed_is_told() -> None:
+def test_closed_gap_is_reported() -> None:
     outline = outlined(pictures.ring(1024, mouth=2))
     assert contains(outline.outline, np.array([512 + 512j])).all()
-    assert any("closes over gaps of" in notice for notice in outline.notices)
+    assert any("closes over gaps of" in notice for notice in notices_of(outline))
 
 
 def test_parts_are_joined_by_the_shortest_bridges() -> None:
@@ -151,21 +151,21 @@ def test_parts_are_joined_by_the_shortest_bridges() -> None:
         mask[80:120, left : left + 40] = True
     outline = enclose_subject(mask, detail="normal")
     check_outline(mask, outline)
-    assert outline.notices == ("3 parts joined by invisible bridges",)
+    assert notices_of(outline) == ("3 parts joined by invisible bridges",)
     # Each bridge is as straight and narrow as it can be.
     between = np.array([100, 105 + 30j, 105 - 30j, 265, 265 + 30j]) + 100j
     assert contains(outline.outline, between).tolist() == [True, False, False, True, False]
 
 
-def test_holes_and_specks_are_told() -> None:
+def test_holes_and_specks_are_reported() -> None:
     rgba = pictures.blob(300, depth=0.0)
     rgba[140:150, 100:110, 3] = 0
     rgba[140:150, 180:186, 3] = 0
     rgba[5, 5] = rgba[290, 8] = 255
     outline = outlined(rgba)
-    assert outline.notices == (
+    assert notices_of(outline) == (
         "2 specks dropped (0.01% of the subject)",
-        "1 hole filled, 0.2% of the subject, too small to stay open",
+        "1 hole filled, 0.17% of the subject, too small to stay open",
     )
     assert len(outline.holes) == 1
     assert not contains(outline.outline, np.array([5.5 + 294.5j])).any()
@@ -204,7 +204,7 @@ def test_hairlines_of_large_pictures_are_not_lost() -> None:
 def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
     outline = outlined(pictures.blob(900, 20, 0.3))
     assert len(outline.outline) <= 200
-    assert any(notice.startswith("margin widened") for notice in outline.notices)
+    assert any(notice.startswith("margin widened") for notice in notices_of(outline))
 
 
 @pytest.mark.parametrize("density", [0.01, 0.1, 0.3])
@@ -232,7 +232,7 @@ def test_a_curve_that_few_vertices_cannot_follow_is_not_fitted(fitted) -> None:
     result = outlined(pictures.spiral(300, 10))
     ((least, found),) = fitted
     assert least <= found == len(result.outline) <= 200
-    assert any("fused" in notice for notice in result.notices)
+    assert any("fused" in notice for notice in notices_of(result))
 
 
 def test_where_every_curve_is_intricate_the_simplest_one_is_fitted(fitted, monkeypatch) -> None:
@@ -240,7 +240,7 @@ def test_where_every_curve_is_intricate_the_simplest_one_is_fitted(fitted, monke
     result = outlined(pictures.blob())
     ((least, found),) = fitted
     assert 3 < least <= found == len(result.outline)
-    assert "margin widened 2.0 times for an outline of few vertices" in result.notices
+    assert "margin widened 2.0 times for an outline of few vertices" in notices_of(result)
 
 
 @pytest.mark.parametrize("name", ["needles", "ragged cloud", "hairlines"])
@@ -249,18 +249,18 @@ def test_no_polygon_has_fewer_edges_than_foreseen(name: str, fitted) -> None:
     assert all(least <= found for least, found in fitted if found)
 
 
-def test_limbs_that_are_fused_are_told() -> None:
-    told = outlined(pictures.spiral(200, 20)).notices
-    (fused,) = [notice for notice in told if "fused" in notice]
+def test_fused_limbs_are_reported() -> None:
+    reported = notices_of(outlined(pictures.spiral(200, 20)))
+    (fused,) = [notice for notice in reported if "fused" in notice]
     share = int(fused.split("along ")[1].split("%")[0])
     # All of the arm's two sides, but for its outermost turn.
     assert 80 <= share <= 95
     for apart in (pictures.limbs(12, 400), pictures.spiral(300, 4), pictures.star(7)):
-        assert not any("fused" in notice for notice in outlined(apart).notices)
+        assert not any("fused" in notice for notice in notices_of(outlined(apart)))
 
 
 @pytest.mark.long
 def test_gaps_are_closed_before_an_outline_has_more_vertices_than_it_may() -> None:
     result = outlined(pictures.spiral(600, 10))
     assert len(result.outline) <= LARGEST_OUTLINE
-    assert any("fused" in notice for notice in result.notices)
+    assert any("fused" in notice for notice in notices_of(result))

@@ -5,7 +5,7 @@ import pictures
 import pytest
 from hypothesis import assume, given, settings, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
-from outlines import check_hole, check_outline, corners_of, diagonal
+from outlines import check_hole, check_outline, corners_of, diagonal, notices_of
 from scipy import ndimage
 
 from engine.arrays import Booleans, Bytes, Complexes
@@ -39,7 +39,7 @@ def kept(mask: Booleans, detail: Detail = "normal") -> Enclosure:
 
 
 def check_holes(mask: Booleans, enclosure: Enclosure, *, most: int = 200) -> None:
-    """Hold what is kept against all that is promised of outlines and cages."""
+    """Hold what is kept against all that is required of outlines and cages."""
     check_outline(ndimage.binary_fill_holes(mask), enclosure, most=most)
     total = sum(len(hole.outline) for hole in enclosure.holes) + len(enclosure.outline)
     assert total <= max(most, len(enclosure.outline))
@@ -79,7 +79,7 @@ def test_large_holes_are_kept(mask: Booleans, count: int, detail: Detail) -> Non
     enclosure = kept(mask, detail)
     assert len(enclosure.holes) == count
     check_holes(mask, enclosure)
-    assert not any("filled" in notice for notice in enclosure.notices)
+    assert not any("filled" in notice for notice in notices_of(enclosure))
 
 
 @pytest.mark.parametrize("name", ["ring", "plate"])
@@ -89,18 +89,18 @@ def test_what_lies_around_the_holes_is_the_same_whether_they_are_kept_or_filled(
     assert_array_equal(keeping.outline, filling.outline)
     assert_array_equal(keeping.cage, filling.cage)
     assert filling.holes == ()
-    assert any("1 hole filled" in notice for notice in filling.notices)
+    assert any("1 hole filled" in notice for notice in notices_of(filling))
 
 
 @pytest.mark.parametrize(("radius", "count"), [(5, 0), (12, 1)])
-def test_small_holes_are_filled_and_told(radius: float, count: int) -> None:
+def test_small_holes_are_filled_and_reported(radius: float, count: int) -> None:
     # The diagonal is 617 pixels, of which 1.2 % are 7.4.
     mask = plate((150, 150, 70), (400, 150, radius))
     enclosure = kept(mask)
     assert len(enclosure.holes) == 1 + count
     check_holes(mask, enclosure)
-    told = () if count else ("1 hole filled, under 0.1% of the subject, too small to stay open",)
-    assert enclosure.notices == told
+    reported = () if count else ("1 hole filled, 0.05% of the subject, too small to stay open",)
+    assert notices_of(enclosure) == reported
 
 
 def test_bubbles_in_a_soft_contour_are_no_holes() -> None:
@@ -114,13 +114,13 @@ def test_bubbles_in_a_soft_contour_are_no_holes() -> None:
         drawn &= np.hypot(x - middle.real, y - middle.imag) > rng.uniform(0.5, 3.2)
     soft = drawn.reshape(side, 4, side, 4).mean((1, 3))
     enclosure = kept(soft > 0.03)
-    assert (enclosure.holes, enclosure.notices) == ((), ())
-    assert kept(soft > 0.03, "fine").notices == ()
-    assert enclose_subject(soft > 0.03, detail="normal", holes="fill").notices == ()
-    # A hole that is seen is told, as ever.
+    assert (enclosure.holes, notices_of(enclosure)) == ((), ())
+    assert notices_of(kept(soft > 0.03, "fine")) == ()
+    assert notices_of(enclose_subject(soft > 0.03, detail="normal", holes="fill")) == ()
+    # A hole that is seen is reported, as ever.
     y, x = np.mgrid[:side, :side] - side // 2
-    told = kept((soft > 0.03) & (np.hypot(x, y) > 0.013 * side)).notices
-    assert told == ("1 hole filled, under 0.1% of the subject, too small to stay open",)
+    reported = notices_of(kept((soft > 0.03) & (np.hypot(x, y) > 0.013 * side)))
+    assert reported == ("1 hole filled, 0.08% of the subject, too small to stay open",)
 
 
 def test_the_margin_and_the_cage_leave_the_middle_of_a_small_hole_free() -> None:
@@ -139,9 +139,9 @@ def test_the_largest_holes_are_kept_while_there_are_few_vertices() -> None:
     sizes = sorted((radius for *_, radius in places), reverse=True)
     smallest = min(np.sqrt(-signed_area(hole.outline) / np.pi) for hole in enclosure.holes)
     assert smallest >= 0.6 * sizes[len(enclosure.holes)]
-    (told,) = enclosure.notices
-    assert told.startswith(f"{len(places) - len(enclosure.holes)} holes filled, the largest")
-    assert told.endswith("of the subject, since too many open holes make posing slow")
+    (reported,) = notices_of(enclosure)
+    assert reported.startswith(f"{len(places) - len(enclosure.holes)} holes filled, the largest")
+    assert reported.endswith("of the subject, since too many open holes make posing slow")
 
 
 def test_holes_are_where_they_are_in_the_picture() -> None:

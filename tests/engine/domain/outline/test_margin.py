@@ -112,7 +112,7 @@ def test_edges_keep_to_their_lengths() -> None:
     assert 0.1 <= lengths.min() <= lengths.max() <= 0.3
 
 
-def test_inner_and_outer_tolerances_are_told_apart() -> None:
+def test_inner_and_outer_tolerances_are_distinct() -> None:
     # Chords of a circle run inside it: only the inner tolerance counts.
     circle = regular_polygon(360)
     narrow, wide = np.full(360, 0.001), np.full(360, 0.1)

@@ -5,7 +5,7 @@ from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from engine.arrays import Booleans
-from engine.domain.outline.grid import block_factor, reduce_blocks, repeat_blocks, working_grid
+from engine.domain.mask.grid import block_factor, reduce_blocks, repeat_blocks, working_grid
 
 
 def pixel_centres(mask: Booleans) -> np.ndarray:

@@ -9,7 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import minimum_spanning_tree
 
 from engine.arrays import Booleans, Complexes, Floats, Indices, Integers
-from engine.errors import EngineError
+from engine.errors import EngineError, Message, count_message
 
 SPECK = 2e-4  # of the subject's area: smaller parts are dropped, smaller holes are filled
 MOST_PARTS = 150
@@ -36,14 +36,14 @@ class WholePiece:
         The number of each pixel's hole, from 1, the largest hole first; 0 elsewhere.
     hole_areas : float64, shape (m,)
         Of the holes, in pixels.
-    notices : tuple of str
+    notices : tuple of Message
         Reports of joined and dropped parts.
     """
 
     mask: Booleans
     holes: Integers
     hole_areas: Floats
-    notices: tuple[str, ...]
+    notices: tuple[Message, ...]
 
     def numbers_at(self, points: Complexes) -> Indices:
         """Return the numbers of the holes at points (n,) in cells, y along the rows."""
@@ -54,15 +54,10 @@ class WholePiece:
         found = np.unique(self.holes[rows, columns])
         return found[found > 0].astype(np.intp)
 
-    def filled_notice(self, numbers: Sequence[int] | Indices, reason: str = "") -> tuple[str, ...]:
-        """Return a notice that holes with these numbers are filled, or none without holes."""
-        if not len(numbers):
-            return ()
-        largest = self.hole_areas[np.asarray(numbers) - 1].max() / np.count_nonzero(self.mask)
-        size = f"{largest:.1%}" if largest >= 0.001 else "under 0.1%"
-        which = "" if len(numbers) == 1 else "the largest "
-        told = f"{_counted(len(numbers), 'hole')} filled, {which}{size} of the subject"
-        return (f"{told}, {reason}" if reason else told,)
+    def largest_share(self, numbers: Sequence[int] | Indices) -> float:
+        """Return the area of the largest of these holes, over that of the subject."""
+        areas = self.hole_areas[np.asarray(numbers, dtype=np.intp) - 1]
+        return float(areas.max(initial=0)) / np.count_nonzero(self.mask)
 
 
 def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
@@ -84,33 +79,32 @@ def join_parts(mask: Booleans, diagonal: float) -> WholePiece:
     areas = np.bincount(labels.ravel(), minlength=count + 1)[1:].astype(np.float64)
     kept = areas >= SPECK * areas.sum()
     _require_few_parts(areas, kept)
-    notices: list[str] = []
+    notices: list[Message] = []
     if not kept.all():
         specks = int(np.count_nonzero(~kept))
         notices.append(
-            f"{_counted(specks, 'speck')} dropped "
-            f"({areas[~kept].sum() / areas.sum():.2%} of the subject)"
+            count_message(
+                "{count:,} speck dropped ({share:.2%} of the subject)",
+                "{count:,} specks dropped ({share:.2%} of the subject)",
+                specks,
+                share=areas[~kept].sum() / areas.sum(),
+            )
         )
         numbers = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
         labels = np.append(np.zeros(1, dtype=np.int32), numbers)[labels]
         mask, areas, count = labels > 0, areas[kept], int(kept.sum())
     if count > 1:
         mask = _bridged(mask, labels.astype(np.int32), areas, diagonal)
-        notices.append(f"{count} parts joined by invisible bridges")
+        notices.append(Message("{count} parts joined by invisible bridges", {"count": count}))
     filled, holes, hole_areas = _filled(mask)
     return WholePiece(mask=filled, holes=holes, hole_areas=hole_areas, notices=tuple(notices))
-
-
-def _counted(number: int, noun: str) -> str:
-    """Return a number with its noun, in the plural if needed."""
-    return f"{number:,} {noun}" if number == 1 else f"{number:,} {noun}s"
 
 
 def _require_few_parts(areas: Floats, kept: Booleans) -> None:
     """Raise `EngineError` unless a few parts hold nearly all of the subject."""
     dropped = areas[~kept].sum() / areas.sum()
     if dropped > MOST_DROPPED or np.count_nonzero(kept) > MOST_PARTS:
-        raise EngineError(FRAGMENTED.format(count=len(areas), dropped=dropped, most=MOST_PARTS))
+        raise EngineError(FRAGMENTED, count=len(areas), dropped=dropped, most=MOST_PARTS)
 
 
 def _bridged(mask: Booleans, labels: Integers, areas: Floats, diagonal: float) -> Booleans:

@@ -2,10 +2,11 @@ import numpy as np
 import pytest
 from messages import says
 from numpy.testing import assert_array_equal
+from outlines import notices_of
 from scipy import ndimage
 
 from engine.arrays import Booleans
-from engine.domain.outline.parts import FRAGMENTED, join_parts
+from engine.domain.mask.parts import FRAGMENTED, join_parts
 from engine.errors import EngineError
 
 
@@ -27,7 +28,7 @@ def test_one_piece_without_holes_is_left_as_it_is() -> None:
     mask[50:200, 60:250] = True
     piece = join_parts(mask, diagonal(mask))
     assert_array_equal(piece.mask, mask)
-    assert piece.notices == ()
+    assert notices_of(piece) == ()
 
 
 def test_parts_that_touch_at_a_corner_are_one() -> None:
@@ -35,7 +36,7 @@ def test_parts_that_touch_at_a_corner_are_one() -> None:
     mask[50:100, 50:100] = mask[100:150, 100:150] = True
     piece = join_parts(mask, diagonal(mask))
     assert_array_equal(piece.mask, mask)
-    assert piece.notices == ()
+    assert notices_of(piece) == ()
 
 
 def test_bridges_join_all_parts_and_take_nothing_away() -> None:
@@ -44,7 +45,7 @@ def test_bridges_join_all_parts_and_take_nothing_away() -> None:
     piece = join_parts(mask, diagonal(mask))
     assert count_parts(piece.mask) == 1
     assert not (mask & ~piece.mask).any()
-    assert piece.notices == ("4 parts joined by invisible bridges",)
+    assert notices_of(piece) == ("4 parts joined by invisible bridges",)
     # The longest of the four ways round is left open.
     assert count_parts(piece.mask & ~mask) == 3
     assert not piece.mask[100:180, 180:].any()
@@ -73,29 +74,28 @@ def test_a_cloud_of_parts_is_closed_as_well() -> None:
     assert (piece.mask & ~mask).sum() > 3 * (join_parts(few, diagonal(few)).mask & ~few).sum()
 
 
-def test_specks_are_dropped_and_told() -> None:
+def test_specks_are_dropped_and_reported() -> None:
     mask = canvas()
     mask[50:250, 50:250] = True
     mask[10, 10] = mask[10, 12] = mask[280:282, 280] = True
     piece = join_parts(mask, diagonal(mask))
     assert not piece.mask[:40].any()
-    assert piece.notices == ("3 specks dropped (0.01% of the subject)",)
+    assert notices_of(piece) == ("3 specks dropped (0.01% of the subject)",)
 
 
-@pytest.mark.parametrize(("size", "told"), [(60, "12.7%"), (4, "under 0.1%")])
-def test_a_hole_is_filled_and_told_with_its_size(size: int, told: str) -> None:
+@pytest.mark.parametrize("size", [60, 4])
+def test_hole_is_filled_and_has_its_share_of_the_subject(size: int) -> None:
     mask = canvas()
     mask[50:220, 50:217] = True
     mask[100 : 100 + size, 100 : 100 + size] = False
     piece = join_parts(mask, diagonal(mask))
     assert piece.mask[50:220, 50:217].all()
-    assert piece.notices == ()
-    assert piece.filled_notice([1]) == (f"1 hole filled, {told} of the subject",)
-    assert piece.filled_notice([1], "for a reason")[0].endswith("of the subject, for a reason")
-    assert piece.filled_notice([]) == ()
+    assert notices_of(piece) == ()
+    assert piece.largest_share([1]) == size**2 / (170 * 167)
+    assert piece.largest_share([]) == 0
 
 
-def test_pits_as_small_as_specks_are_filled_and_not_told() -> None:
+def test_pits_as_small_as_specks_are_filled_and_not_reported() -> None:
     mask = canvas()
     mask[50:220, 50:217] = True
     mask[100:102, 100:102] = mask[150, 150] = False
@@ -114,7 +114,7 @@ def test_holes_are_numbered_by_their_size() -> None:
     assert piece.hole_areas.tolist() == [1600, 400, 100]
     assert [piece.holes[row, 105] for row in (65, 110, 165)] == [3, 1, 2]
     assert_array_equal(piece.mask, mask | (piece.holes > 0))
-    assert piece.filled_notice([2, 3]) == ("2 holes filled, the largest 1.4% of the subject",)
+    assert piece.largest_share([2, 3]) == 400 / (170 * 167)
 
 
 def test_holes_that_bridges_enclose_are_filled() -> None:
