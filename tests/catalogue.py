@@ -1,6 +1,5 @@
 """The catalogue of texts: `python -m tests.catalogue` writes it anew."""
 
-import argparse
 import ast
 from collections.abc import Iterator
 from io import BytesIO
@@ -32,10 +31,10 @@ CHECKS = {
 
 
 def source_files() -> list[Path]:
-    """Return the modules of the program and of argparse, whose texts the command line shows."""
+    """Return the modules of the program."""
     files = [path for room in ("app", "engine") for path in sorted((ROOT / room).rglob("*.py"))]
     examples = ROOT / "engine" / "examples"
-    return [*(each for each in files if examples not in each.parents), Path(argparse.__file__)]
+    return [each for each in files if examples not in each.parents]
 
 
 def marked_texts(source: str, name: str = "") -> Iterator[str | tuple[str, str]]:
@@ -72,7 +71,7 @@ def make_catalogue() -> bytes:
     """Return the catalogue of all marked texts as a gettext template."""
     catalogue = Catalog(project="Lissom", fuzzy=False)
     for path in source_files():
-        at = path.relative_to(ROOT).as_posix() if ROOT in path.parents else path.name
+        at = path.relative_to(ROOT).as_posix()
         for text in marked_texts(path.read_text(encoding="utf-8"), at):
             catalogue.add(text, locations=[(at, 0)])
     written = BytesIO()

@@ -114,7 +114,12 @@ def build_parser(words: Sequence[str]) -> argparse.ArgumentParser:
         prog="lissom",
         description=_("Pose a drawing with a few handles and get in-betweens that never fold."),
     )
-    parser.add_argument("--version", action="version", version=f"lissom {version('lissom')}")
+    parser.add_argument(
+        "--version",
+        action="version",
+        help=_("print the version and exit"),
+        version=f"lissom {version('lissom')}",
+    )
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name, summary in COMMANDS.items():
         subparser = subparsers.add_parser(

@@ -13,7 +13,21 @@ FIELD = re.compile(r"(\{[^{}]*\}|%\(\w+\)\w|%\w)")
 WIDE = {code: code + 0xFEE0 for code in (*range(0x41, 0x5B), *range(0x61, 0x7B))}
 WORD = re.compile(r"(?<![\w#./{@-])[A-Za-z][a-z]{2,}(?![\w./}])")
 # Values: what the test names, keys of the keyboard, units, and names of formats and methods.
-VALUES = {"bar", "Ctrl", "Shift", "Alt", "Space", "Tab", "Esc", "Escape", "Enter", "Home", "End"}
+VALUES = {
+    "bar",
+    "handle",
+    "copy",
+    "Ctrl",
+    "Shift",
+    "Alt",
+    "Space",
+    "Tab",
+    "Esc",
+    "Escape",
+    "Enter",
+    "Home",
+    "End",
+}
 VALUES |= {"Delete", "Backspace", "Page", "Down", "Left", "Right", "fps", "eta", "metric"}
 
 
@@ -27,8 +41,14 @@ def widened(text: str) -> str:
 
 def speak() -> None:
     """Make every text of the catalogue one of the pseudo-language, from here on."""
-    gettext.gettext = widened
-    gettext.ngettext = lambda one, many, count: widened(one if count == 1 else many)
+
+    def in_plural(one: str, many: str, count: int) -> str:
+        return widened(one if count == 1 else many)
+
+    # Of the program, and of argparse.
+    none = gettext.NullTranslations
+    none.gettext, none.ngettext = lambda _, text: widened(text), lambda _, *forms: in_plural(*forms)
+    gettext.gettext, gettext.ngettext = widened, in_plural
 
 
 def english(text: str) -> list[str]:
@@ -44,7 +64,7 @@ class Reader:
         *("small_button", "selectable", "checkbox", "radio_button", "menu_item", "set_tooltip"),
         *("menu_item_simple", "collapsing_header", "separator_text", "begin_menu", "begin_combo"),
         *("slider_int", "slider_float", "drag_int", "drag_float", "input_int", "input_float"),
-        *("input_text", "input_text_with_hint", "color_edit3", "color_edit4", "tree_node", "begin"),
+        *("input_text", "input_text_with_hint", "color_edit3", "color_edit4", "tree_node"),
         *("progress_bar", "calc_text_size", "begin_tab_item", "bullet_text", "label_text"),
     )
 
@@ -52,6 +72,7 @@ class Reader:
         from imgui_bundle import imgui  # noqa: PLC0415 - after the language
 
         self.left: dict[str, None] = {}
+        self.read: set[str] = set()
         self._imgui, self._opened = imgui, []
         for name in self.TEXTS:
             setattr(imgui, name, self._reading(getattr(imgui, name)))
@@ -63,6 +84,7 @@ class Reader:
         def drawn(*arguments, **options):
             for text in (*arguments, *options.values()):
                 if isinstance(text, str):
+                    self.read.add(text)
                     self.left.update(dict.fromkeys([text] if english(text) else ()))
             return draw(*arguments, **options)
 
@@ -104,6 +126,7 @@ def read_window(left: dict[str, None]) -> None:
     for panel in hello_imgui.get_runner_params().docking_params.dockable_windows:
         panel.focus_window_at_next_frame = True
         window.frames(3)
+    assert len(reader.read) > 500, "there is much more to read"
     left.update(reader.left)
 
 
@@ -116,14 +139,22 @@ def read_table(left: dict[str, None]) -> None:
 
 def read_help(left: dict[str, None]) -> None:
     from app.cli.main import COMMANDS, build_parser  # noqa: PLC0415
+    from app.cli.options import METHODS  # noqa: PLC0415
+    from app.export_formats import EXPORT_FORMATS  # noqa: PLC0415
 
+    VALUES.update(EXPORT_FORMATS, *(method.split("-") for method in METHODS))
     for command in COMMANDS:
         parser = build_parser([command])
-        parsers = next(
-            each for each in parser._actions if hasattr(each, "choices") and each.choices
-        )
-        for line in (parser.format_help() + parsers.choices[command].format_help()).splitlines():
-            left.update(dict.fromkeys([line] if english(line) else ()))
+        actions = list(parser._actions)
+        own = actions[-1].choices[command]
+        texts = [parser.description, own.description, own.epilog]
+        for action in (*actions[:-1], *actions[-1]._choices_actions, *own._actions):
+            VALUES.update(action.choices or ())
+            texts.append(action.help)
+        for text in filter(None, texts):
+            # Values are in braces and quotes, and defaults.
+            shown = re.sub(r"\{[^{}]*\}|\"[^\"]*\"|%\(\w+\)s", "", text)
+            left.update(dict.fromkeys([text] if english(shown) else ()))
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ def draw_anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Acti
     is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
     halves, actions = split_line(2), list[Action]()
     text = f"{icons.ICON_FA_ANCHOR}  {_('Follow this handle')}###anchor here"
-    hint, keys = _("Let this point stay calm between keys"), format_modified(CTRL, "click")
+    hint, keys = _("Let this point stay calm between keys"), format_modified(CTRL, _("click"))
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
         actions.append(do(toggle_anchor_at_handle, chosen[0].id))
     has_own = layer.anchor is not None
