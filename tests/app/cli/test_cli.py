@@ -8,7 +8,6 @@ from typing import get_args
 
 import pytest
 from documents import disc_document
-from engine.domain.picture.cut_out import Holes
 
 from app.cli import commands, options, window_process
 from app.cli.commands import pose
@@ -19,7 +18,7 @@ from app.editor.actions.project_files import autosaving, saving
 from app.editor.work.jobs import Job
 from app.storage import SourceInfo
 from app.storage.assets import sample_images
-from engine.domain.outline.enclosure import Detail
+from engine.domain.outline.enclosure import Detail, Holes
 
 SAMPLE = sample_images() / "giraffe.lissom"
 

@@ -17,7 +17,7 @@ from app.cli.process import STILL_AT_WORK
 from app.document import History
 from app.document.commands import scene_commands
 from app.editor import error_reports
-from app.editor.actions.project_files import saving
+from app.editor.actions.project_files import autosaving
 from app.editor.dialogs import ProblemReport
 from app.editor.project import Project
 from app.editor.session import Session
@@ -164,7 +164,7 @@ def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
     def refuse(_):
         raise LissomError("the disk is full")
 
-    monkeypatch.setattr(saving, "autosave_now", refuse)
+    monkeypatch.setattr(autosaving, "autosave_now", refuse)
     window_process._keep(None)
     assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
 

@@ -649,9 +649,8 @@ def test_nothing_is_written_over_what_the_project_was_made_from(window, tmp_path
         window.act(action, *arguments)
         window.settle()
         assert session.export is None
-        assert any(
-            re.search(says(SAME_FILE), toast.text + toast.details) for toast in session.toasts
-        )
+        texts = [toast.text + toast.details for toast in session.toasts]
+        assert any(re.search(says(SAME_FILE), text, re.IGNORECASE) for text in texts), texts
         assert {path: path.read_bytes() for path in before} == before
 
     export_settings.set_export_settings(session, ExportSettings(format="picture", size=SIZE))
