@@ -52,8 +52,11 @@ def speak() -> None:
 
 
 def english(text: str) -> list[str]:
-    """Return the words of a drawn text that have not been translated."""
-    return [word for word in WORD.findall(text.partition("##")[0]) if word not in VALUES]
+    """Return what is wrong in a drawn text: words without a translation, and fields."""
+    text = text.partition("##")[0]
+    # A name of files has a field of this name.
+    fields = [each for each in re.findall(r"\{\w*", text) if each != "{name"]
+    return [*fields, *(word for word in WORD.findall(text) if word not in VALUES)]
 
 
 class Reader:
