@@ -52,11 +52,13 @@ def speak() -> None:
 
 
 def english(text: str) -> list[str]:
-    """Return what is wrong in a drawn text: words without a translation, and fields."""
-    text = text.partition("##")[0]
-    # A name of files has a field of this name.
-    fields = [each for each in re.findall(r"\{\w*", text) if each != "{name"]
-    return [*fields, *(word for word in WORD.findall(text) if word not in VALUES)]
+    """Return the words of a text that have not been translated."""
+    return [word for word in WORD.findall(text.partition("##")[0]) if word not in VALUES]
+
+
+def unfilled(text: str) -> list[str]:
+    """Return the fields of a drawn text; only patterns for the names of files have one."""
+    return [field for field in re.findall(r"\{\w*", text) if field != "{name"]
 
 
 class Reader:
@@ -88,7 +90,9 @@ class Reader:
             for text in (*arguments, *options.values()):
                 if isinstance(text, str):
                     self.read.add(text)
-                    self.left.update(dict.fromkeys([text] if english(text) else ()))
+                    self.left.update(
+                        dict.fromkeys([text] if english(text) or unfilled(text) else ())
+                    )
             return draw(*arguments, **options)
 
         return drawn
