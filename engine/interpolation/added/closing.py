@@ -35,7 +35,8 @@ from engine.deform.correction.barrier import LimitBarrier, log_distortions
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame
 from engine.deform.correction.paths import PointPaths
-from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
+from engine.deform.correction.point_targets import PointTargets
+from engine.deform.correction.solver import PointSolution, solve_correction
 from engine.deform.correction.variables import Variables, orthonormal_functions
 from engine.interpolation.series.chebyshev import PiecewiseSeries, separate_variables
 from engine.interpolation.series.residual import HoleConstants, Residual, combine_arrays
