@@ -30,8 +30,9 @@ from app.storage import (
 )
 from app.texts import _, message_of
 from app.ui.dialogs.native_dialog import find_system_dialogs
+from app.ui.window.desktop import has_display
 from app.ui.window.memory import limit_arenas
-from app.ui.window.window import Window, has_display
+from app.ui.window.window import Window
 
 EXIT_FAILED = 1
 DISPLAY_GONE = _("the display is gone")

@@ -1,11 +1,14 @@
-"""The part of the plane that an export shows."""
+"""The part of the plane that an export shows, and its size in pixels."""
 
 import math
 from typing import Final
 
 from app.document import Document, ExportSettings
+from app.errors import LissomError
+from app.export_formats import EXPORT_FORMATS
 from app.motion import BoundingBox
 from app.render import View, canvas_view, fit_view
+from app.texts import _
 
 # Margin at each side of a fitted motion, as a share of its longer side.
 MARGIN: Final = 0.02
@@ -33,6 +36,52 @@ def frame_view(settings: ExportSettings, document: Document, motion: BoundingBox
     left, bottom = math.floor(lower.real), math.floor(lower.imag)
     size = _even(math.ceil(upper.real) - left), _even(math.ceil(upper.imag) - bottom)
     return View(centre=complex(left, bottom) + complex(*size) / 2, scale=1.0, size=size)
+
+
+def check_largest_size(name: str, size: tuple[int, int]) -> None:
+    """Refuse pictures too large for a format."""
+    largest = EXPORT_FORMATS[name].largest
+    if largest is not None and max(size) > largest:
+        raise LissomError(
+            _(
+                "{name} holds at most {largest:,} pixels each way, not {width} × {height}; "
+                "choose a smaller size"
+            ).format(name=name, largest=largest, width=size[0], height=size[1])
+        )
+
+
+def check_blocks(name: str, size: tuple[int, int]) -> None:
+    """Refuse pictures that are not made of whole blocks of a format."""
+    format_ = EXPORT_FORMATS[name]
+    width, height = format_.whole_blocks(size)
+    if (width, height) != size:
+        raise LissomError(
+            _(
+                "{name} keeps colours in blocks of {block} × {block} pixels, and {width} × "
+                "{height} has an odd side; choose {even_width} × {even_height}"
+            ).format(
+                name=name,
+                block=format_.block,
+                width=size[0],
+                height=size[1],
+                even_width=width,
+                even_height=height,
+            )
+        )
+
+
+def list_added_pixels(name: str, size: tuple[int, int]) -> tuple[str, ...]:
+    """Return notices about rows and columns that a format of whole blocks adds."""
+    width, height = EXPORT_FORMATS[name].whole_blocks(size)
+    if (width, height) == size:
+        return ()
+    return (
+        _(
+            "{format} needs even sides: the frames are extended by background to {width} "
+            "× {height} "
+            "pixels"
+        ).format(format=name, width=width, height=height),
+    )
 
 
 def _even(pixels: int) -> int:

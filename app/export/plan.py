@@ -25,7 +25,7 @@ from app.export.destination import (
     find_stale_frames,
 )
 from app.export.frame_vertices import CachedVertices
-from app.export.framing import frame_view
+from app.export.framing import check_blocks, check_largest_size, frame_view, list_added_pixels
 from app.export_formats import EXPORT_FORMATS, FormatSettings
 from app.motion import BoundingBox, bounding_box, motion_bounding_box
 from app.render import View
@@ -143,22 +143,8 @@ def check_request(document: Document, request: ExportRequest) -> None:
     name, format_ = settings.format, EXPORT_FORMATS[settings.format]
     check_destination(request.out, name, _names(document, request), request.sources)
     if settings.size is not None and format_.is_drawn:
-        _check_size(name, settings.size)
-        width, height = format_.whole_blocks(settings.size)
-        if (width, height) != settings.size:
-            raise LissomError(
-                _(
-                    "{name} keeps colours in blocks of {block} × {block} pixels, and {width} × "
-                    "{height} has an odd side; choose {even_width} × {even_height}"
-                ).format(
-                    name=name,
-                    block=format_.block,
-                    width=settings.size[0],
-                    height=settings.size[1],
-                    even_width=width,
-                    even_height=height,
-                )
-            )
+        check_largest_size(name, settings.size)
+        check_blocks(name, settings.size)
     if request.fps is not None and not format_.is_drawn:
         raise LissomError(
             _("{name} plays at any rate; leave the frames per second out").format(name=name)
@@ -237,22 +223,12 @@ def plan_export(
         **settings.options(),
     )
     if EXPORT_FORMATS[plan.format].is_drawn:
-        _check_size(plan.format, plan.view.size)
+        check_largest_size(plan.format, plan.view.size)
         width, height = plan.view.size
         check_room(plan.out, int(LEAST * width * height * len(times)))
-    return replace(plan, notices=(*_left_frames(plan), *_added_pixels(plan)))
-
-
-def _check_size(name: str, size: tuple[int, int]) -> None:
-    """Refuse pictures too large for a format."""
-    largest = EXPORT_FORMATS[name].largest
-    if largest is not None and max(size) > largest:
-        raise LissomError(
-            _(
-                "{name} holds at most {largest:,} pixels each way, not {width} × {height}; "
-                "choose a smaller size"
-            ).format(name=name, largest=largest, width=size[0], height=size[1])
-        )
+    return replace(
+        plan, notices=(*_left_frames(plan), *list_added_pixels(plan.format, plan.view.size))
+    )
 
 
 def _names(document: Document, request: ExportRequest) -> list[str]:
@@ -290,20 +266,6 @@ def _colour(background: str) -> tuple[int, int, int] | None:
         return None
     red, green, blue = bytes.fromhex(background[1:])
     return red, green, blue
-
-
-def _added_pixels(plan: ExportPlan) -> tuple[str, ...]:
-    """Return notices about rows and columns that a format of whole blocks adds."""
-    width, height = EXPORT_FORMATS[plan.format].whole_blocks(plan.view.size)
-    if (width, height) == plan.view.size:
-        return ()
-    return (
-        _(
-            "{format} needs even sides: the frames are extended by background to {width} "
-            "× {height} "
-            "pixels"
-        ).format(format=plan.format, width=width, height=height),
-    )
 
 
 def _left_frames(plan: ExportPlan) -> tuple[str, ...]:

@@ -23,7 +23,8 @@ from app.document import (
 from app.errors import LissomError, NoticeCollector, display_name
 from app.storage.files.reading import read_file
 from app.storage.opening import OpenedScene, build_scene, cut_picture
-from app.storage.pictures.layered import ImportedLayer, LayeredPicture, UniqueNames, encode_png
+from app.storage.pictures.layer_names import UniqueNames
+from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
 from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop

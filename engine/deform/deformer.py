@@ -14,9 +14,10 @@ from engine.deform.constrained_shape import ConstrainedShape
 from engine.deform.handles import TARGET_COUNT, HandleTargets
 from engine.deform.interior_point.search import StartingPoint
 from engine.deform.minimisation import advance_searches, begin_searches
+from engine.deform.model.barrier_position import FOLLOW, proven_around, widen_limits
 from engine.deform.state import State, Status
 from engine.deform.tracking import take_drag_step
-from engine.deform.trust_region import FOLLOW, FULL, STEP_RADIUS, proven_around, widen_limits
+from engine.deform.trust_region import FULL, STEP_RADIUS
 from engine.errors import EngineError
 from engine.maps import Certificate, HarmonicMap, LocalBounds, certify
 

@@ -8,13 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from engine.arrays import Complexes, Floats, as_points, as_reals, readonly, require_kind
+from engine.deform.model.position_hessian import STIFFNESS, position_hessian
 from engine.deform.pulls import BoundedPull, BoundedPulls, DistanceConstraint, DistanceConstraints
 from engine.errors import EngineError
 from engine.geometry import Domain, diameter, require_inside
 from engine.maps import Boundary
 
-# λ = STIFFNESS / L² for a handle of weight 1.
-STIFFNESS = 1e4
 # A prescribed rotation is as stiff as two handles this far (of L) on either side of the point.
 LEVER = 0.02
 # Handles nearer than this (of L) count as one place: their targets may differ no more.
@@ -175,7 +174,7 @@ class Handles:
             derivatives=readonly(derivatives),
             basis_coordinates=readonly(of_basis),
             basis_derivatives=readonly(derivatives @ boundary.basis),
-            hessian=readonly(_hessian(boundary, of_basis, stiffness)),
+            hessian=readonly(position_hessian(boundary, of_basis, stiffness)),
             coincident=tuple(zip(first.tolist(), second.tolist(), strict=True)),
         )
 
@@ -264,38 +263,3 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
         bad = int(np.flatnonzero(~(np.isfinite(factors) & (factors > 0)))[0])
         raise EngineError(WEIGHT_NOT_POSITIVE, handle=bad, weight=factors[bad])
     return factors
-
-
-def _hessian(boundary: Boundary, coordinates: Complexes, stiffness: Floats) -> Floats:
-    hessian = position_gram_matrix(boundary, np.sqrt(2.0 * stiffness)[:, None] * coordinates)
-    hold_constants(boundary, hessian)
-    return hessian
-
-
-def position_gram_matrix(boundary: Boundary, rows: Complexes) -> Floats:
-    """Return the Gram matrix (u, u) of displacements of points, in the order of `Objective`.
-
-    Parameters
-    ----------
-    rows : complex128, shape (p, r)
-        The functions of the boundary's basis at the points, times a factor of each point.
-    """
-    root = rows.copy()
-    r, count = root.shape[1], len(boundary.holes)
-    of_psi = root[:, 1 : r - count]
-    # A logarithm is in Φ and, conjugate, in Ψ.
-    root[:, r - count :] *= 2.0
-    # Re f = Re(Σ C φ + Σ C ψ), Im f = Im(Σ C φ − Σ C ψ).
-    real, imaginary = np.hstack([root, of_psi]), -1j * np.hstack([root, -of_psi])
-    both = np.concatenate([real, imaginary]).view(np.float64)
-    squared: Floats = both.T @ both
-    return squared
-
-
-def hold_constants(boundary: Boundary, hessian: Floats) -> None:
-    """Add a stiffness of the constants on the cages of holes to a Hessian (u, u)."""
-    r = boundary.basis.shape[1]
-    for constant in range(1, 1 + len(boundary.holes)):
-        # On the cage of a hole a constant changes no map, and would be free.
-        for first in (2 * constant, 2 * (constant + r - 1)):
-            hessian[[first, first + 1], [first, first + 1]] += STIFFNESS

@@ -19,12 +19,12 @@ from engine.deform.interior_point.continuation import advance_search, begin_sear
 from engine.deform.interior_point.homotopy import exceed_first_level
 from engine.deform.interior_point.search import MOST_STEPS, WORTH_A_JUMP, Search, StartingPoint
 from engine.deform.model.barrier import MARGIN, BarrierBounds
+from engine.deform.model.barrier_position import ROUNDING
 from engine.deform.model.evaluation import Evaluation
 from engine.deform.model.objective import Objective
 from engine.deform.state import State, Statistics, Status
 from engine.deform.trust_region import (
     LEAST_RESTING,
-    ROUNDING,
     BarrierSchedule,
     align_rigidly,
     fit_rigid_motion,

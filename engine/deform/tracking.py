@@ -18,17 +18,19 @@ from engine.deform.certified_step import CertifiedStep, add_samples, take_certif
 from engine.deform.constrained_shape import ConstrainedShape
 from engine.deform.handles import HandleTargets
 from engine.deform.model.barrier import Barrier
+from engine.deform.model.barrier_position import (
+    place_barrier_bounds,
+    proven_at,
+    stack_distortions,
+    stack_limits,
+    tighten_limits,
+)
 from engine.deform.model.evaluation import Evaluation
 from engine.deform.model.objective import Objective
 from engine.deform.state import State, Statistics, Status
 from engine.deform.trust_region import (
     BarrierSchedule,
     cut_to_radius,
-    place_barrier_bounds,
-    proven_at,
-    stack_distortions,
-    stack_limits,
-    tighten_limits,
 )
 from engine.maps import LocalBounds
 

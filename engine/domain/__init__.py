@@ -15,8 +15,8 @@ from engine.domain.build import (
     texture_coordinates as texture_coordinates,
 )
 from engine.domain.closed_cuts import ClosedCuts as ClosedCuts, find_closed_cuts as find_closed_cuts
-from engine.domain.outline.cuts import CUT_WIDTH as CUT_WIDTH
 from engine.domain.outline.holes import HoleMap as HoleMap, find_holes as find_holes
+from engine.domain.outline.slit_sides import CUT_WIDTH as CUT_WIDTH
 from engine.domain.validity import (
     MOST_MESH_TRIANGLES as MOST_MESH_TRIANGLES,
     require_domain as require_domain,

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from engine.arrays import Complexes, Floats, Indices, as_points, freeze, nbytes_of
 from engine.errors import EngineError
 from engine.geometry import ON_OUTLINE, deepest_point, diameter, require_inside
-from engine.interpolation.added.closing import HoleCloser
+from engine.interpolation.added.hole_closer import HoleCloser
 from engine.maps import Boundary
 from engine.paths import (
     IntegrationPaths,

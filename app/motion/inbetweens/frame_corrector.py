@@ -20,7 +20,7 @@ from app.motion.inbetweens.secondary_motion import SecondaryMotion, SecondaryTar
 from app.motion.inbetweens.segment_keys import segment_key, segment_poses
 from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes, Floats
-from engine.deform.correction.solver import PointTargets
+from engine.deform.correction.point_targets import PointTargets
 from engine.interpolation import CorrectionBase, correct_frame, evaluate_base
 
 KEPT = 2**26  # bytes of cached corrections per outline

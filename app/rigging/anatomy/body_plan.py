@@ -2,22 +2,14 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
 from app.rigging.anatomy.anatomy import Anatomy, neck_along
-from app.rigging.anatomy.skeleton import Branch
+from app.rigging.anatomy.legs import PlannedLeg, plan_leg
 from engine.arrays import Complexes, Floats, Indices
 from engine.geometry import contains
 
-# A branch shorter than this, in radii of its root, that thins out this much between a quarter and
-# three quarters of its length is a corner, not a leg.
-SHORT, CORNER = 1.0, 0.5
-# Sideways over downwards: a tail that lies on the ground.
-LYING = 1.3
-# Heights of ankle and sole above the lowest place of a leg's middle line, in its radii.
-ANKLE, SOLE = 1.1, 0.6
 # Toes point to a side if they reach this far beyond the ankle, in heights of the shape.
 TOES = 0.03
 # A single leg counts as a body's leg if its foot reaches this far.
@@ -35,13 +27,6 @@ SYMMETRIC = 0.82
 LOPSIDED = 0.6
 SAMPLES = 48  # of the shape's box, along each side
 END = 0.35  # of the trunk between the legs: a head or a tail leaves it within this share
-
-
-class PlannedLeg(NamedTuple):
-    """A leg: the nodes from its root to its end, and its ankle among them."""
-
-    path: Indices
-    ankle: int
 
 
 class BodyPlan:
@@ -87,7 +72,8 @@ class BodyPlan:
         limbs = [each for each in branches if len(near[each.path[-1]]) > 2]
         if not limbs:
             return self._legs_together()
-        found = [(leg, lowest) for leg, lowest in map(self._leg, limbs) if leg is not None]
+        planned = (plan_leg(limb, self.places, self.radii) for limb in limbs)
+        found = [(leg, lowest) for leg, lowest in planned if leg is not None]
         legs = [leg for leg, lowest in found if lowest <= self.anatomy.ground]
         if len(legs) == 1:
             # A lifted leg, as in a run, has the same hips.
@@ -124,26 +110,6 @@ class BodyPlan:
         high = places[: half + 1].imag > places[: half + 1].imag.min() + np.median(radii[:half])
         leg = PlannedLeg(way[half::-1], int(way[max(0, int(high.argmax()) - 1)]))
         return [leg] if abs(self._toes(leg, -np.inf, np.inf)) > FOOT else []
-
-    def _leg(self, branch: Branch) -> tuple[PlannedLeg | None, float]:
-        """Return a branch as a leg, or None, and its lowest height."""
-        path = np.array(branch.path)
-        places, radii, lengths = self.places[path], self.radii[path], np.array(branch.lengths)
-        out = lengths[-1] - radii[-1]
-        thin, thick = np.interp([0.25 * out, 0.75 * out], lengths, radii)
-        lowest = float((places.imag - radii).min())
-        if out < lengths[0]:
-            return None, lowest  # a corner: it stays in the disc at its root
-        radius = float(np.median(radii[lengths <= out]))
-
-        def reaches(height: float) -> int:
-            high = places.imag > places.imag.min() + height * radius
-            return max(0, int(high.argmax()) - 1)
-
-        ankle, down = reaches(ANKLE), places[-1] - places[reaches(SOLE)]
-        is_corner = out <= SHORT * radii[-1] and thin < CORNER * thick
-        is_leg = not is_corner and abs(down.real) <= LYING * down.imag
-        return (PlannedLeg(path[::-1], int(path[ankle])) if is_leg else None), lowest
 
     @cached_property
     def pairs(self) -> tuple[list[PlannedLeg], list[PlannedLeg]]:

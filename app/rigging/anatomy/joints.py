@@ -5,8 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from app.rigging.anatomy.anatomy import bend_share, joint_share, neck_along
-from app.rigging.anatomy.body_plan import BodyPlan, PlannedLeg
+from app.rigging.anatomy.body_plan import BodyPlan
 from app.rigging.anatomy.chain import suggest_chain_joints
+from app.rigging.anatomy.legs import PlannedLeg
 from app.rigging.motions.kinds import BodyKind
 from engine.arrays import Complexes, Floats, Indices
 from engine.geometry import contains

@@ -11,14 +11,8 @@ import numpy as np
 from PIL import Image
 
 from app.document import MAX_GROUP_DEPTH, BlendMode, Group, ancestor_paths
-from app.errors import (
-    EMPTY_IMPORT_LOG,
-    ImportLog,
-    LissomError,
-    NoticeCollector,
-    display_name,
-    shortened,
-)
+from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
+from app.storage.pictures.layer_names import UniqueNames, check_name_length
 from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.picture import Picture
 from app.texts import N_, _
@@ -26,7 +20,6 @@ from engine.arrays import readonly
 
 MOST_LAYERS = 200
 MOST_GROUPS = 10_000
-LONGEST_NAME = 1_000  # characters of a layer's or group's name
 EMPTY = N_("left out, since it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
 # pixel takes memory, also on the graphics card.
@@ -85,26 +78,6 @@ class LayeredPicture:
     layers: tuple[ImportedLayer, ...]
     summary: ImportLog = EMPTY_IMPORT_LOG
     groups: tuple[Group, ...] = ()
-
-
-class UniqueNames:
-    """Gives out unique names: a taken name gets the next free number.
-
-    The time per name does not depend on the number of equal names.
-    """
-
-    def __init__(self) -> None:
-        self._taken: set[str] = set()
-        self._next: dict[str, int] = {}
-
-    def claim(self, name: str) -> str:
-        """Take a name, with a number if it is taken, and return it."""
-        free, number = name, self._next.get(name, 2)
-        while free in self._taken:
-            free, number = f"{name} {number}", number + 1
-        self._next[name] = number
-        self._taken.add(free)
-        return free
 
 
 class GroupPaths:
@@ -287,17 +260,6 @@ def check_layer_count(count: int) -> None:
             _("it has {count:,} layers; Lissom takes up to {most}: merge some of them").format(
                 count=count, most=MOST_LAYERS
             )
-        )
-
-
-def check_name_length(name: str) -> None:
-    """Refuse a name that is too long for lists and messages; group paths repeat it."""
-    if len(name) > LONGEST_NAME:
-        raise LissomError(
-            _(
-                "the name {name!r} has {count:,} characters; Lissom takes up to "
-                "{longest:,}: shorten it"
-            ).format(name=shortened(name), count=len(name), longest=LONGEST_NAME)
         )
 
 

@@ -48,7 +48,10 @@ from app.document import (
 from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
 from app.export_formats import FormatOptions, FormatSettings
 from app.rigging import Parameters
-from app.storage.json_values import (
+from app.storage.json_values import JsonObject, as_list, as_object, as_whole
+from app.storage.pictures.parallel import require_memory
+from app.storage.project.archive import Archive
+from app.storage.project.codecs import (
     ANYTHING,
     FLAG,
     NUMBER,
@@ -57,10 +60,6 @@ from app.storage.json_values import (
     WHOLE,
     Codec,
     Field,
-    JsonObject,
-    as_list,
-    as_object,
-    as_whole,
     list_of,
     nested_record,
     optional,
@@ -68,8 +67,6 @@ from app.storage.json_values import (
     record,
     verbatim,
 )
-from app.storage.pictures.parallel import require_memory
-from app.storage.project.archive import Archive
 from app.storage.project.members import LayerMembers
 from app.texts import N_, _, message_of
 from engine.domain import Domain

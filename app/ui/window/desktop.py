@@ -1,6 +1,8 @@
-"""The window's icon, and its name for the desktop."""
+"""The desktop: whether there is one, and the window's icon and name on it."""
 
 import io
+import os
+import sys
 
 import numpy as np
 from imgui_bundle import glfw_utils  # before glfw: it brings the library itself
@@ -13,6 +15,13 @@ from app.ui.window.title import NAME
 
 APPLICATION = "lissom"  # the name of the program's desktop entry
 ICON_SIDES = (16, 32, 64)  # pixels
+# Environment variables that name the display of X11 or Wayland.
+DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
+
+
+def has_display() -> bool:
+    """Return whether the environment names a screen for the window."""
+    return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
 
 
 def show_icon() -> None:

@@ -1,6 +1,7 @@
 """The docks around the viewport: their sizes, and the labels of their tabs."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from imgui_bundle import ImVec2, hello_imgui, imgui
@@ -9,6 +10,8 @@ from app.texts import _
 from app.ui.panel import Panel, is_in_front
 from app.ui.style.theme import FONT_SIZE
 
+# A saved layout with another number is ignored, because its panels have other names.
+LAYOUT = 1
 SIDE, BOTTOM = 30.2, 12.2  # em: initial size of the tabs at the side, and of the timeline
 BARS = (2.7, 4.4)  # em: width and height of the bars around the docks
 MOST = (0.52, 0.45)  # largest share of the window's width and height for tabs and timeline
@@ -32,6 +35,14 @@ class Docking:
         self._given: dict[int, float] = {}
         self._requests: dict[int, _SizeRequest] = {}
         self._scale = 1.0
+
+    def layout(self, draw: Callable[[Panel], None]) -> hello_imgui.DockingParams:
+        """Return the docks, and the windows in which `draw` draws the panels."""
+        layout = hello_imgui.DockingParams()
+        layout.layout_name = f"Layout {LAYOUT}"
+        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.auto_hide_tab_bar
+        layout.dockable_windows = [_dockable(panel, draw) for panel in self._panels]
+        return layout
 
     def begin_frame(self, scale: float) -> None:
         """Fit sizes to the window and the interface scale."""
@@ -118,6 +129,16 @@ class Docking:
             if other is panel or left < 0:
                 break
         return panel.labels[1] if left >= 0 else panel.labels[-1]
+
+
+def _dockable(panel: Panel, draw: Callable[[Panel], None]) -> hello_imgui.DockableWindow:
+    window = hello_imgui.DockableWindow(panel.label, panel.place, partial(draw, panel))
+    window.can_be_closed = False
+    if panel.place == "MainDockSpace":
+        window.imgui_window_flags = (
+            imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
+        )
+    return window
 
 
 def _splits(room: ImVec2, em: float) -> list[hello_imgui.DockingSplit]:

@@ -1,7 +1,5 @@
 """The window: the session, its OpenGL objects, and the main loop."""
 
-import os
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -47,13 +45,6 @@ from engine.arrays import Bytes
 
 SIZE = (1280, 800)
 PAUSE = 0.1  # seconds between frames that only update the time of a job
-# Environment variables that name the display of X11 or Wayland.
-DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY")
-
-
-def has_display() -> bool:
-    """Return whether the environment names a screen for the window."""
-    return sys.platform != "linux" or any(map(os.environ.get, DISPLAYS))
 
 
 class Window:

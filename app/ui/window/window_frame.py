@@ -38,8 +38,6 @@ from app.ui.window.guard import FrameStep, WindowPart
 from app.ui.window.idling import AWAKE, IDLE_FPS, FramePace
 from app.ui.window.tutorial.card import Callout
 
-# A saved layout with another number is ignored, because its panels have other names.
-LAYOUT = 1
 LEFT = imgui.MouseButton_.left
 MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The icon bar")
 # Actions that follow automatically in each frame, and not from the person.
@@ -66,7 +64,6 @@ class WindowFrame:
         moments: Callable[[Path], list[Thumbnail]],
     ) -> None:
         self.session = session
-        self._panels = panels
         self._docking = Docking(panels)
         self._appearance = Appearance(session)
         self._dialogs = Dialogs()
@@ -133,7 +130,7 @@ class WindowFrame:
         )
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
-        params.docking_params = self._layout()
+        params.docking_params = self._docking.layout(self._draw_panel)
         calls = params.callbacks
         calls.load_additional_fonts = self._appearance.load_fonts
         calls.setup_imgui_config = self._appearance.configure
@@ -187,24 +184,6 @@ class WindowFrame:
     @property
     def look(self) -> Look:
         return self._appearance.look(self._places)
-
-    def _layout(self) -> hello_imgui.DockingParams:
-        layout = hello_imgui.DockingParams()
-        layout.layout_name = f"Layout {LAYOUT}"
-        layout.main_dock_space_node_flags = imgui.DockNodeFlags_.auto_hide_tab_bar
-        layout.dockable_windows = [self._window(panel) for panel in self._panels]
-        return layout
-
-    def _window(self, panel: Panel) -> hello_imgui.DockableWindow:
-        window = hello_imgui.DockableWindow(
-            panel.label, panel.place, partial(self._draw_panel, panel)
-        )
-        window.can_be_closed = False
-        if panel.place == "MainDockSpace":
-            window.imgui_window_flags = (
-                imgui.WindowFlags_.no_scrollbar | imgui.WindowFlags_.no_scroll_with_mouse
-            )
-        return window
 
     def _draw_panel(self, panel: Panel) -> None:
         if panel.draw_background is not None:

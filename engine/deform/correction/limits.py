@@ -8,7 +8,8 @@ from engine.arrays import Floats
 from engine.deform.correction.barrier import WIDTH, LimitBarrier, extremes
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
-from engine.deform.correction.solver import PointSolution, PointTargets, solve_correction
+from engine.deform.correction.point_targets import PointTargets
+from engine.deform.correction.solver import PointSolution, solve_correction
 from engine.maps import Bounds
 
 INSIDE = 0.002  # of the limits: a correction ends so far inside, for larger values between samples

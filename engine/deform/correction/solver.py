@@ -18,10 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine.arrays import Complexes, Floats, as_points
+from engine.arrays import Floats
 from engine.deform.correction.barrier import BarrierState, LimitBarrier
 from engine.deform.correction.corrector import PointCorrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame, Curvature
+from engine.deform.correction.point_targets import PointTargets, require_targets
 from engine.deform.correction.step_model import TINY, Rows, StepModel, pulls_against
 from engine.errors import EngineError
 
@@ -41,37 +42,7 @@ UNFINISHED = (
     "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
     "target. Give targets nearer to the base, or take the correction as it is (throw=False)."
 )
-BAD_TARGETS = "The {name} of targets for {count} points cannot be {values}."
 FIRMEST = 1.5  # times the largest pull: the merit's weight of each target error
-
-
-class PointTargets(NamedTuple):
-    """Targets of points.
-
-    Parameters
-    ----------
-    offsets : complex128, shape (m,)
-        From the base's positions to the targets.
-    weights : float64, shape (m,)
-        From 0, free, to 1, held.
-    is_anchored : bool
-        Whether the anchor stays where it is.
-    yield_forces : float64, shape (m,), optional
-        Pull on each point at which the target error is the diameter. The target error grows with
-        the cube of the pull, so that the point slows down smoothly where limits stop it. Without,
-        or with infinity, targets are met.
-    rotations : float64, shape (m,), optional
-        Prescribed rotation of the shape at each point, in radians; NaN where it is free.
-    compliances : float64, shape (m,), optional
-        Target error over pull, added to the compliance of the weights.
-    """
-
-    offsets: Complexes
-    weights: Floats
-    is_anchored: bool
-    yield_forces: Floats | None = None
-    rotations: Floats | None = None
-    compliances: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -125,7 +96,7 @@ def solve_correction(
         If the targets do not match the corrector's points, are not finite or out of range, or the
         iteration does not converge. With `throw=False` the last correction is returned.
     """
-    _require_targets(targets, len(corrector.points))
+    require_targets(targets, len(corrector.points))
     problem = _Problem(corrector, base, targets, walls)
     is_inside = walls is None or not walls.beyond.any()
     if not problem.is_asked and is_inside and (walls is None or start is None or not start.x.any()):
@@ -139,19 +110,6 @@ def solve_correction(
     if throw and not found.is_finished:
         raise EngineError(UNFINISHED, steps=found.steps, miss=found.target_errors.max())
     return found
-
-
-def _require_targets(targets: PointTargets, count: int) -> None:
-    as_points(targets.offsets, "The moves of targets")
-    for name, values, fits in (
-        ("moves", targets.offsets, True),
-        ("weights", targets.weights, (targets.weights >= 0) & (targets.weights <= 1)),
-        ("forces", targets.yield_forces, targets.yield_forces is None or targets.yield_forces > 0),
-        ("turns", targets.rotations, targets.rotations is None or ~np.isinf(targets.rotations)),
-        ("give", targets.compliances, targets.compliances is None or targets.compliances >= 0),
-    ):
-        if values is not None and (len(values) != count or not np.all(fits)):
-            raise EngineError(BAD_TARGETS, name=name, count=count, values=values)
 
 
 class _State(NamedTuple):

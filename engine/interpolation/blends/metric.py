@@ -9,7 +9,7 @@ a handful of Dirichlet problems serve every time.
 Around holes ln |f_z| differs from Equation (13) in two ways. The first is a constant on the
 boundary of each hole, which every single-valued f_z has (`engine.dirichlet`). The second is the h
 that closes the periods, makes up for the constants as far as it can, and keeps the limits of the
-keyframes (`engine.interpolation.added.closing`).
+keyframes (`engine.interpolation.added.hole_closer`).
 """
 
 from dataclasses import dataclass, replace

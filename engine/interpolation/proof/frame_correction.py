@@ -14,7 +14,8 @@ from engine.deform.correction.limits import (
     shorten_solution,
     solve_within,
 )
-from engine.deform.correction.solver import PointSolution, PointTargets
+from engine.deform.correction.point_targets import PointTargets
+from engine.deform.correction.solver import PointSolution
 from engine.interpolation.added.pins.pinning import CorrectionBase, CorrectionSeries
 from engine.interpolation.inbetweens import Inbetweens
 from engine.interpolation.proof.bisection import prove

@@ -15,7 +15,8 @@ from app.editor.actions.project_files import files
 from app.render import Renderer
 from app.render.gpu.context import window_context
 from app.storage import sample_images
-from app.ui.window.window import Window, has_display
+from app.ui.window.desktop import has_display
+from app.ui.window.window import Window
 from tests.bench.table import Row, Table
 
 SAMPLE = "dragon.png"  # samples that move would play

@@ -12,7 +12,8 @@ from app.editor.actions.project_files import recovery, saving
 from app.render import Renderer
 from app.render.gpu.context import create_context, window_context
 from app.storage import load_preferences
-from app.ui.window.window import Window, has_display
+from app.ui.window.desktop import has_display
+from app.ui.window.window import Window
 from tests.bench.table import Table, row_at_most
 from tests.support.offscreen import Offscreen
 

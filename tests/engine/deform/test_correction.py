@@ -15,11 +15,11 @@ from engine.deform.correction.corrector import build_corrector
 from engine.deform.correction.frame import BaseFrame, CorrectedFrame
 from engine.deform.correction.limits import frame_limits, max_feasible_share, solve_within
 from engine.deform.correction.paths import PointPaths
+from engine.deform.correction.point_targets import PointTargets
 from engine.deform.correction.solver import (
     LEVER,
     UNFINISHED,
     PointSolution,
-    PointTargets,
     solve_correction,
 )
 from engine.errors import EngineError

@@ -6,16 +6,18 @@ from numpy.testing import assert_allclose
 
 from engine.deform import Handles
 from engine.deform.model.barrier import MARGIN, Barrier
+from engine.deform.model.barrier_position import (
+    place_barrier_bounds,
+    stack_distortions,
+    tighten_limits,
+    widen_limits,
+)
 from engine.deform.model.objective import Objective
 from engine.deform.trust_region import (
     IDLE_AT_REST,
     STEP_RADIUS,
     BarrierSchedule,
     cut_to_radius,
-    place_barrier_bounds,
-    stack_distortions,
-    tighten_limits,
-    widen_limits,
 )
 from engine.maps import Bounds, Certificate, LocalBounds
 

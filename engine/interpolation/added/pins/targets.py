@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from engine.arrays import Booleans, Complexes, Floats
-from engine.deform.correction.solver import PointTargets
+from engine.deform.correction.point_targets import PointTargets
 from engine.geometry import fit_rigid
 
 

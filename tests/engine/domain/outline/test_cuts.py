@@ -13,8 +13,9 @@ from numpy.testing import assert_allclose
 from engine.arrays import Booleans, Complexes
 from engine.domain import MeshedDomain, build_domain, find_closed_cuts, require_domain
 from engine.domain.meshing.mesh import signed_areas
-from engine.domain.outline.cuts import CUT_WIDTH, CUTS_OFF, _drawn_area
+from engine.domain.outline.cuts import CUTS_OFF, _drawn_area
 from engine.domain.outline.enclosure import Enclosure, enclose_subject
+from engine.domain.outline.slit_sides import CUT_WIDTH
 from engine.errors import EngineError
 from engine.geometry import as_xy, shapely_region
 
