@@ -4,24 +4,45 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
-from typing import NoReturn, Self
+from typing import Any, NoReturn, Self
 
 from app.errors import display_message, few_notices, printable
-from app.texts import _, message_of
+from app.texts import N_, _, message_of
 from engine.errors import Message
 
 EXIT_ERROR = 2
+NO_WHOLE = N_("expected a whole number, not {text!r}")
+NO_NUMBER = N_("expected a number, not {text!r}")
 PATIENCE = 0.5  # seconds before progress is shown
 
 
 class Parser(argparse.ArgumentParser):
     """An argument parser with one-line errors, as for every other failure."""
 
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.register("type", int, _whole)
+        self.register("type", float, _number)
+
     def error(self, message: str) -> NoReturn:
         """Report bad usage and exit."""
         exit_with_error(
             _("{message} (see '{program} --help')").format(message=message, program=self.prog)
         )
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(_(NO_WHOLE).format(text=text)) from error
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(_(NO_NUMBER).format(text=text)) from error
 
 
 def exit_with_error(message: str) -> NoReturn:

@@ -30,7 +30,7 @@ def keep_layer(document: Document, name: str) -> Document:
     names = [layer.name for layer in document.layers]
     if name not in names:
         raise LissomError(
-            _("there is no layer {name!r}; the layers are {names}").format(
+            _("there is no layer {name!r}; choose from: {names}").format(
                 name=name, names=join_names(names)
             )
         )
@@ -62,7 +62,9 @@ def export_project(document: Document, request: ExportRequest, variant: Variant 
         maker = MeshExport(*given) if context is None else FrameRenderer(context, *given)
         with closing(maker.run()) as steps:
             for done in steps:
-                text = _("{done} of {count} frames").format(done=done, count=len(plan.times))
+                text = ngettext(
+                    "{done} of {count} frame", "{done} of {count} frames", len(plan.times)
+                ).format(done=done, count=len(plan.times))
                 status.show(text)
     print_notices((*maker.notices, *plan.notices))
     if isinstance(maker, MeshExport):
@@ -92,6 +94,8 @@ def _summary_of_frames(plan: ExportPlan) -> str:
     width, height = plan.view.size
     count = len(plan.times)
     values = {"path": plan.out, "count": count, "width": width, "height": height}
+    if EXPORT_FORMATS[plan.format].is_still:
+        return _("{path}: {width} × {height} pixels").format(**values)
     if not EXPORT_FORMATS[plan.format].suffixes:
         text = ngettext(
             "{path}: {count} frame of {width} × {height} pixels, {first}",
@@ -129,14 +133,16 @@ def _summary_of_frames(plan: ExportPlan) -> str:
 def _summary_of_shapes(maker: MeshExport, plan: ExportPlan) -> str:
     first, last = plan.span
     shapes = [
-        _("{count} shapes of {vertices:,} vertices within {error:.2g} pixels of the motion").format(
-            count=len(shape.motion.targets), vertices=len(shape.uv), error=shape.motion.error
-        )
+        ngettext(
+            "{count} shape of {vertices:,} vertices within {error:.2g} pixels of the motion",
+            "{count} shapes of {vertices:,} vertices within {error:.2g} pixels of the motion",
+            len(shape.motion.targets),
+        ).format(count=len(shape.motion.targets), vertices=len(shape.uv), error=shape.motion.error)
         for shape in maker.meshes
     ]
     return _("{path}: {shapes}; {seconds:g} s, {size:,.0f} KB").format(
         path=plan.out,
         shapes="; ".join(shapes),
-        seconds=(last - first) / plan.fps,
+        seconds=round((last - first) / plan.fps, 2),
         size=plan.out.stat().st_size / 1000,
     )

@@ -57,10 +57,11 @@ def require_point(place: complex, what: str) -> None:
     """Raise a `LissomError` unless both coordinates are within MAX_COORDINATE pixels."""
     require(
         abs(place.real) <= MAX_COORDINATE and abs(place.imag) <= MAX_COORDINATE,
-        N_("{what} must be within {largest:,.0f} pixels, not at {place:g}."),
+        N_("{what} must be within {largest:,.0f} pixels, not at ({x:g}, {y:g})."),
         what=what,
         largest=MAX_COORDINATE,
-        place=place,
+        x=place.real,
+        y=place.imag,
     )
 
 
@@ -71,5 +72,5 @@ def require_size(size: tuple[int, int], what: str) -> None:
         N_("{what} must have 1 to {largest:,} pixels each way, not {size}."),
         what=what,
         largest=MAX_PICTURE_SIDE,
-        size=size,
+        size=" × ".join(map(str, size)),
     )

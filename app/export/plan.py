@@ -129,11 +129,16 @@ def check_request(document: Document, request: ExportRequest) -> None:
         raise LissomError(_("there is nothing to export: every layer is hidden or a reference"))
     frames = _frames(document, settings)
     if frames.first not in document.frames or frames.last not in document.frames:
+        text = (
+            _("frame {first} is not in the animation; choose one from {start} to {end}")
+            if frames.first == frames.last
+            else _(
+                "frames {first} to {last} are not all in the animation; choose some from {start} "
+                "to {end}"
+            )
+        )
         raise LissomError(
-            _(
-                "frames {first} to {last} are not all in the animation, which has frames "
-                "{start} to {end}"
-            ).format(
+            text.format(
                 first=frames.first,
                 last=frames.last,
                 start=document.frames.first,

@@ -30,7 +30,7 @@ def find_layer(document: Document, name: str) -> Layer:
     names = {layer.name: layer for layer in document.layers}
     if name not in names:
         raise LissomError(
-            _("there is no layer {name!r}; the layers are {names}").format(
+            _("there is no layer {name!r}; choose from: {names}").format(
                 name=name, names=join_names([*names])
             )
         )

@@ -25,7 +25,7 @@ MOST_VERTICES = 400
 # A point may be this far (of L) outside the outline, by rounding.
 OUTSIDE = 1e-9
 MOST_HANDLES = 1_000
-TARGET_COUNT = "{count} handles need as many targets, not {given}."
+TARGET_COUNT = "Give as many targets as there are handles: {count}, not {given}."
 OTHER_TARGETS = (
     "Handles {first} and {second} are at the same point of the shape but have different targets; "
     "remove one of the handles."
@@ -35,8 +35,8 @@ OTHER_ROTATIONS = (
     "remove one of the handles."
 )
 TARGET_FAR = (
-    "Handle {handle} is wanted at {place:.3g}, more than {farthest:.0e} times the size of the "
-    "shape away; give it a target near the shape."
+    "Handle {handle} is wanted at ({x:.3g}, {y:.3g}), more than {farthest:.0e} times the size of "
+    "the shape away; give it a target near the shape."
 )
 WEIGHT_NOT_POSITIVE = "The weight of handle {handle} must be positive, not {weight:g}."
 MOST_CAGE = (
@@ -208,7 +208,8 @@ class Handles:
         size = self.lever / LEVER
         far = np.flatnonzero(np.abs(targets - self.points) > FARTHEST * size)
         if len(far):
-            raise EngineError(TARGET_FAR, handle=far[0], place=targets[far[0]], farthest=FARTHEST)
+            x, y = targets[far[0]].real, targets[far[0]].imag
+            raise EngineError(TARGET_FAR, handle=far[0], x=x, y=y, farthest=FARTHEST)
         for i, j in self.coincident:
             if abs(targets[i] - targets[j]) > APART * size:
                 raise EngineError(OTHER_TARGETS, first=i, second=j)

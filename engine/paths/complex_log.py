@@ -117,6 +117,7 @@ def _turns_along(
             return turns
         pieces *= 2
     raise EngineError(
-        "f_z vanishes, or nearly so, close to {place:.6g}; the keyframe folds there.",
-        place=starts[todo[0]],
+        "f_z vanishes, or nearly so, close to ({x:.6g}, {y:.6g}); the keyframe folds there.",
+        x=starts[todo[0]].real,
+        y=starts[todo[0]].imag,
     )

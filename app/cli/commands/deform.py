@@ -4,7 +4,7 @@ import argparse
 
 from app.cli.console import print_line
 from app.cli.options import add_out, input_file
-from app.texts import _
+from app.texts import _, ngettext
 
 EPILOG = _(
     """\
@@ -37,7 +37,7 @@ MAP.npz holds outline, cage, the arrays of the holes, and
   k, sigma_a, sigma_b             proven for the whole shape
   certified                       whether these are within the limits, and the map is injective
   status                          "converged" at rest; "at the limits" at rest, stopped by the
-                                  limits; "unfinished" if neither is proven
+                                  limits; "free" without handles; "unfinished" if none is proven
   steps                           Newton steps of the search that found the map
   steps_tried                     steps of all searches, and along the path
 
@@ -62,9 +62,12 @@ def run(arguments: argparse.Namespace) -> int:
     results = solve_case(arguments.case)
     write_arrays(arguments.out, results)
     print_line(
-        _(
-            "{status}: k ≤ {k:.4f}, sigma_a ≤ {sigma_a:.4f}, sigma_b ≥ {sigma_b:.4f}, {steps} "
-            "steps of {steps_tried} tried"
+        ngettext(
+            "{status}: k ≤ {k:.4f}, sigma_a ≤ {sigma_a:.4f}, sigma_b ≥ {sigma_b:.4f}, {steps} of "
+            "{steps_tried} step tried",
+            "{status}: k ≤ {k:.4f}, sigma_a ≤ {sigma_a:.4f}, sigma_b ≥ {sigma_b:.4f}, {steps} of "
+            "{steps_tried} steps tried",
+            int(results["steps_tried"]),
         ).format(**results)
     )
     return 0

@@ -4,7 +4,7 @@ import argparse
 
 from app.cli.console import StatusLine, print_line, print_notices
 from app.cli.options import add_cut_out_options, add_meshing_options, add_out, input_file
-from app.texts import _
+from app.texts import _, ngettext
 
 EPILOG = _(
     """\
@@ -172,14 +172,14 @@ def run(arguments: argparse.Namespace) -> int:
     print_notices(notices)
     save_drawing(arguments.out, opened, document)
     posed = [layer for layer in document.layers if not layer.still]
-    values = {
-        "path": arguments.out,
-        "layers": len(document.layers),
-        "keys": sum(len(layer.keys) for layer in posed),
-        "handles": sum(len(layer.handles) for layer in posed),
-    }
-    if len(document.layers) == 1:
-        print_line(_("{path}: {keys} keys, {handles} handles").format(**values))
-    else:
-        print_line(_("{path}: {layers} layers, {keys} keys, {handles} handles").format(**values))
+    layers = len(document.layers)
+    keys = sum(len(layer.keys) for layer in posed)
+    handles = sum(len(layer.handles) for layer in posed)
+    counts = [
+        ngettext("{count} key", "{count} keys", keys).format(count=keys),
+        ngettext("{count} handle", "{count} handles", handles).format(count=handles),
+    ]
+    if layers > 1:
+        counts.insert(0, ngettext("{count} layer", "{count} layers", layers).format(count=layers))
+    print_line(_("{path}: {counts}").format(path=arguments.out, counts=", ".join(counts)))
     return 0

@@ -11,7 +11,9 @@ from app.texts import N_, _
 
 Made = TypeVar("Made")
 NOT_A_FRAME = N_("{where}.{name} must be a whole number from 0 to {last}, not {content}")
-OUT_OF_ORDER = N_("{where} is out of order: frame {after} after {before}")
+OUT_OF_ORDER = N_(
+    "{where}: frame {after} comes after frame {before}; give frames in ascending order, each once"
+)
 
 
 def read_fields(content: object, where: str, fields: tuple[str, ...]) -> JsonObject:

@@ -175,7 +175,7 @@ def parse_pose_script(content: object) -> PoseScript:
             _('{field} needs "layers", which say what each layer does').format(field=lacking[0])
         )
     script = read_fields(content, _("the script"), (*SCENE_FIELDS, *own))
-    schema = script.get("schema")
+    schema = script["schema"]
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(_(WRONG_SCHEMA).format(own=SCHEMA, content=repr_for_error(schema)))
     usual = _options(script, "")

@@ -152,7 +152,7 @@ def test_a_mask_says_what_is_kept(photo, tmp_path, capsys):
     assert "No such file" in error_of(missing, capsys)
 
 
-def test_projects_and_exports_are_cut_out_likewise(photo, tmp_path):
+def test_projects_and_exports_are_cut_out_likewise(photo, tmp_path, capsys):
     mask = np.zeros((120, 160), np.uint8)
     mask[30:90, 20:80] = 255
     Image.fromarray(mask).save(tmp_path / "mask.png")
@@ -165,6 +165,7 @@ def test_projects_and_exports_are_cut_out_likewise(photo, tmp_path):
         project, frames = tmp_path / "posed.lissom", tmp_path / "frames"
         posing = ["pose", photo, script, "--out", project, "--triangles", 1000, *words]
         assert main([str(word) for word in posing]) == 0
+        assert capsys.readouterr().out.endswith(f"{project}: 1 key, 1 handle\n")
         exporting = ["export", project, "--out", frames, "--framing", "canvas"]
         assert main([str(word) for word in exporting]) == 0
         (frame,) = frames.iterdir()

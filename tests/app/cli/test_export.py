@@ -13,6 +13,7 @@ from documents import altered
 from numpy.testing import assert_array_equal
 from PIL import Image, ImageSequence
 
+from app.cli.console import NO_NUMBER, NO_WHOLE
 from app.cli.main import main
 from app.cli.options import NAMED_LIKE_FOLDER
 from app.document.settings import ExportSettings, FrameRange
@@ -188,14 +189,22 @@ def test_a_model_needs_no_graphics_and_tells_how_good_it_is(project, tmp_path, c
     assert "vertices within" in said
 
 
-def test_one_frame_is_a_picture_of_any_size(project, tmp_path):
+def test_a_model_of_a_single_shape_says_one_shape(tmp_path, capsys):
+    save_project(tmp_path / "short.lissom", altered(moving_document(last=1), variant="linear"))
+    export(tmp_path / "short.lissom", "--out", tmp_path / "short.glb", "--triangles", 600)
+    assert " 1 shape of " in capsys.readouterr().out
+
+
+def test_one_frame_is_a_picture_of_any_size(project, tmp_path, capsys):
     export(project, "--out", tmp_path / "frames", "--frames", "3:3")
     export(project, "--out", tmp_path / "pose.png", "--frame", 3)
     assert (
         pixels(tmp_path / "pose.png").tobytes()
         == pixels(tmp_path / "frames" / "frame_0003.png").tobytes()
     )
+    capsys.readouterr()
     export(project, "--out", tmp_path / "large.png", "--frame", 3, "--size", "1501x999")
+    assert capsys.readouterr().out.endswith("large.png: 1501 × 999 pixels\n")
     assert pixels(tmp_path / "large.png").shape == (999, 1501, 4)
     export(project, "--out", tmp_path / "one", "--frame", 3)
     assert [path.name for path in (tmp_path / "one").iterdir()] == ["frame_0003.png"]
@@ -228,11 +237,11 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "frames", "--frames", "4:2"], "not a range"),
         (["--out", "frames", "--frames", "0:99"], "0 to 6"),
         (["--out", "frames", "--size", "100"], "1920x1080"),
-        (["--out", "frames", "--size", "0x10"], "1 to 65,535"),
+        (["--out", "frames", "--size", "0x10"], "1 to 65,535 pixels each way, not 0 × 10."),
         (["--out", "frames", "--size", "65535x65535"], "too large"),
         (["--out", "frames", "--background", "red"], "#rrggbb"),
         (["--out", "frames", "--fps", "0"], "from 1/60 to 1,000"),
-        (["--out", "frames", "--fps", "fast"], "fast"),
+        (["--out", "frames", "--fps", "fast"], NO_NUMBER.format(text="fast")),
         (["--out", "frames", "--format", "avi"], "spritesheet"),
         (["--out", "frames", "--framing", "wide"], "canvas"),
         (["--out", "frames", "--variant", "cubic"], "metric"),
@@ -243,7 +252,11 @@ def test_notices_tell_what_the_person_should_know(project, tmp_path, capsys):
         (["--out", "walk.html", "--power-of-two"], "no use for --power-of-two"),
         (["--out", "frames", "--tolerance", "1"], "no use for --tolerance"),
         (["--out", "walk.png"], "(picture, apng, spritesheet)"),
-        (["--out", "walk.png", "--frame", "7"], "0 to 6"),
+        (
+            ["--out", "walk.png", "--frame", "7"],
+            "frame 7 is not in the animation; choose one from 0 to 6",
+        ),
+        (["--out", "walk.png", "--frame", "1e3"], NO_WHOLE.format(text="1e3")),
         (["--out", "walk.obj", "--format", "gif"], "end in .gif"),
         (["--out", "walk.glb", "--format", "gif"], "end in .gif"),
         (["--out", "walk.glb", "--format", "png"], "named like a file"),

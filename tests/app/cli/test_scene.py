@@ -186,7 +186,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"layer": "leg"}, "there is no layer 'leg'; the layers are wall, body, arm, patch"),
+        ({"layer": "leg"}, "there is no layer 'leg'; choose from: wall, body, arm, patch"),
         ({"layer": "wall"}, "'wall' stands still"),
         ({"attach": {"to": "leg", "at": [1, 2]}}, "there is no layer 'leg'"),
         ({"attach": {"to": "body", "at": [1, 2]}}, "which is not on 'body'"),
@@ -267,7 +267,7 @@ def test_pose_writes_nothing_when_the_script_is_refused(folder, capsys):
     with pytest.raises(SystemExit) as leaving:
         main(["pose", str(folder / "man.ora"), str(path), "--out", str(out), *FEW])
     assert leaving.value.code == 2
-    assert "there is no layer 'leg'; the layers are wall, body, arm, patch" in (
+    assert "there is no layer 'leg'; choose from: wall, body, arm, patch" in (
         capsys.readouterr().err
     )
     assert not out.exists()
@@ -315,7 +315,7 @@ def test_a_layer_that_is_not_there_is_reported(project, folder, capsys):
     arguments = ["export", str(project), "--out", str(folder / "no"), "--layer", "leg"]
     with pytest.raises(SystemExit):
         main(arguments)
-    assert "the layers are wall, body, arm, patch" in capsys.readouterr().err
+    assert "choose from: wall, body, arm, patch" in capsys.readouterr().err
 
 
 def test_what_changes_hands_does_not_jump(folder, capsys):
@@ -577,7 +577,10 @@ def test_choice_is_named_when_its_key_is_after_the_end(opened):
             [{**CHOICE, "keys": [[0, "head"]]}],
             r"choices\[0\]\.keys\[0\] shows 'head', which is not",
         ),
-        ([{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}], r"choices\[0\]\.keys is out of order"),
+        (
+            [{**CHOICE, "keys": [[4, "ah"], [2, "oh"]]}],
+            says(OUT_OF_ORDER, where="choices[0].keys", after=2, before=4),
+        ),
         ([{**CHOICE, "keys": [4]}], says(NOT_LIST, where="choices[0].keys[0]")),
         ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two switches"),
         ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two switches are called"),

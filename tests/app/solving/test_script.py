@@ -101,7 +101,7 @@ def test_what_is_left_out_has_its_documented_default():
     [
         (["schema"], 2, says(WRONG_SCHEMA, own=1, content=2)),
         (["schema"], True, says(WRONG_SCHEMA, own=1)),
-        (["schema"], None, says(WRONG_SCHEMA, own=1, content="null")),
+        (["schema"], None, says(LACKS_FIELD, where="the script", name="schema")),
         (["handles"], None, says(LACKS_FIELD, where="the script", name="handles")),
         (["keys"], None, says(LACKS_FIELD, where="the script", name="keys")),
         (["keys"], [], "at least one key"),
@@ -490,7 +490,10 @@ def test_the_camera_and_movements_are_read():
             {"camera": changed(("keys", 1, "zoom"), float("inf"), CAMERA)},
             says(NOT_FINITE, where="zoom"),
         ),
-        ({"camera": changed(("keys", 1, "frame"), 0, CAMERA)}, r"camera\.keys is out of order"),
+        (
+            {"camera": changed(("keys", 1, "frame"), 0, CAMERA)},
+            says(OUT_OF_ORDER, where="camera.keys"),
+        ),
         ({"camera": changed(("keys", 1, "tilt"), 1, CAMERA)}, "unknown field 'tilt'"),
         (
             {"camera": changed(("keys", 0, "centre"), None, CAMERA)},
@@ -500,7 +503,10 @@ def test_the_camera_and_movements_are_read():
         ({"canvas": [640]}, "canvas must be width and height"),
         ({"canvas": [640, 1.5]}, "canvas must be a whole number"),
         ({"movement": {"keys": [{"frame": 0, "zoom": 2}]}}, "unknown field 'zoom'"),
-        ({"movement": {"keys": [{"frame": 3}, {"frame": 2}]}}, r"movement\.keys is out of order"),
+        (
+            {"movement": {"keys": [{"frame": 3}, {"frame": 2}]}},
+            says(OUT_OF_ORDER, where="movement.keys"),
+        ),
         ({"opacity": 2}, "Opacity is between 0 and 1"),
         ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, where="opacity")),
         ({"opacity": [[0]]}, r"opacity\[0\] must be a frame and a number"),

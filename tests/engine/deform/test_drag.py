@@ -428,7 +428,7 @@ def test_bad_handles_are_refused(points, weights, message):
     [
         ([0.0], None, says(TARGET_COUNT)),
         ([0.0, np.inf], None, "finite"),
-        ([0.0, 1e300], None, says(TARGET_FAR, handle=1)),
+        ([0.0, 1e300], None, says(TARGET_FAR, handle=1, x=1e300, y=0.0)),
         ([0.0, 1.0], None, "same point .* different targets"),
         ([0.0, 0.0], [0.5, -0.5], "same point .* different rotations"),
         ([0.0, 0.0], [0.0], "angles"),
