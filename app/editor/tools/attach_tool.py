@@ -96,10 +96,10 @@ class AttachTool(Tool):
     @property
     def active_hints(self) -> tuple[Hint, ...]:
         if self.parent is None:
-            return (Hint(_("go over the layer to attach it to")),)
+            return (Hint(_("drag over the layer to attach it to")),)
         text = _("let go to attach {child} to {parent}")
         if self.is_circle:
-            text = _("{parent} is attached to {child} itself and cannot be its parent")
+            text = _("{parent} is attached to {child} and cannot be its parent")
         names = {"child": self.names[self.child], "parent": self.names[self.parent]}
         return (Hint(text.format(**names)),)
 

@@ -424,7 +424,7 @@ def test_ghosts_are_in_front_when_the_person_asks(window, nodding):
     def put(robot):
         robot.set_ref("###Timeline")
         robot.item_click("**/###onion skin")
-        robot.item_click("//$FOCUSED/In front of the drawing")
+        robot.item_click("//$FOCUSED/Draw in front")
         robot.popup_close_all()
 
     window.run(put)
@@ -471,7 +471,7 @@ def test_ways_are_of_what_plays_or_of_some_frames_around_the_playhead(window, sw
 
     def choose(robot):
         robot.set_ref("##MainMenuBar")
-        robot.menu_click("View/Frames of motion paths/6 around the playhead")
+        robot.menu_click("View/Motion path frames/6 around playhead")
 
     window.run(choose)
     window.settle()

@@ -217,7 +217,7 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     assert "edited by hand" in preset_setup.apply_motion_disabled_reason(ghost)
     apply_motion.apply_motion_preset(window.session)
     assert ghost.motion_job is None
-    click(window, "//Motion/**/Replace what was edited by hand")
+    click(window, "//Motion/**/Replace edits")
     assert not preset_setup.apply_motion_disabled_reason(ghost)
 
 

@@ -304,7 +304,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     assert load_project(kept).layers[0].key_frames == {0, 7, 24}
     saving.close_project(window.session)
     window.frames(2)
-    assert "The pose at frame 7 is in no key" in question(window).text
+    assert "The pose at frame 7 has no key yet" in question(window).text
     answer(window)
     window.until(lambda: window.session.project is None)
     assert load_project(path).layers[0].key_frames == {0, 7, 24}
