@@ -204,11 +204,11 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         _status(look, icons.ICON_FA_HAND, palette.warning, _describe_target_errors(missed))
         small_text(
             look,
-            _("The limits hold handles back. A looser stretch brings them nearer.")
+            _("Held back by the limits. A looser stretch brings handles nearer.")
             if missed.at_limits
             else _(
-                "Other handles and the shape's stiffness hold handles back. More weight brings "
-                "a handle nearer."
+                "Held back by the other handles and the shape's stiffness. More weight brings a "
+                "handle nearer."
             ),
         )
     else:

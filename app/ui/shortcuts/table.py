@@ -631,14 +631,12 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             _("Discard recording"), do(discard_recording), "Escape", condition=_records
         ),
         "preview start": ActionSpec(
-            _("Start preview range here"),
+            _("Set preview start"),
             do(keys.start_preview_at_playhead),
             "B",
             has_separator=True,
         ),
-        "preview end": ActionSpec(
-            _("End preview range here"), do(keys.end_preview_at_playhead), "N"
-        ),
+        "preview end": ActionSpec(_("Set preview end"), do(keys.end_preview_at_playhead), "N"),
         "preview none": ActionSpec(
             _("Play all frames"),
             do(keys.clear_preview_range),

@@ -496,7 +496,7 @@ def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
     stroke(window, 30 + 3j, 30 + 60j)
     assert boots.document is document
     name = boots.layer.handles[0].name
-    assert any(f"goes through {name}" in toast.text for toast in window.session.toasts)
+    assert any(f"crosses {name}" in toast.text for toast in window.session.toasts)
     stroke(window, 33 + 3j, 33 + 60j)
     rest(window)
     assert boots.layer.domain.closed is not None

@@ -66,7 +66,7 @@ def test_v_and_a_drag_and_escape(window, loose):
 
 def test_ctrl_and_shift_from_beside(window, loose):
     before, width = wanted(loose), loose.document.canvas[0]
-    assert "move all of it" in drag(window, width / 4 + 0j, 30j)
+    assert "move the whole layer" in drag(window, width / 4 + 0j, 30j)
     assert moved(loose, before, 0), "without them it selects"
     drag(window, width / 4 + 0j, 30j, keys=CTRL | SHIFT)
     assert moved(loose, before, wanted(loose)[0] - before[0])

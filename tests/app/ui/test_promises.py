@@ -186,7 +186,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
     exporting.start_export(session, tmp_path / "a.png")
     assert loose.afterwards
     exporting.start_export(session, tmp_path / "b.png")
-    assert "An export is under way" in session.toasts[-1].text
+    assert "An export is running." in session.toasts[-1].text
     saving.request_quit(session)
     assert question(window).title == "An export is running"
     session.dialog = None

@@ -280,7 +280,7 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     window.settle()
     window.act(saving.save)
     window.settle()
-    assert "another window or program has changed it" in question(window).text
+    assert "Another window or program has changed a.lissom" in question(window).text
     answer(window, "Save as…")
     assert isinstance(window.session.dialog, FileDialog)
     window.session.dialog = None

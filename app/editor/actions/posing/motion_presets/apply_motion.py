@@ -146,7 +146,7 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
     if not giving.target_errors:
         return
     parts = [
-        _("{joint} by {distance:.0f} px").format(joint=_(name), distance=error)
+        _("{joint} ({distance:.0f} px short)").format(joint=_(name), distance=error)
         for name, (error, *_rest) in giving.target_errors.items()
     ]
     named, more = ", ".join(parts[:MOST_NAMED]), len(parts) - MOST_NAMED
