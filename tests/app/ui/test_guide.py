@@ -168,7 +168,7 @@ def test_whoever_does_something_else_first_is_led_from_there(window, led):
     assert led.step == "handle"
     window.act(stiffness_editing.toggle_stiffness_tool, "stiff")
     window.frames(2)
-    assert "returns to posing" in words(window)
+    assert "goes back" in words(window)
     window.run(lambda robot: robot.key_press(window.Key.escape))
     window.frames(2)
     assert session.material is None

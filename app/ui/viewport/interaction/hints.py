@@ -42,7 +42,7 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
         for hint in tool.hints(session, project, spot)
     ]
     if not session.is_posing:
-        return _sentence([*hints, _("Esc returns to posing")])
+        return _sentence([*hints, _("Esc goes back to posing")])
     if spot.handle is not None:
         if spot.handle in find_auto_pinned(screen.shown):
             hints.append(_("auto-pinned: it stays until the next key"))
