@@ -76,7 +76,7 @@ class AttachTool(Tool):
             is_on_both = is_layer_at(project, self.child, there)
             attach_layer(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
-            text = _("Release the anchor over another layer to attach this layer to it.")
+            text = _("Let go of the anchor over another layer to attach this layer.")
             session.show_notice(text, topic="joint")
 
     @property
