@@ -197,7 +197,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     window.act(set_active_layer, body)
     window.settle()
     hints = drag(212 + 120j)
-    assert "attached to body itself" in hints[-1]
+    assert "is attached to body and cannot be its parent" in hints[-1]
     assert scene.document is before
     assert window.session.toasts[-1].tone == "error"
     assert re.search(
