@@ -26,7 +26,7 @@ class MoveTool(PoseTool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if session.moves:
             root = _root_parent(session, project, spot.layer)
-            return (Hint(_("drag to move the whole of {layer}").format(layer=root.name)),)
+            return (Hint(_("drag to move {layer}").format(layer=root.name)),)
         return (Hint(_("drag to move the whole layer"), "ctrl+shift"),) if _is_beside(spot) else ()
 
     @classmethod

@@ -52,7 +52,7 @@ def test_v_and_a_drag_and_escape(window, loose):
     before, document, first = wanted(loose), loose.document, loose.layer.key(0)
     press(window, imgui.Key.v)
     hint = drag(window, loose.layer_runtime.shown.handle_positions[1], 40 - 25j)
-    assert hint.startswith(f"Drag to move all of {loose.layer.name}")
+    assert hint.startswith(f"Drag to move {loose.layer.name}")
     way = wanted(loose)[0] - before[0]
     assert abs(way - (40 - 25j)) < 2, "pixels of the screen are whole"
     assert moved(loose, before, way)
