@@ -142,10 +142,10 @@ def offer_kept_report(session: Session) -> None:
     if session.dialog is None and mark_report_seen(session.folder):
         session.show_notice(
             _(
-                "Lissom ended unexpectedly the last time. A report of it was kept here, and sent "
-                "nowhere."
+                "Lissom quit unexpectedly last time. A report is saved on this computer. "
+                "Nothing was sent."
             ),
-            label=_("Show it"),
+            label=_("Show"),
             action=do(show_kept_or_new_report),
         )
 

@@ -32,7 +32,7 @@ VARIANTS: dict[Variant, MethodText] = {
         _("Eta (η)"), _("may overshoot"), _("May leave the limits of the keys; for comparison")
     ),
     Variant.LINEAR: MethodText(
-        _("Linear"), _("may fold"), _("Every point goes straight; for comparison")
+        _("Linear"), _("may fold"), _("Every point moves in a straight line; for comparison")
     ),
 }
 # Only for comparison: these methods are not certified, and no drawing is animated with them.
@@ -53,7 +53,7 @@ BASELINES: dict[Baseline, MethodText] = {
     Baseline.HANDLES: MethodText(
         _("Straight handles"),
         _("wanders"),
-        _("Handles go straight, poses are solved; slow; for comparison"),
+        _("Handles move in straight lines, poses are solved; slow; for comparison"),
     ),
     Baseline.CONFORMAL: MethodText(
         _("Conformal"),

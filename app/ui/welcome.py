@@ -116,9 +116,7 @@ def _first(look: Look, pictures: Previews) -> list[Action]:
     draw_list.add_text(ImVec2(left, corner.y + 2.5 * em), colour_u32(palette.dim), text)
     below = imgui.get_cursor_pos()
     imgui.set_cursor_screen_pos(ImVec2(left, corner.y + 4.1 * em))
-    if text_button(
-        _("…or with your own drawing"), hint=_("Open it, and go through the same steps")
-    ):
+    if text_button(_("…or with your own drawing"), hint=_("Open it and follow the same steps")):
         actions.append(do(tutorials.begin_tutorial_with_own_drawing))
     imgui.set_cursor_pos(below)
     imgui.dummy(ImVec2(0, 0.4 * em))

@@ -322,7 +322,7 @@ def _against_each_other(rng: np.random.Generator, shown: Screen, home: Path) -> 
     with driven(shown, home, path, path, KEPT_EVERY) as one:
         expect(one.hear() == "opened", "it is not opened")
         with driven(shown, home, path, path, KEPT_EVERY) as other:
-            expect(other.hear() == "Open elsewhere", "the second window does not ask")
+            expect(other.hear() == "Already open", "the second window does not ask")
             expect(other.do("anyway") == "opened", "it is not opened anyway")
             windows, number, questions = (one, other), 0, 0
             in_file, knows = 0, [0, 0]
@@ -333,7 +333,7 @@ def _against_each_other(rng: np.random.Generator, shown: Screen, home: Path) -> 
                 if rng.random() < 0.5:
                     told = windows[which].do("save", number)
                     is_own = knows[which] == in_file
-                    words = "saved" if is_own else "Changed by somebody else"
+                    words = "saved" if is_own else "Changed elsewhere"
                     expect(told == f"{words} {number}", f"{told} instead of {words} {number}")
                     questions += not is_own
                     if is_own:

@@ -145,7 +145,7 @@ def _record(window: Film, path: Path) -> None:
     ways = (-150 + 60j, 160 - 60j, -120 + 90j, 60 - 20j)
     with window.filmed(path):
         window.stay(20)
-        window.click(window.item("###Timeline/**/###Record a drag"))
+        window.click(window.item("###Timeline/**/###Record drag"))
         window.drag(*(window.point(start + way) for way in (0, *ways)), frames=26)
         window.settle()
         window.stay(60)

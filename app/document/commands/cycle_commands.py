@@ -29,7 +29,7 @@ TWO_POSES_SHOWN = N_(
 )
 
 
-@layer_command(_("Repeat stretch"))
+@layer_command(_("Repeat"))
 def set_cycle(layer: Layer, first: int, last: int, until: int | None = None) -> Layer:
     """Create a cycle that repeats until a frame, or until the end of the document.
 

@@ -45,8 +45,8 @@ class KeyVerb(NamedTuple):
         return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
 
 
-FIRST_KEY_STAYS = N_("The first key of {layers} stays: a layer has at least one key.")
-UNDONE, REDONE = _("Undone: {step}"), _("Done again: {step}")
+FIRST_KEY_STAYS = N_("The first key of {layers} was not deleted. A layer needs at least one key.")
+UNDONE, REDONE = _("Undone: {step}"), _("Redone: {step}")
 DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 

@@ -30,12 +30,12 @@ HOLDS_AND_MOVES = 2  # number of handles that the person's own drawing needs
 OPENING = JobKind(_("Opening the giraffe"), _("The giraffe cannot be opened"))
 # Short descriptions of the samples by their names, as long as a card has room for.
 STORIES = {
-    N_("Bar"): _("A bar to bend as you like"),
+    N_("Bar"): _("A bar to bend"),
     N_("Character"): _("Waves a hand"),
     N_("Dragon"): _("Nods and sweeps its tail"),
     N_("Friend"): _("Layers that wave and laugh"),
     N_("Giraffe"): _("Bends down and comes up"),
-    N_("Octopus"): _("Arms that curl without end"),
+    N_("Octopus"): _("Arms that curl in a loop"),
     N_("Ring"): _("A hole that opens and closes"),
     N_("S"): _("A spine to curl or straighten"),
 }

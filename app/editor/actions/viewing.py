@@ -273,8 +273,8 @@ def show_import_notice(session: Session, project: Project, summary: ImportLog) -
     count = len(summary.warnings)
     session.show_notice(
         ngettext(
-            "One thing looks different here; the tab Layers lists it.",
-            "{count} things look different here; the tab Layers lists them.",
+            "One thing looks different here. See the Layers tab.",
+            "{count} things look different here. See the Layers tab.",
             count,
         ).format(count=count),
         topic="import",

@@ -28,8 +28,8 @@ from engine.geometry import RigidMotion
 
 ATTACHING = JobKind(_("Attaching a layer"), _("The layer cannot be attached"))
 PARENT_IS_DESCENDANT = N_(
-    "{name} is attached to {parent}, so {parent} cannot be attached to {name}: that would be a "
-    "circle. Detach {name} first."
+    "{parent} cannot be attached to {name}, because {name} is attached to {parent}. Detach "
+    "{name} first."
 )
 
 
@@ -193,7 +193,7 @@ def delete_layers(session: Session, project: Project, *identities: int) -> None:
     """Delete layers; their children attach to their parents, and nothing moves now."""
     gone, layers = set(identities), project.document.layers
     if len(gone) == len(layers):
-        text = _("A scene has at least one layer. Add another layer first.")
+        text = _("A scene needs at least one layer. Add another layer first.")
         session.show_notice(text, tone="error")
     elif any(joint.parent in gone for layer in layers for joint in layer.attachments):
         pending_changes.run_when_idle(

@@ -83,7 +83,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
     elif layers:
         take({})
     else:
-        session.show_notice(_("No layer has a handle or a second key: there are no poses to copy."))
+        session.show_notice(_("There are no poses to copy: no layer has a handle or a second key."))
 
 
 def is_copying_keys(session: Session, project: Project) -> bool:

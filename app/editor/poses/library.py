@@ -16,7 +16,7 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.pull import DragStart
 from app.texts import _
 
-KEEPING = JobKind(_("Keeping a pose"), _("The pose could not be kept"), "hand")
+KEEPING = JobKind(_("Saving a pose"), _("The pose could not be keyed"), "hand")
 
 
 @with_project
@@ -29,7 +29,9 @@ def save_pose_to_library(session: Session, project: Project) -> None:
 
 def _save_pose(session: Session, project: Project, layer: Layer, pose: Pose) -> None:
     if layer.domain is not project.layer.domain:
-        session.show_notice(_("The pose was not kept: the shape changed meanwhile."))
+        session.show_notice(
+            _("The pose was not saved: the shape changed meanwhile. Save it again.")
+        )
         return
     taken = [Keyframe(frame=0, pose=pose)]
     (key,) = pose_insertion.fit_keys_to_layer(project, project.active, taken, layer.bounds)

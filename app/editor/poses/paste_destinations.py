@@ -40,15 +40,12 @@ class PasteDestination:
         """The reason why the layer cannot take the keys, as a sentence; empty if it can."""
         layer, source = self.layer, self.copied.layer
         if layer.still:
-            text = _("“{layer}” is a still picture, which has no poses.")
+            text = _("“{layer}” is a still picture and has no poses.")
             return text.format(layer=layer.name)
         if self.is_own or self.pairs:
             return ""
         if not source.handles:
-            text = _(
-                "“{layer}” was copied, which has no handles; poses go to other layers by the names "
-                "of their handles."
-            )
+            text = _("The copied layer “{layer}” has no handles, so its pose fits no other layer.")
             return text.format(layer=source.name)
         names = [handle.name for handle in source.handles]
         if len(names) > MOST_NAMED + 1:
@@ -115,7 +112,7 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
     found = _find_paste_destinations(session, project, way)
     if not found:
         names = ", ".join(f"“{each.layer.name}”" for each in copied[:MOST_NAMED])
-        text = _("No layer of this drawing is called {names}, as the copied layers are.")
+        text = _("No layer here has the name of a copied layer: {names}.")
         return text.format(names=names)
     reasons = [landing.disabled_reason for landing in found]
     if all(reasons):
@@ -124,8 +121,8 @@ def paste_keys_disabled_reason(session: Session, project: Project, way: PasteMod
         each.is_direct(way) for each, reason in zip(found, reasons, strict=True) if not reason
     ):
         return _(
-            "Nothing changes sides: no layer and no handle that was copied has a partner by its "
-            "name. The Poses tab lists the pairs of names."
+            "Nothing was swapped: no copied layer or handle has a partner. Set the pairs of "
+            "names in the Poses tab."
         )
     return ""
 

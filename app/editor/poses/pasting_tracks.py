@@ -70,20 +70,22 @@ def paste_track(
     if track is not None and track.is_scene_space != copied.track.is_scene_space:
         if copied.track.is_scene_space:
             text = _(
-                "The copied keys are planted, the keys of {handle} go with the pose. Set both "
-                "alike in the Handle tab, then copy again."
+                "The copied keys are planted, but the keys of {handle} go with the pose. "
+                "Choose the same for both in the Handle tab, then copy again."
             )
         else:
             text = _(
-                "The copied keys go with the pose, the keys of {handle} are planted. Set both "
-                "alike in the Handle tab, then copy again."
+                "The copied keys go with the pose, but the keys of {handle} are planted. "
+                "Choose the same for both in the Handle tab, then copy again."
             )
         session.show_notice(text.format(handle=name))
         return
     by += copied.track.delay - (0 if track is None else track.delay)
     keys = tuple(replace(key, frame=key.frame + by) for key in copied.keys)
     if keys[0].frame < 0:
-        text = _("The track of {handle} is too late for a key at this frame.")
+        text = _(
+            "The delay of {handle}'s track is too long for a key at this frame. Shorten the delay."
+        )
         session.show_notice(text.format(handle=name))
         return
     if track is None:

@@ -19,9 +19,9 @@ class AnchorTool(Tool):
         if spot.on_ring:
             return ()
         if spot.handle is not None:
-            return (Hint(_("click for the anchor"), "ctrl"),)
+            return (Hint(_("click to place the anchor"), "ctrl"),)
         return (
-            (Hint(_("click for the anchor, which stays calm between keys"), "ctrl"),)
+            (Hint(_("click to place the anchor, around which in-betweens turn"), "ctrl"),)
             if spot.on_shape
             else ()
         )

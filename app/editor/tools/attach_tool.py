@@ -76,7 +76,7 @@ class AttachTool(Tool):
             is_on_both = is_layer_at(project, self.child, there)
             attach_layer(session, self.child, self.parent, turns, there if is_on_both else None)
         else:
-            text = _("Release the anchor over another layer to attach this layer to it.")
+            text = _("Let go of the anchor over another layer to attach this layer.")
             session.show_notice(text, topic="joint")
 
     @property
@@ -96,10 +96,10 @@ class AttachTool(Tool):
     @property
     def active_hints(self) -> tuple[Hint, ...]:
         if self.parent is None:
-            return (Hint(_("go over the layer to attach it to")),)
+            return (Hint(_("drag over the layer to attach it to")),)
         text = _("let go to attach {child} to {parent}")
         if self.is_circle:
-            text = _("{parent} is attached to {child} itself and cannot be its parent")
+            text = _("{parent} is attached to {child} and cannot be its parent")
         names = {"child": self.names[self.child], "parent": self.names[self.parent]}
         return (Hint(text.format(**names)),)
 

@@ -22,7 +22,7 @@ class MirrorAxisTool(Tool):
 
     @classmethod
     def hints(cls, _session: Session, _project: Project, spot: PointerHit) -> tuple[Hint, ...]:
-        return (Hint(_("drag to flip poses at another place")),) if spot.on_axis else ()
+        return (Hint(_("drag to move the mirror axis")),) if spot.on_axis else ()
 
     @classmethod
     def press(cls, _: Session, project: Project, spot: PointerHit) -> Self | None:

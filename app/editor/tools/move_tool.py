@@ -26,8 +26,8 @@ class MoveTool(PoseTool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if session.moves:
             root = _root_parent(session, project, spot.layer)
-            return (Hint(_("drag to move all of {layer}").format(layer=root.name)),)
-        return (Hint(_("drag to move all of it"), "ctrl+shift"),) if _is_beside(spot) else ()
+            return (Hint(_("drag to move {layer}").format(layer=root.name)),)
+        return (Hint(_("drag to move the whole layer"), "ctrl+shift"),) if _is_beside(spot) else ()
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -50,7 +50,7 @@ class MoveTool(PoseTool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint(_("type a number of pixels")), Hint(_("X or Y to keep to an axis")))
+        return (Hint(_("type a number of pixels")), Hint(_("X or Y to lock to an axis")))
 
 
 @with_project

@@ -54,11 +54,11 @@ class PoseTool(Tool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         if spot.handle is not None:
             if project.layer.is_locked(spot.handle):
-                return (Hint(_("click to select; it is locked")),)
+                return (Hint(_("click to select the locked handle")),)
             if session.records:
-                return (Hint(_("drag to record how it moves")),)
+                return (Hint(_("drag to record the motion")),)
             on_track = draggable_track(project, spot.handle) is not None
-            return (Hint(_("drag to key it alone") if on_track else _("drag to pose")),)
+            return (Hint(_("drag to key this handle only") if on_track else _("drag to pose")),)
         if spot.track_key is not None:
             text = _("drag to move the key at frame {frame}")
             return (Hint(text.format(frame=spot.track_key)),)
@@ -205,10 +205,10 @@ class PoseTool(Tool):
     def active_hints(self) -> tuple[Hint, ...]:
         if self.records:
             return (Hint(_("let go to end the recording")),)
-        typed = (Hint(_("type a number of pixels")), Hint(_("X or Y to keep to an axis")))
+        typed = (Hint(_("type a number of pixels")), Hint(_("X or Y to lock to an axis")))
         if self.tracked is not None:
             return typed
-        return (*typed, Hint(_("let go to keep the target beyond its reach"), "alt"))
+        return (*typed, Hint(_("let go to keep the target where the pointer is"), "alt"))
 
 
 def _movable_handles(project: Project) -> frozenset[int]:

@@ -50,7 +50,7 @@ class RotateTool(Tool):
             (handle,) = project.selected_handles
             is_alone = draggable_track(project, handle) is not None
             text = _("drag to turn the shape around the handle")
-            return (Hint(_("drag to key its turn alone") if is_alone else text),)
+            return (Hint(_("drag to key this handle's rotation only") if is_alone else text),)
         if spot.handle is None or project.layer.is_locked(spot.handle):
             return ()
         # The hint names the ring, since many window managers take Alt+drag.
@@ -151,4 +151,4 @@ class RotateTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint(_("turn by steps of 15°"), "ctrl"), Hint(_("type a number of degrees")))
+        return (Hint(_("turn in steps of 15°"), "ctrl"), Hint(_("type a number of degrees")))

@@ -20,8 +20,8 @@ from app.ui.style.theme import Look
 from app.ui.style.widgets import colour_field, draw_tooltip
 
 PATH_REACHES = {
-    0: _("All that play"),
-    6: _("6 around the playhead"),
+    0: _("All played frames"),
+    6: _("6 around playhead"),
     12: "12",
     24: "24",
     48: "48",
@@ -90,7 +90,7 @@ def _tabs(session: Session, panels: Sequence[Panel]) -> list[Action]:
 
 
 def _path_reaches(session: Session) -> list[Action]:
-    if not imgui.begin_menu(_("Frames of motion paths")):
+    if not imgui.begin_menu(_("Motion path frames")):
         return []
     current = session.preferences.path_reach
     actions = [

@@ -20,8 +20,8 @@ def draw_method_menu(project: Project) -> list[Action]:
         draw_tooltip(text.what)
     imgui.separator()
     stays = project.layer.has_auto_pins
-    if imgui.menu_item(_("Handles stay between keys"), "", stays)[0]:
+    if imgui.menu_item(_("Auto-pin handles"), "", stays)[0]:
         command = shape_commands.set_auto_pins(project.active, enabled=not stays)
         actions.append(do(editing.edit_document, command))
-    draw_tooltip(_("Handles stay in place between two keys with equal targets"))
+    draw_tooltip(_("Keep handles in place between two keys with equal targets"))
     return actions

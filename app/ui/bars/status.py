@@ -30,14 +30,11 @@ class WarningAction(NamedTuple):
 
 RELAX_POSE_LIMITS = WarningAction(
     resolving.relax_limits_and_solve,
-    _("Let this drawing stretch further, and pull the handles again"),
+    _("Raise the stretch limit, and pull the handles again"),
 )
 RELAX_MOTION_LIMITS = WarningAction(
     resolving.relax_motion_limits,
-    _(
-        "Let this drawing stretch further between its keys, so that the motion can go on through "
-        "them"
-    ),
+    _("Raise the stretch limit, so that the motion goes on through its keys"),
 )
 
 
@@ -215,14 +212,14 @@ def list_status_items(session: Session) -> list[StatusItem]:
         facts.append(
             StatusItem(
                 _("pose {time:.0f} ms").format(time=milliseconds),
-                _("What the last step of a pose took"),
+                _("Time to solve the pose"),
             )
         )
     if project is not None and project.playhead.since is not None:
         facts.append(
             StatusItem(
                 _("{rate:.0f} fps").format(rate=imgui.get_io().framerate),
-                _("Frames drawn in a second"),
+                _("Frames drawn per second"),
             )
         )
     return facts
@@ -246,7 +243,7 @@ def _distortion(project: Project) -> StatusItem | None:
             name=LIMIT_NAMES[most.name], value=most.value, limit=most.limit
         ),
         "\n".join(
-            [_("Largest distortion of the whole shape, and its limit"), ""]
+            [_("Largest distortion anywhere in the shape, and its limit"), ""]
             + [
                 _("{name} ({symbol}) {value:.3f}, limit {limit:.3f}").format(
                     name=LIMIT_NAMES[use.name],

@@ -135,7 +135,7 @@ def _use_keyboard(*, is_used: bool) -> None:
 
 
 def _waiting(look: Look) -> list[Action]:
-    imgui.text_unformatted(_("Choose in the dialog of the system. It has a window of its own."))
+    imgui.text_unformatted(_("Choose a file in the system's dialog, which is a separate window."))
     imgui.dummy(ImVec2(0, 0.4 * look.em))
     if imgui.button(_("Use Lissom's own dialog")):
         return [do(use_own_file_browser)]

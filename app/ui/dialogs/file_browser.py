@@ -213,9 +213,7 @@ class FileBrowser:
 def _way(dialog: FileDialog, look: Look, width: float) -> FileDialog:
     """Draw the buttons that leave the folder: up, home, and each parent folder."""
     start = imgui.get_cursor_pos_x()
-    if icon_button(
-        look, icons.ICON_FA_ARROW_UP, "up", _("The folder above"), keys=format_chord(UP)
-    ):
+    if icon_button(look, icons.ICON_FA_ARROW_UP, "up", _("Parent folder"), keys=format_chord(UP)):
         return enter_folder(dialog, dialog.folder.parent)
     imgui.same_line(0, 0)
     if icon_button(look, icons.ICON_FA_HOUSE, "home", _("Your home folder")):
@@ -285,7 +283,7 @@ def _name_field(dialog: FileDialog, width: float, *, is_new: bool, is_set: bool)
         if state is not None:
             state.reload_user_buf_and_move_to_end()
     imgui.set_next_item_width(width)
-    hint = _("Name of the folder") if dialog.wants_folder else _("Name of the file")
+    hint = _("Folder name") if dialog.wants_folder else _("File name")
     shown = display_name(dialog.name)
     name = imgui.input_text_with_hint(NAME_FIELD, hint, shown)[1]
     return dialog if name == shown else replace(dialog, name=name, marked="")

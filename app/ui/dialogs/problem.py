@@ -19,14 +19,14 @@ def draw_problem_dialog(report: ProblemReport, look: Look) -> list[Action]:
     imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + width)
     imgui.text_unformatted(
         _(
-            "Lissom ended unexpectedly, and kept this report. Nothing is sent. The report leaves "
-            "out paths and names of files. Look through it, change what you like, and save it to "
-            "pass it on yourself."
+            "Lissom quit unexpectedly and saved this report. Nothing is sent. The report "
+            "leaves out names of files and folders. Read it, change it as you like, then save "
+            "it and send it yourself."
         )
         if report.is_kept
         else _(
-            "Nothing is sent. The report leaves out paths and names of files. Look through it, "
-            "change what you like, and save it to pass it on yourself."
+            "Nothing is sent. The report leaves out names of files and folders. Read it, "
+            "change it as you like, then save it and send it yourself."
         )
     )
     imgui.pop_text_wrap_pos()

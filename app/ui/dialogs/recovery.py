@@ -22,8 +22,8 @@ def draw_recovery_dialog(recovery: RecoveryDialog, look: Look) -> list[Action]:
     imgui.push_text_wrap_pos(30 * look.em)
     imgui.text_unformatted(
         _(
-            "Lissom ended unexpectedly, and kept your unsaved work. Work that you do not open or "
-            "discard stays here. The menu File lists it under Unsaved work."
+            "Lissom quit unexpectedly and kept your unsaved work. Open it, discard it, or find "
+            "it later in File › Unsaved work."
         )
     )
     imgui.pop_text_wrap_pos()

@@ -53,7 +53,7 @@ LIMITS = (
         "k",
         _("Shear"),
         "k",
-        _("How far angles change: 0 keeps them, 1 is a collapse"),
+        _("How far angles change: 0 not at all, 1 collapses the shape"),
         Scale(left=0.0, right=0.98),
     ),
     LimitRow(
@@ -129,7 +129,7 @@ def _stretch(look: Look, bounds: Bounds) -> list[Action]:
     hint = (
         _("{hint}.").format(hint=_(present.hint))
         if present
-        else _("Your own limits, under “Details”.")
+        else _("Custom limits, set under Details.")
     )
     small_text(look, hint)
     return [do(resolving.set_limits, s.bounds) for s in LIMIT_PRESETS if s.name == chosen]
@@ -190,11 +190,11 @@ def _solver(session: Session, look: Look, project: Project) -> None:
     if project.pull is not None and not project.pull.is_at_rest:
         _status(look, icons.ICON_FA_ARROWS_SPIN, palette.accent, _("Following the handles"))
         time = 1000 * session.solver_seconds
-        small_text(look, _("{time:.0f} ms for the last steps").format(time=time))
+        small_text(look, _("{time:.0f} ms a step").format(time=time))
         return
     if shown is None or pose is None:
         _status(look, icons.ICON_FA_FILM, palette.dim, _("An in-between"))
-        small_text(look, _("It stays within the distortion of its two keys."))
+        small_text(look, _("It never distorts more than its two keys."))
         return
     missed = measure_target_errors(shown.clip.layer, pose)
     is_proven = shown.clip.layer.is_proven(pose)
@@ -204,15 +204,17 @@ def _solver(session: Session, look: Look, project: Project) -> None:
         _status(look, icons.ICON_FA_HAND, palette.warning, _describe_target_errors(missed))
         small_text(
             look,
-            _("Held back by the limits. A looser stretch lets a handle come nearer.")
+            _("Held back by the limits. A looser stretch brings handles nearer.")
             if missed.at_limits
             else _(
-                "Held back by the other handles and the shape's stiffness. More weight lets a "
-                "handle come nearer."
+                "Held back by the other handles and the shape's stiffness. More weight brings a "
+                "handle nearer."
             ),
         )
     else:
-        _status(look, icons.ICON_FA_CIRCLE_CHECK, palette.good, _("Every handle is in its place"))
+        _status(
+            look, icons.ICON_FA_CIRCLE_CHECK, palette.good, _("All handles reach their targets")
+        )
     if is_proven:
         small_text(look, _("Proven: nothing folds, and no point exceeds the limits."))
 
@@ -276,5 +278,5 @@ def _solving(project: Project) -> list[Action]:
         )
     is_possible = resolver is None and bool(project.layer.handles)
     hint = _("Pull the handles of every key to their targets again, within the limits")
-    is_pressed = text_button(_("Pose all keys again"), FILL, hint, enabled=is_possible)
+    is_pressed = text_button(_("Re-pose all keys"), FILL, hint, enabled=is_possible)
     return [do(resolving.solve_keys_again)] if is_pressed else []

@@ -178,14 +178,14 @@ def _size(
     imgui.same_line(0, gap)
     keeps = session.is_aspect_locked
     icon = icons.ICON_FA_LOCK if keeps else icons.ICON_FA_LOCK_OPEN
-    if icon_button(look, icon, "keep ratio", _("Keep the ratio of width and height"), active=keeps):
+    if icon_button(look, icon, "keep ratio", _("Keep proportions"), active=keeps):
         actions.append(do(export_settings.set_aspect_locked, not keeps))
     imgui.same_line(0, gap)
     if icon_button(
         look,
         icons.ICON_FA_ARROW_ROTATE_LEFT,
         "own size",
-        _("Back to the size of the drawing"),
+        _("Reset to the size of the drawing"),
         enabled=settings.size is not None,
     ):
         return replace(settings, size=None), actions
@@ -206,7 +206,7 @@ def _canvas(look: Look, project: Project) -> list[Action]:
     gap = imgui.get_style().item_inner_spacing.x
     entered = draw_size_fields("canvas ", document.canvas, 1.15 * imgui.get_frame_height() + gap)
     imgui.same_line(0, gap)
-    hint = _("Back to the size of the picture behind all others")
+    hint = _("Reset to the size of the backmost picture")
     is_own = document.canvas != document.layers[0].picture.size
     if icon_button(look, icons.ICON_FA_ARROW_ROTATE_LEFT, "canvas size", hint, enabled=is_own):
         return [
@@ -248,7 +248,7 @@ def _frames(look: Look, project: Project, settings: ExportSettings) -> ExportSet
             count,
         )
         if EXPORT_FORMATS[settings.format].is_drawn
-        else _("{time:.1f} s, at any rate")
+        else _("{time:.1f} s, at every frame rate")
     )
     small_text(look, text.format(count=count, time=count / document.fps, rate=document.fps))
     return settings
@@ -290,7 +290,7 @@ def _output(session: Session, look: Look, project: Project) -> list[Action]:
     if EXPORT_FORMATS[project.document.export.format].is_still:
         text, hint = (
             f"{icons.ICON_FA_COPY}  {_('Copy')}###copy",
-            _("Put the picture on the clipboard"),
+            _("Copy the picture to the clipboard"),
         )
         if text_button(text, FILL, hint, BINDINGS["copy picture"].shown_keys):
             actions.append(do(exporting.copy_picture))

@@ -185,7 +185,7 @@ def _firmness(session: Session, look: Look, chosen: Sequence[Handle]) -> list[Ac
     weight = weights.pop() if len(weights) == 1 else math.nan
     word = next((word for word, value in WEIGHT_PRESETS.items() if value == weight), "")
     taken = option_buttons(look, "hold", [(word, _(word)) for word in WEIGHT_PRESETS], word)
-    draw_tooltip(_("How firmly the handle holds its target against other handles"))
+    draw_tooltip(_("How firmly the handle holds its target when other handles pull"))
     if taken is not None:
         weigh = handle_commands.set_handle_weight
         actions.append(do(editing.edit_layer, weigh, identities, WEIGHT_PRESETS[taken]))
@@ -239,9 +239,9 @@ def _draw_target(look: Look, project: Project, handle: Handle) -> list[Action]:
     elif is_wanted:
         small_text(look, "")
     elif handle.id in find_auto_pinned(shown):
-        small_text(look, _("Between keys the handle stays until the next key."))
+        small_text(look, _("Auto-pinned: the handle stays in place until the next key."))
     else:
-        small_text(look, _("Between keys the handle goes with the shape."))
+        small_text(look, _("Between keys the handle moves with the shape."))
     return actions
 
 

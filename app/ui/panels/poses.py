@@ -52,7 +52,7 @@ def draw_poses_panel(
             ),
         )
     else:
-        small_text(look, _("Keep a pose to use it again: here, at other frames, or blended in."))
+        small_text(look, _("Save a pose to use it again, at any frame, whole or blended in."))
     heading(look, _("Flip"))
     return actions + _flip(session, look, project)
 
@@ -167,7 +167,7 @@ def _blend(look: Look, project: Project, offer: library.PoseOffer, width: float)
     draw_tooltip(
         _("{share:.0%} blended in").format(share=share)
         if share
-        else _("Drag to blend it into the present pose")
+        else _("Drag to blend it into the current pose")
     )
     if moved is None:
         return []
@@ -198,7 +198,7 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     label(look, _("Axis"))
     if imgui.checkbox("##axis", session.overlays.mirror)[0]:
         actions.append(do(viewing.toggle_overlay, "mirror"))
-    draw_tooltip(_("Show in the viewport where poses are flipped; drag it by its grip"))
+    draw_tooltip(_("Show the axis in the viewport, to drag it by its grip"))
     imgui.same_line()
     button = 6 * look.em
     gap = imgui.get_style().item_inner_spacing.x
@@ -216,16 +216,13 @@ def _flip(session: Session, look: Look, project: Project) -> list[Action]:
     if imgui.is_item_deactivated_after_edit():
         actions.append(do(pasting.set_mirror_names, text))
     draw_tooltip(
-        _(
-            "Words that tell two sides apart, or two whole names, with a slash between: L/R, "
-            "near/far"
-        )
+        _("Two words for the two sides, or two whole names, with a slash between: L/R, near/far")
     )
     small_text(
         look,
         _(
-            "Layers and handles are pairs by their names, such as “paw.L” and “paw.R”, or by their "
-            "places. Flipped mirrors, swapped does not."
+            "Layers and handles form pairs by name, such as “paw.L” and “paw.R”, or by place. "
+            "“Flipped” mirrors the pose, “swapped” does not."
         ),
     )
     return actions

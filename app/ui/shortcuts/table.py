@@ -294,12 +294,12 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(move_tool.toggle_move_tool),
             "V",
             icon=icons.ICON_FA_UP_DOWN_LEFT_RIGHT,
-            hint=_("Move the whole layer in this frame, by drags and arrow keys"),
+            hint=_("Move the whole layer in this frame, by drag or arrow keys"),
             active=lambda session: session.moves,
             has_separator=True,
         ),
         "cut out": ActionSpec(
-            _("Cut out by a brush"),
+            _("Cut-out brush"),
             do(cut_out_editing.toggle_cut_brush),
             "X",
             active=lambda session: session.cutting is not None,
@@ -368,7 +368,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(stiffness_editing.toggle_stiffness_tool, "stiff"),
             "G",
             icon=icons.ICON_FA_CUBE,
-            hint=_("Brush over parts that bend and stretch less than the rest"),
+            hint=_("Brush over parts that bend and stretch less"),
             active=lambda session: session.material in stiffness_editing.BRUSHES,
             has_separator=True,
         ),
@@ -381,7 +381,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             active=lambda session: session.material == "bone",
         ),
         "bone between": ActionSpec(
-            _("Bone between two handles"),
+            _("Add bone"),
             do(stiffness_editing.add_bone_between_selected),
             condition=lambda _, project: len(project.selected_handles) == 2,
         ),
@@ -390,7 +390,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(handle_editing.group_handles),
             "Ctrl+G",
             icon=icons.ICON_FA_OBJECT_GROUP,
-            hint=_("Select and drag these handles together from now on"),
+            hint=_("Select and drag these handles together"),
             condition=lambda _, project: len(project.selected_handles) > 1,
             has_separator=True,
         ),
@@ -399,14 +399,14 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(handle_editing.ungroup_handles),
             "Ctrl+Shift+G",
             icon=icons.ICON_FA_OBJECT_UNGROUP,
-            hint=_("Drag each of these handles alone again"),
+            hint=_("Stop selecting and dragging these handles together"),
             condition=_grouped,
         ),
         "mirror": ActionSpec(
             _("Mirror"),
             do(mirror_handles),
             icon=icons.ICON_FA_LEFT_RIGHT,
-            hint=_("Add partners on the other side, named with .L and .R or left and right"),
+            hint=_("Add partners on the other side, named .L and .R or left and right"),
             condition=_selected,
             has_separator=True,
         ),
@@ -599,7 +599,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(keys.insert_key_in_row),
             "I",
             icon=icons.ICON_FA_DIAMOND,
-            hint=_("Set a key with this pose"),
+            hint=_("Set a key with the current pose"),
             has_separator=True,
         ),
         "loop": ActionSpec(
@@ -607,7 +607,7 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(keys.toggle_loop),
             "L",
             icon=icons.ICON_FA_REPEAT,
-            hint=_("Loop the animation: its end leads back to its start"),
+            hint=_("Loop the animation: its end continues at its start"),
             active=_loops,
         ),
         "auto-key": ActionSpec(
@@ -615,11 +615,11 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             do(viewing.toggle_auto_key),
             "K",
             icon=icons.ICON_FA_KEY,
-            hint=_("Set and change keys by posing"),
+            hint=_("Set keys by posing"),
             active=lambda session: session.preferences.auto_key,
         ),
         "record": ActionSpec(
-            _("Record a drag"),
+            _("Record drag"),
             do(toggle_recording_armed),
             "R",
             icon=icons.ICON_FA_CIRCLE,
@@ -631,14 +631,12 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             _("Discard recording"), do(discard_recording), "Escape", condition=_records
         ),
         "preview start": ActionSpec(
-            _("Start preview range here"),
+            _("Set preview start"),
             do(keys.start_preview_at_playhead),
             "B",
             has_separator=True,
         ),
-        "preview end": ActionSpec(
-            _("End preview range here"), do(keys.end_preview_at_playhead), "N"
-        ),
+        "preview end": ActionSpec(_("Set preview end"), do(keys.end_preview_at_playhead), "N"),
         "preview none": ActionSpec(
             _("Play all frames"),
             do(keys.clear_preview_range),
@@ -704,13 +702,13 @@ MENUS: dict[str, dict[str, ActionSpec]] = {
             _("Keys and mouse"), do(viewing.show_shortcuts), "Shift+F1", needs_project=False
         ),
         "first animation": ActionSpec(
-            _("Make a giraffe bow"),
+            _("Your first animation"),
             do(tutorials.begin_tutorial),
             needs_project=False,
             has_separator=True,
         ),
         "leave guide": ActionSpec(
-            _("Leave the guide"), do(tutorials.end_tutorial), "Escape", condition=_can_leave
+            _("End guide"), do(tutorials.end_tutorial), "Escape", condition=_can_leave
         ),
         "report": ActionSpec(
             _("Report a problem…"), do(error_reports.show_kept_or_new_report), needs_project=False

@@ -186,7 +186,7 @@ def name_popup(
     imgui.set_next_item_width(NAME_WIDTH * look.em)
     flags = imgui.InputTextFlags_.auto_select_all | imgui.InputTextFlags_.enter_returns_true
     entered, name = imgui.input_text("##name", name, flags)
-    draw_tooltip(_("Enter takes the name, Esc leaves it"))
+    draw_tooltip(_("Enter renames, Esc cancels"))
     name = name.strip()
     is_free = name not in taken
     if not is_free:

@@ -125,7 +125,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     changed, wanted = imgui.drag_int(
         "##frame", frame, 0.2, document.frames.first, document.frames.last
     )
-    draw_tooltip(_("The present frame: drag, or click to type"))
+    draw_tooltip(_("Current frame: drag, or click to type"))
     if changed:
         actions.append(do(playback.scrub, wanted))
     imgui.same_line(0, GAP * look.em)
@@ -134,7 +134,7 @@ def _frame(session: Session, look: Look, project: Project) -> list[Action]:
     imgui.set_next_item_width(3.8 * look.em)
     flags = imgui.InputTextFlags_.enter_returns_true
     changed, last = imgui.input_int("##last", document.frames.last, 0, 0, flags)
-    draw_tooltip(_("The last frame: type it, or drag the end on the track"))
+    draw_tooltip(_("Last frame: type it, or drag the end on the ruler"))
     if changed:
         actions.append(do(keys.set_last_frame, last))
     imgui.same_line(0, 0.8 * look.em)
@@ -190,7 +190,7 @@ def _speed(project: Project) -> list[Action]:
             if imgui.selectable(f"{speed:g}×", speed == current)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(_("Speed of playback here; the animation itself stays the same"))
+    draw_tooltip(_("Playback speed. The animation itself does not change."))
     return actions
 
 
@@ -218,8 +218,8 @@ def _onion_skin(session: Session, look: Look) -> list[Action]:
         values[index] = imgui.slider_int(name, values[index], low, high)[1]
     if values != before:
         actions.append(do(viewing.set_onion_skin, *values))
-    changed, in_front = imgui.checkbox(_("In front of the drawing"), preferences.ghosts_in_front)
-    draw_tooltip(_("In front of all layers, not behind the posed layers"))
+    changed, in_front = imgui.checkbox(_("Draw in front"), preferences.ghosts_in_front)
+    draw_tooltip(_("Draw the onion skin in front of all layers, not behind the posed layers"))
     if changed:
         actions.append(do(viewing.set_onion_skin_in_front, in_front))
     imgui.end_popup()

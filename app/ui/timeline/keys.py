@@ -32,7 +32,7 @@ from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal: normally, and if keys are dense
 SMALLER = 0.7  # size of other layers' keys, relative to the active layer's
-KEY_GESTURES = _("Drag to move, {gesture} to copy, right click for more")
+KEY_GESTURES = _("Drag to move, {gesture} to copy, right-click for more")
 GRIP = 1.45  # half the side of a key's hit box, relative to half its diagonal
 
 

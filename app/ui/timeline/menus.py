@@ -93,7 +93,7 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
                 do(tracks.set_handle_value, track.handles[0], 0j, 0.0),
             ]
         draw_tooltip(
-            _("Key the handle's place in the pose, so that the track begins or ends smoothly")
+            _("Key the handle where the pose has it, so that the track begins or ends smoothly")
         )
     actions += _paste_items(bands.session, frame)
     text = _("Add marker at frame {frame}").format(frame=frame)
@@ -127,7 +127,7 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     if imgui.menu_item_simple(_("Bake repeats")):
         actions.append(do(cycles.bake_cycle, frame))
     draw_tooltip(
-        _("Turn the repeats of frames {first} to {last} into keys, to edit each by itself").format(
+        _("Turn the repeats of frames {first} to {last} into keys that you can edit").format(
             first=cycle.first, last=cycle.last
         )
     )

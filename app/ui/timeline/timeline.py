@@ -196,21 +196,21 @@ def _hint(bands: TimelineLayout) -> str:
     if isinstance(gesture, KeyDrag):
         text = (
             ngettext(
-                "Copied by {count:+d} frame, {time}: Esc takes it back",
-                "Copied by {count:+d} frames, {time}: Esc takes it back",
+                "Copied by {count:+d} frame, {time}. Esc cancels.",
+                "Copied by {count:+d} frames, {time}. Esc cancels.",
                 abs(gesture.by),
             )
             if gesture.copies
             else ngettext(
-                "Moved by {count:+d} frame, {time}: Esc takes it back",
-                "Moved by {count:+d} frames, {time}: Esc takes it back",
+                "Moved by {count:+d} frame, {time}. Esc cancels.",
+                "Moved by {count:+d} frames, {time}. Esc cancels.",
                 abs(gesture.by),
             )
         )
         time = format_seconds(gesture.by, bands.project.document.fps)
         return text.format(count=gesture.by, time=time)
     if gesture is not None:
-        return _("Esc takes it back") if isinstance(gesture, TimeDrag) else ""
+        return _("Esc cancels") if isinstance(gesture, TimeDrag) else ""
     return _hint_of_place(bands)
 
 
@@ -225,7 +225,7 @@ def _hint_of_place(bands: TimelineLayout) -> str:
     if y < bands.ruler_top:
         return _("Drag the ends of the preview range, double-click to play all frames")
     if bands.camera_top <= y < bands.track_top:
-        text = _("Click a camera key to go there, drag it to move it, right click for more")
+        text = _("Click a camera key to go there, drag to move it, right-click for more")
     elif bands.markers_top <= y < bands.camera_top:
         text = _("Click a marker to go there, drag it to move it, double-click to name it")
     elif y < bands.track_top:

@@ -54,7 +54,7 @@ CANVAS = (
     ("fit", "fit motion", "actual size"),
     ("handles", "outline", "onion skin"),
 )
-DEPTHS = {_("In front"): 1.0, _("In its usual order"): 0.0, _("Behind"): -1.0}
+DEPTHS = {_("In front"): 1.0, _("Normal order"): 0.0, _("Behind"): -1.0}
 
 
 def draw_viewport_pictures(
@@ -248,11 +248,11 @@ def _handle_menu(session: Session, screen: ScreenMapping, handle: Handle) -> lis
     actions += _hold(handle, chosen) + _depth(session, screen, handle)
     imgui.separator()
     is_anchor = handle.position == layer.anchor
-    label = _("Automatic anchor") if is_anchor else _("Make it the anchor")
+    label = _("Automatic anchor") if is_anchor else _("Make anchor")
     if item(label, icons.ICON_FA_ANCHOR, format_modified(CTRL, _("click"))):
         actions.append(do(toggle_anchor_at_handle, identity))
     is_turned = target is not None and target.rotation is not None
-    if item(_("Let it turn freely"), icons.ICON_FA_ROTATE, enabled=is_turned):
+    if item(_("Turn freely"), icons.ICON_FA_ROTATE, enabled=is_turned):
         actions.append(do(free_rotation, identity))
     imgui.end_popup()
     return actions

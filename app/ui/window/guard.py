@@ -36,7 +36,7 @@ def allow_recovery() -> None:
 
 def format_failure(name: str) -> str:
     """The title of the notice about a failed part."""
-    return _("{part} cannot be shown. The rest works, and your work can be saved.").format(
+    return _("{part} cannot be shown. The rest of Lissom works. Save your project.").format(
         part=name
     )
 
@@ -98,7 +98,7 @@ class WindowPart:
 
     def _show_notice(self, failure: _Failure, look: Look) -> list[Action]:
         actions: list[Action] = []
-        width, popup = WIDTH * look.em, _("Failure of {part}").format(part=self.name)
+        width, popup = WIDTH * look.em, _("{part} failed").format(part=self.name)
         match self.place:
             case "panel":
                 with imgui_ctx.push_style_color(imgui.Col_.child_bg, look.palette.panel):

@@ -39,7 +39,7 @@ from app.ui.window.idling import AWAKE, IDLE_FPS, FramePace
 from app.ui.window.tutorial.card import Callout
 
 LEFT = imgui.MouseButton_.left
-MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The icon bar")
+MENU_BAR, STATUS_BAR, ICON_BAR = _("The menu bar"), _("The status bar"), _("The toolbar")
 # Actions that follow automatically in each frame, and not from the person.
 UNLOGGED = {
     dismiss_toast,
@@ -77,7 +77,7 @@ class WindowFrame:
         previews = welcome.Previews(thumbnail, moments)
         over = (
             # Hello ImGui draws the tabs themselves.
-            WindowPart(_("The names of the tabs"), self._draw_tabs, place="window"),
+            WindowPart(_("The tab bar"), self._draw_tabs, place="window"),
             WindowPart(_("The welcome view"), partial(_welcome, previews=previews), place="window"),
             WindowPart(_("The guide"), self._draw_guide, place="window"),
             WindowPart(
@@ -175,7 +175,7 @@ class WindowFrame:
             self.session.show_notice(as_sentence(message_of(error)), tone="error")
         else:
             error_reports.report_unexpected_error(
-                self.session, _("That did not work: {error}").format(error=error), error
+                self.session, _("Lissom could not do this: {error}").format(error=error), error
             )
 
     def _step(self, run: Callable[[Session], None]) -> FrameStep:

@@ -95,7 +95,7 @@ def test_where_nothing_is_cut_out_of_a_photo_the_brush_is_offered(window, tmp_pa
 def test_where_a_background_was_removed_no_brush_is_offered(window, ring):
     assert not kept(window.open(ring)).all()
     # Only to open what it may show through.
-    assert [toast.label for toast in window.session.toasts if toast.label] == ["Show where"]
+    assert [toast.label for toast in window.session.toasts if toast.label] == ["Show holes"]
 
 
 def test_each_stroke_is_a_step_and_the_mesh_follows_when_the_brush_rests(window, drawing):
@@ -496,7 +496,7 @@ def test_a_line_of_the_knife_through_a_handle_is_refused_at_once(window, boots):
     stroke(window, 30 + 3j, 30 + 60j)
     assert boots.document is document
     name = boots.layer.handles[0].name
-    assert any(f"goes through {name}" in toast.text for toast in window.session.toasts)
+    assert any(f"crosses {name}" in toast.text for toast in window.session.toasts)
     stroke(window, 33 + 3j, 33 + 60j)
     rest(window)
     assert boots.layer.domain.closed is not None

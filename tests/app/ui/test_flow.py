@@ -441,7 +441,7 @@ def test_a_drag_is_taken_back_and_the_next_one_goes_on(window, bar, by):
             robot.mouse_move_to_pos(window.point(place + reach))
             assert session.jobs.wait_until_idle()
         robot.yield_(2)
-        assert session.hint.endswith("Esc takes it back")
+        assert session.hint.endswith("Esc cancels")
         assert bar.document is not before
         if by == "escape":
             robot.key_press(int(window.Key.escape))

@@ -197,7 +197,7 @@ def test_a_circle_is_refused_in_words(window, scene, drag):
     window.act(set_active_layer, body)
     window.settle()
     hints = drag(212 + 120j)
-    assert "attached to body itself" in hints[-1]
+    assert "is attached to body and cannot be its parent" in hints[-1]
     assert scene.document is before
     assert window.session.toasts[-1].tone == "error"
     assert re.search(
@@ -424,7 +424,7 @@ def test_ghosts_are_in_front_when_the_person_asks(window, nodding):
     def put(robot):
         robot.set_ref("###Timeline")
         robot.item_click("**/###onion skin")
-        robot.item_click("//$FOCUSED/In front of the drawing")
+        robot.item_click("//$FOCUSED/Draw in front")
         robot.popup_close_all()
 
     window.run(put)
@@ -471,7 +471,7 @@ def test_ways_are_of_what_plays_or_of_some_frames_around_the_playhead(window, sw
 
     def choose(robot):
         robot.set_ref("##MainMenuBar")
-        robot.menu_click("View/Frames of motion paths/6 around the playhead")
+        robot.menu_click("View/Motion path frames/6 around playhead")
 
     window.run(choose)
     window.settle()

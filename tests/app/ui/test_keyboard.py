@@ -245,7 +245,7 @@ def test_recent_files_that_are_gone_are_marked_and_taken_off_by_a_click(window, 
     assert window.session.project is None
     assert window.session.preferences.recent == (there,)
     (toast,) = window.session.toasts
-    assert toast.text.startswith(f"gone.png is not in {tmp_path} any more.")
+    assert toast.text.startswith(f"gone.png is no longer in {tmp_path}.")
 
     def open_recent(robot):
         robot.set_ref("##MainMenuBar")

@@ -272,7 +272,7 @@ def test_the_menu_of_a_layer(window, scene, listed):
     layer = scene.document.layer(body)
     assert (layer.hidden, layer.locked, layer.reference) == (True, True, True)
     assert [each.name for each in scene.document.layers] == ["wall", "body", "body copy", "arm"]
-    for item in ("Show", "Unlock", "Take into exports"):
+    for item in ("Show", "Unlock", "Include in exports"):
         listed(lambda rows, item=item: rows.menu(body, item))
     layer = scene.document.layer(body)
     assert (layer.hidden, layer.locked, layer.reference) == (False, False, False)

@@ -164,7 +164,7 @@ def test_a_key_follows_the_new_material_when_it_is_posed_again(window, tab):
 
 def test_names_suggest_what_is_stiff_and_what_is_soft(window, tab):
     stiffness_editing.suggest_stiffness(window.session)
-    assert "No handle is called" in window.session.toasts[-1].text
+    assert "No handle is named" in window.session.toasts[-1].text
     editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[0], "Left Hand")
     editing.edit_layer(window.session, handle_commands.rename_handle, ENDS[1], "tail tip")
     before = tab.document

@@ -214,10 +214,10 @@ def test_what_was_edited_by_hand_is_replaced_only_on_request(window, ghost):
     window.settle()
     preset_setup.begin_motion_setup(window.session)
     window.frames(3)
-    assert "edited by hand" in preset_setup.apply_motion_disabled_reason(ghost)
+    assert "edited the motion by hand" in preset_setup.apply_motion_disabled_reason(ghost)
     apply_motion.apply_motion_preset(window.session)
     assert ghost.motion_job is None
-    click(window, "//Motion/**/Replace what was edited by hand")
+    click(window, "//Motion/**/Replace edits")
     assert not preset_setup.apply_motion_disabled_reason(ghost)
 
 
@@ -257,4 +257,4 @@ def test_a_change_meanwhile_refuses_it(window, ghost):
     changed = ghost.document
     arrive(window, ghost)
     assert ghost.document is changed
-    assert "was posed or changed meanwhile" in window.session.toasts[-1].text
+    assert "the drawing changed meanwhile" in window.session.toasts[-1].text

@@ -52,7 +52,7 @@ def test_v_and_a_drag_and_escape(window, loose):
     before, document, first = wanted(loose), loose.document, loose.layer.key(0)
     press(window, imgui.Key.v)
     hint = drag(window, loose.layer_runtime.shown.handle_positions[1], 40 - 25j)
-    assert hint.startswith(f"Drag to move all of {loose.layer.name}")
+    assert hint.startswith(f"Drag to move {loose.layer.name}")
     way = wanted(loose)[0] - before[0]
     assert abs(way - (40 - 25j)) < 2, "pixels of the screen are whole"
     assert moved(loose, before, way)
@@ -66,7 +66,7 @@ def test_v_and_a_drag_and_escape(window, loose):
 
 def test_ctrl_and_shift_from_beside(window, loose):
     before, width = wanted(loose), loose.document.canvas[0]
-    assert "move all of it" in drag(window, width / 4 + 0j, 30j)
+    assert "move the whole layer" in drag(window, width / 4 + 0j, 30j)
     assert moved(loose, before, 0), "without them it selects"
     drag(window, width / 4 + 0j, 30j, keys=CTRL | SHIFT)
     assert moved(loose, before, wanted(loose)[0] - before[0])

@@ -186,7 +186,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
     exporting.start_export(session, tmp_path / "a.png")
     assert loose.afterwards
     exporting.start_export(session, tmp_path / "b.png")
-    assert "An export is under way" in session.toasts[-1].text
+    assert "An export is running." in session.toasts[-1].text
     saving.request_quit(session)
     assert question(window).title == "An export is running"
     session.dialog = None
@@ -304,7 +304,7 @@ def test_a_pose_without_a_key_is_asked_about_and_kept(window, loose, tmp_path):
     assert load_project(kept).layers[0].key_frames == {0, 7, 24}
     saving.close_project(window.session)
     window.frames(2)
-    assert "The pose at frame 7 is in no key" in question(window).text
+    assert "The pose at frame 7 has no key yet" in question(window).text
     answer(window)
     window.until(lambda: window.session.project is None)
     assert load_project(path).layers[0].key_frames == {0, 7, 24}

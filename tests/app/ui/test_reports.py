@@ -106,7 +106,7 @@ def test_after_a_crash_the_unsaved_work_comes_first_and_the_report_is_behind_it(
     window.frames(2)
     assert session.dialog is None
     error_reports.offer_kept_report(session)
-    assert "report of it was kept" in session.toasts[0].text
+    assert "report is saved" in session.toasts[0].text
     session.toasts = []
     error_reports.offer_kept_report(session)
     assert session.toasts == [], "a message appeared"

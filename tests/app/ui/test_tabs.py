@@ -209,7 +209,7 @@ def test_cancelled_solving_changes_nothing(project, window):
 
     def act(robot):
         robot.set_ref("//Deform")
-        robot.item_click("**/Pose all keys again")
+        robot.item_click("**/Re-pose all keys")
         robot.item_click("**/###stop")
 
     window.show_tab("Deform")

@@ -716,7 +716,7 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
     editing.redo(session)
     # The way from 24 to 48 has changed, and the playhead is on it.
     assert here() == 30
-    assert [toast.text for toast in session.toasts] == ["Done again: Set easing"]
+    assert [toast.text for toast in session.toasts] == ["Redone: Set easing"]
     editing.redo(session)
     assert here() == 12
     window.frames(2)

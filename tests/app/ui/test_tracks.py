@@ -692,10 +692,10 @@ def test_handles_stay_or_not_as_the_menu_of_interpolation_says(window, bent, is_
     def switch():
         def act(robot):
             if is_narrow:
-                robot.menu_click("//##MainMenuBar/Keys/In-betweens/Handles stay between keys")
+                robot.menu_click("//##MainMenuBar/Keys/In-betweens/Auto-pin handles")
             else:
                 robot.item_click("//###Timeline/##variant")
-                robot.item_click("//##Combo_00/Handles stay between keys")
+                robot.item_click("//##Combo_00/Auto-pin handles")
 
         window.run(act)
         window.settle()

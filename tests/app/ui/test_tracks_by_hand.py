@@ -361,7 +361,7 @@ def test_a_take_is_done_again_or_given_up(window, brief):
     before = brief.document
     record(window, brief, ARC)
     assert brief.layer.tracks
-    window.run(lambda robot: robot.item_click("**/Again"))
+    window.run(lambda robot: robot.item_click("**/Record again"))
     assert brief.document is before
     assert window.session.records
     window.run(lambda robot: robot.key_press(int(window.Key.escape)))
@@ -563,7 +563,7 @@ def test_a_late_track_says_why_it_has_no_key_there(window, keyed):
     drag(window, start, start + 30j)
     assert keyed.document is before
     assert [toast.text for toast in window.session.toasts if toast.topic == "late"] == [
-        f"The track is {LATER} frames late: no key of it can be seen at frame {HALF}."
+        f"The track is delayed by {LATER} frames, so none of its keys can act at frame {HALF}."
     ]
 
 

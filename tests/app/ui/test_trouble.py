@@ -222,7 +222,7 @@ def test_a_file_that_another_window_has_open_is_opened_only_after_a_question(win
     files.open_file(window.session, saved)
     window.settle()
     assert window.session.project is None
-    assert "a.lissom is open already by" in question(window).text
+    assert "a.lissom is already open by" in question(window).text
     answer(window, "Cancel")
     assert window.session.project is None
 
@@ -280,15 +280,15 @@ def test_what_somebody_else_saved_meanwhile_is_replaced_only_after_a_question(
     window.settle()
     window.act(saving.save)
     window.settle()
-    assert "another window or program has changed it" in question(window).text
-    answer(window, "Save under another name")
+    assert "Another window or program has changed a.lissom" in question(window).text
+    answer(window, "Save as…")
     assert isinstance(window.session.dialog, FileDialog)
     window.session.dialog = None
     assert saved.read_bytes() == theirs
     assert not project.history.is_saved
     window.act(saving.save)
     window.settle()
-    answer(window, "Replace it")
+    answer(window, "Replace")
     assert len(load_project(saved).layers[0].handles) == 1
     window.act(add_handle, complex(*project.document.canvas) / 3)
     window.settle()
@@ -342,7 +342,7 @@ def test_unsaved_work_that_could_not_be_kept_is_kept_as_soon_as_there_is_room(
         project.autosaved = None
         window.clock.now += SECONDS
         window.settle()
-        assert any("Unsaved work cannot be kept" in text for text in texts(window))
+        assert any("Unsaved work cannot be autosaved" in text for text in texts(window))
         window.session.toasts = []
         window.clock.now += SECONDS
         window.settle()

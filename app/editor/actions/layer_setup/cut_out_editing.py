@@ -123,7 +123,8 @@ def cut_with_knife(session: Session, project: Project, slit: CutLine) -> None:
         if _away_from(slit, handle.position - layer.corner) < BESIDE * width:
             session.show_notice(
                 _(
-                    "The knife's line goes through {handle}. Draw it beside, or move the handle."
+                    "The knife line crosses {handle}. Draw the line beside the handle, or move "
+                    "the handle."
                 ).format(handle=handle.name),
                 tone="error",
             )

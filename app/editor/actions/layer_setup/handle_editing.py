@@ -21,8 +21,8 @@ def select_mirrored(session: Session, project: Project) -> None:
     else:
         session.show_notice(
             _(
-                "No partner was found by name. Names tell the side as in “hand.L” and “hand.R”, "
-                "“foot_l” and “foot_r”, or “left ear” and “right ear”."
+                "No handle with a matching name was found. Name the two sides “hand.L” and "
+                "“hand.R”, “foot_l” and “foot_r”, or “left ear” and “right ear”."
             )
         )
 

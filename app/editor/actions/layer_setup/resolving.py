@@ -88,7 +88,7 @@ def set_limit(session: Session, bounds: Bounds, name: str, value: float) -> None
 
 def solve_keys_again(session: Session) -> None:
     """Solve every key for its targets again, within the present limits."""
-    pending_changes.run_when_idle(session, do(_solve_keys_again), _("Solve again"))
+    pending_changes.run_when_idle(session, do(_solve_keys_again), _("Re-pose keys"))
 
 
 @with_project
@@ -193,10 +193,9 @@ def _accept(session: Session, project: Project, resolver: KeyResolver) -> None:
         session.show_notice(as_sentence(notice), topic=f"rebuilt {number}")
     if resolver.unsolved:
         text = ngettext(
-            "The pose {poses} could not be brought within the limits. Move the handles there "
-            "nearer to the drawing, or undo.",
-            "The poses {poses} could not be brought within the limits. Move the handles there "
-            "nearer to the drawing, or undo.",
+            "The pose {poses} exceeds the limits. Move its handles nearer to the drawing, or undo.",
+            "The poses {poses} exceed the limits. Move their handles nearer to the drawing, or "
+            "undo.",
             len(resolver.unsolved),
         )
         session.show_notice(text.format(poses=", ".join(resolver.unsolved)), tone="error")

@@ -145,11 +145,14 @@ def suggest_stiffness(session: Session, project: Project) -> None:
         project.history.do(command, gesture=gesture)
         done.append(handle.name)
     if done:
-        text = _("By their names: {handles}.").format(handles=", ".join(done))
+        text = _("Stiffness set by name: {handles}.").format(handles=", ".join(done))
         session.show_notice(text, topic="material")
     else:
         session.show_notice(
-            _("No handle is called after a head, hand, foot, tail or the like: name them first."),
+            _(
+                "No handle is named after a part of the body. Name the handles first, such as "
+                "head, hand, foot or tail."
+            ),
             topic="material",
         )
 

@@ -10,7 +10,7 @@ from app.editor.work.pull import Pull
 from app.errors import LissomError
 from app.texts import _
 
-NO_POSE = _("The pose could not be kept")
+NO_POSE = _("The pose could not be keyed")
 
 
 def commit_pose(session: Session, project: Project, pull: Pull, pose: Pose) -> None:

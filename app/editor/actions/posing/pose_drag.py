@@ -179,9 +179,9 @@ def _begin(session: Session, project: Project, gesture: object) -> Pull:
     frame, shown = playback.edited_frame(session, project), playback.current_frame(session, project)
     if frame != shown:
         session.show_notice(
-            _(
-                "Frame {shown} repeats frame {frame}: posed here, it changes in every repeat."
-            ).format(shown=shown, frame=frame),
+            _("Frame {shown} repeats frame {frame}. A pose here changes every repeat.").format(
+                shown=shown, frame=frame
+            ),
             topic="repeat",
         )
     here = (project.active, frame)

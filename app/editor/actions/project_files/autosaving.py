@@ -14,10 +14,10 @@ from app.editor.work.jobs import JobKind
 from app.storage import SECONDS, remove_abandoned_files, save_preferences
 from app.texts import _
 
-AUTOSAVING = JobKind(_("Autosaving"), _("Unsaved work cannot be kept"), "keep")
-WRITING = JobKind(_("Saving preferences"), _("The preferences cannot be kept"), "keep")
+AUTOSAVING = JobKind(_("Autosaving"), _("Unsaved work cannot be autosaved"), "keep")
+WRITING = JobKind(_("Saving preferences"), _("The preferences cannot be saved"), "keep")
 CLEARING = JobKind(
-    _("Clearing up"), _("Unfinished files of earlier saves were not removed"), "keep"
+    _("Cleaning up"), _("Unfinished files of earlier saves were not removed"), "keep"
 )
 
 

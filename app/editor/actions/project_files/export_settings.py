@@ -87,7 +87,7 @@ def _ask(session: Session, project: Project, verb: str, chosen: Callable[[Path],
     if out is None:
         out = session.usual_folder / f"{project.name}{suffixes[0] if suffixes else FRAMES}"
     session.dialog = FileDialog(
-        title=_("Export into a file") if suffixes else _("Export into a folder"),
+        title=_("Export to file") if suffixes else _("Export to folder"),
         folder=out.parent,
         name=out.name,
         suffixes=suffixes,

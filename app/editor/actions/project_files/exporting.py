@@ -33,7 +33,7 @@ from app.motion import Animation, PoseSampler, extent_key, placed_animations
 from app.storage import Cancellation, make_settings_folder, temporary_picture
 from app.texts import _, ngettext
 
-UNDER_WAY = _("An export is under way. The next one can begin when it is done.")
+UNDER_WAY = _("An export is running. Start the next export when it is done.")
 RUNNING = _("An export is running")
 CANCELLED_UNWRITTEN = _("The export was cancelled. Nothing was written.")
 CANCELLED_MIDWAY = _("The export was cancelled. Frames that were written stay.")
@@ -224,9 +224,9 @@ def confirm_ending_export(session: Session, then: Action) -> None:
         progress = ngettext(
             "{done} of {total} frame is drawn.", "{done} of {total} frames are drawn.", total
         ).format(done=done, total=total)
-    result = _("Frames that are written stay if the export ends now.")
+    result = _("If you quit now, the written frames stay.")
     if run is not None and _is_one_file(run):
-        result = _("Nothing is written if the export ends now.")
+        result = _("If you quit now, no file is written.")
     session.dialog = Question(
         title=RUNNING,
         text=f"{progress} {result}",

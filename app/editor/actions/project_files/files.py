@@ -64,7 +64,7 @@ def open_recent_file(session: Session, path: Path) -> None:
         return
     session.preferences = session.preferences.without_recent(path)
     session.show_notice(
-        _("{name} is not in {folder} any more. It was taken off the recent files.").format(
+        _("{name} is no longer in {folder}. It was removed from the recent files.").format(
             name=path.name, folder=path.parent
         ),
         tone="error",
@@ -158,10 +158,10 @@ def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> Non
         hold = saving.lock_project_file(session, path)
     except FileLockedError as error:
         session.dialog = Question(
-            title=_("Open elsewhere"),
+            title=_("Already open"),
             text=_(
-                "{name} is open already {where}. What is saved here and there takes the place of "
-                "each other."
+                "{name} is already open {where}. If you save here and there, each save "
+                "replaces the other."
             ).format(name=path.name, where=message_of(error)),
             answers=(
                 (_("Open a copy"), do(install_copy, path, opened)),
@@ -273,8 +273,8 @@ def _next_step(runtime: LayerRuntime) -> NextStep | None:
     if runtime.is_opaque and cut.is_all:
         return NextStep(
             text=_(
-                "The whole picture is the drawing. Brush away what does not belong to it, or pick "
-                "the background's colour in the tab Cut-out."
+                "The whole picture is the drawing. Brush the rest away, or pick the "
+                "background's colour in the Cut-out tab."
             ),
             label=_("Cut out"),
             action=do(cut_out_editing.toggle_cut_brush),
@@ -282,9 +282,9 @@ def _next_step(runtime: LayerRuntime) -> NextStep | None:
     if cut.holes is not None and cut.holes.shut:
         return NextStep(
             text=_(
-                "Does the background show through inside the drawing? A click opens it as a hole."
+                "Does the background show through inside the drawing? Click there to cut a hole."
             ),
-            label=_("Show where"),
+            label=_("Show holes"),
             action=do(cut_out_editing.toggle_cut_tool, "holes"),
         )
     return None

@@ -33,7 +33,7 @@ def show_recovery(session: Session) -> None:
     """Show the unsaved work of earlier sessions, or a notice that there is none."""
     ask_recovery(session)
     if not isinstance(session.dialog, RecoveryDialog):
-        session.show_notice(_("There is no unsaved work of an earlier time."))
+        session.show_notice(_("There is no unsaved work from earlier sessions."))
 
 
 def list_recoverable_files(session: Session) -> tuple[RecoverableFile, ...]:
@@ -85,8 +85,8 @@ def install_recovered(session: Session, path: Path, opened: OpenedFile, origin: 
     )
     session.autosave.write(opened.document, origin)
     remove_recoverable_file(path)
-    text = _("This is your unsaved work. Save it to keep it.")
+    text = _("This is your unsaved work. Save the project to keep it.")
     if origin.path:
-        text = _("This is your unsaved work on {name}. Save it to keep it.")
+        text = _("This is your unsaved work on {name}. Save the project to keep it.")
         text = text.format(name=origin.path.name)
     session.show_notice(text, tone="good")

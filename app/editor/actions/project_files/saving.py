@@ -104,14 +104,13 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
             report_failure(session, SAVING.complaint, error)
         elif session.project is project:
             session.dialog = Question(
-                title=_("Changed by somebody else"),
+                title=_("Changed elsewhere"),
                 text=_(
-                    "{name} is not as it was when you opened or saved it: another window or "
-                    "program has changed it since."
+                    "Another window or program has changed {name} since you opened or saved it."
                 ).format(name=path.name),
                 answers=(
-                    (_("Save under another name"), do(_ask_where, then)),
-                    (_("Replace it"), do(overwrite_changed_file, path, then)),
+                    (_("Save as…"), do(_ask_where, then)),
+                    (_("Replace"), do(overwrite_changed_file, path, then)),
                 ),
             )
 
@@ -141,8 +140,8 @@ def lock_project_file(session: Session, path: Path) -> FileLock | None:
         reason = error.strerror or str(error)
         session.show_notice(
             _(
-                "Whether {name} is open in another window cannot be seen in {folder} ({reason}). "
-                "You are asked before it replaces what somebody else has saved."
+                "Lissom cannot tell whether {name} in {folder} is open elsewhere ({reason}). "
+                "It asks before it replaces another person's changes."
             ).format(name=path.name, folder=path.parent, reason=reason)
         )
         return None
@@ -169,7 +168,7 @@ def _lock_saved_file(session: Session, project: Project, path: Path) -> None:
         project.file_lock = lock_project_file(session, path)
     except FileLockedError as error:
         project.file_lock = None
-        text = _("{name} is open elsewhere, too: {where}.")
+        text = _("{name} is also open elsewhere: {where}.")
         session.show_notice(text.format(name=path.name, where=message_of(error)), tone="error")
     if before is not None:
         before.release()
@@ -222,7 +221,7 @@ def ask_unsaved_now(session: Session, project: Project, then: Action) -> None:
         unfinished = pending_changes.pending_label(project)
         sentences.append(_(NOT_FINISHED).format(tasks=unfinished))
     if unkeyed is not None:
-        text = _("The pose at frame {frame} is in no key: saving makes a key of it.")
+        text = _("The pose at frame {frame} has no key yet. Saving sets a key.")
         sentences.append(text.format(frame=unkeyed.frame))
         save = do(key_and_save, then)
     session.dialog = Question(

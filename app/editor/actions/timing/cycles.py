@@ -39,9 +39,7 @@ def create_cycle(session: Session, project: Project) -> None:
     ends = [cycle_commands.end_of_cycle(document.layer(each), *stretch) for each in layers]
     until = min((end for end in ends if end is not None), default=None)
     commands = [cycle_commands.set_cycle(each, *stretch, until) for each in layers]
-    editing.edit_document(
-        session, Command(_("Repeat stretch"), lambda now: _all_of(commands, layers, now))
-    )
+    editing.edit_document(session, Command(_("Repeat"), lambda now: _all_of(commands, layers, now)))
 
 
 @with_project

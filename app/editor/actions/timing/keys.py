@@ -24,7 +24,8 @@ from app.errors import LissomError
 from app.texts import N_, _
 
 NO_LAST_FRAME = N_(
-    "The last frame comes after frame {first} and is at most {most:,}, not {last:,}; type another."
+    "The last frame must be after frame {first} and at most {most:,}, not {last:,}. Type "
+    "another number."
 )
 EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
 PASS = editing.KeyVerb(key_commands.set_tangent_mode, track_commands.set_track_passing)

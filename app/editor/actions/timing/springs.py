@@ -18,7 +18,7 @@ from app.texts import _, ngettext
 from engine.arrays import Complexes, Indices
 from engine.geometry import diameter
 
-KEYING = JobKind(_("Making keys of a spring"), _("The swing could not be made into keys"))
+KEYING = JobKind(_("Baking a spring"), _("The spring could not be baked"))
 NEAR = 4e-4  # of the layer's diameter: largest distance of the keys' motion from the swing
 AT_REST = 0.01  # pixels
 
@@ -74,7 +74,12 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
         return
     moves = np.flatnonzero(np.abs(swing.offsets) > AT_REST)
     if not len(moves):
-        session.show_notice(_("The handle does not swing: nothing moves its place in the shape."))
+        session.show_notice(
+            _(
+                "The handle does not swing, because the shape does not move there. Pose another "
+                "key first."
+            )
+        )
         return
     # The swing begins and ends at rest if there is room for that.
     first, last = max(moves[0] - 1, 0), min(moves[-1] + 1, len(swing.frames) - 1)
@@ -98,8 +103,8 @@ def _put(session: Session, project: Project, identity: int, spring: Spring, swin
     if project.active == identity:
         project.selected_track = spring.handle
     text = ngettext(
-        "The spring has become a track of {count} key.",
-        "The spring has become a track of {count} keys.",
+        "The spring is now a track with {count} key.",
+        "The spring is now a track with {count} keys.",
         len(keys),
     )
     session.show_notice(text.format(count=len(keys)))

@@ -30,9 +30,7 @@ from app.texts import _
 from engine.geometry import IDENTITY_MOTION, RigidMotion
 
 AROUND = 1 / 64  # frames before and after a key, between which its velocity is measured
-CONVERTING_KEYS = JobKind(
-    _("Moving keys of a track"), _("The places of the track's keys could not be found")
-)
+CONVERTING_KEYS = JobKind(_("Moving keys of a track"), _("The track's keys could not be placed"))
 
 
 @with_project

@@ -23,7 +23,7 @@ RECORDING_SPEEDS = (1.0, 0.5, 0.25)
 # tremor is in screen pixels: without smoothing and with full smoothing.
 CLOSEST, SMOOTHEST = 0.3, 12.0
 SMOOTHING = 0.5  # initial value
-NO_RECORDING = _("The recording could not be kept")
+NO_RECORDING = _("The recording could not be keyed")
 
 
 @with_project
@@ -33,9 +33,7 @@ def toggle_recording_armed(session: Session, project: Project) -> None:
     if session.records:
         session.records = False
     elif not project.layer.handles:
-        session.show_notice(
-            _("Click on the drawing to add a handle; then record how it is dragged.")
-        )
+        session.show_notice(_("Click on the drawing to add a handle. Then drag it to record."))
     else:
         playback.stop_playback(session)
         release_drag(session)

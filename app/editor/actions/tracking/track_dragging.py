@@ -19,7 +19,7 @@ from app.editor.work.track_drag import TrackDrag
 from app.errors import LissomError
 from app.texts import _
 
-NO_KEY = _("The key of the handle could not be kept")
+NO_KEY = _("The handle could not be keyed")
 
 
 def draggable_track(project: Project, handle: int) -> Track | None:
@@ -65,7 +65,7 @@ def rotate_track_handle(
     if not track.keys_rotation:
         command = track_commands.set_turning(project.active, handle, turns=True)
         project.history.do(command, gesture=gesture)
-        text = _("The keys of the handle's track turn the shape now, too.")
+        text = _("The keys of this track now turn the shape, too.")
         session.show_notice(text, topic="turning")
     if held is not None:
         held.turn = angle

@@ -17,8 +17,10 @@ def find_key_frame(session: Session, document: Document, track: Track, frame: in
     if own is None:
         session.show_notice(
             ngettext(
-                "The track is {delay} frame late: no key of it can be seen at frame {frame}.",
-                "The track is {delay} frames late: no key of it can be seen at frame {frame}.",
+                "The track is delayed by {delay} frame, so none of its keys can act at frame "
+                "{frame}.",
+                "The track is delayed by {delay} frames, so none of its keys can act at frame "
+                "{frame}.",
                 track.delay,
             ).format(delay=track.delay, frame=frame),
             topic="late",

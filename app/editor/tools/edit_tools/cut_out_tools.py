@@ -33,7 +33,7 @@ class CutBrushTool(Tool):
         return (
             Hint(keep if is_keeping else remove),
             Hint(remove if is_keeping else keep, "alt"),
-            Hint(_("[ and ] for its size")),
+            Hint(_("[ and ] for the brush size")),
             Hint(_("X to swap")),
         )
 
@@ -76,8 +76,8 @@ class KnifeTool(Tool):
         if session.cutting != "knife":
             return ()
         return (
-            Hint(_("drag from outside to where the parts meet")),
-            Hint(_("click on a line to take it away"), "alt"),
+            Hint(_("draw a line between the parts, from outside inwards")),
+            Hint(_("click on a line to delete it"), "alt"),
         )
 
     @classmethod

@@ -26,9 +26,9 @@ class JointTool(Tool):
     def hints(cls, session: Session, project: Project, spot: PointerHit) -> tuple[Hint, ...]:
         name = find_joint_near(session, project, spot.place)
         if name is None:
-            return (Hint(_("drag each joint to where it belongs")),)
-        text = _("drag {joint} to where it belongs").format(joint=_(name))
-        return (Hint(text), Hint(_("click leaves it out"), "alt"))
+            return (Hint(_("drag each joint to its place")),)
+        text = _("drag {joint} to its place").format(joint=_(name))
+        return (Hint(text), Hint(_("click to leave the joint out"), "alt"))
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -61,7 +61,7 @@ class JointTool(Tool):
 
     @property
     def active_hints(self) -> tuple[Hint, ...]:
-        return (Hint(_("let go where it belongs")),)
+        return (Hint(_("let go at its place")),)
 
 
 def find_joint_near(session: Session, project: Project, place: complex) -> str | None:

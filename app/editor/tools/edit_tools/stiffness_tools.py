@@ -26,9 +26,9 @@ class StiffnessBrushTool(Tool):
         text = {
             "stiff": _("drag to make a part stiff"),
             "soft": _("drag to make a part soft"),
-            "normal": _("drag to make a part as usual again"),
+            "normal": _("drag to make a part normal again"),
         }.get(session.material or "")
-        return () if text is None else (Hint(text), Hint(_("[ and ] for its size")))
+        return () if text is None else (Hint(text), Hint(_("[ and ] for the brush size")))
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:
@@ -71,8 +71,8 @@ class BoneTool(Tool):
         if session.material != "bone":
             return ()
         if spot.handle is None:
-            return (Hint(_("drag from one handle to another one for a bone")),)
-        return (Hint(_("drag to another handle for a bone")),)
+            return (Hint(_("drag from handle to handle to add a bone")),)
+        return (Hint(_("drag to another handle to add a bone")),)
 
     @classmethod
     def press(cls, session: Session, project: Project, spot: PointerHit) -> Self | None:

@@ -11,7 +11,7 @@ from app.ui.style.widgets import draw_tooltip, push_text_size, small_text
 
 MEASURES = _("Measuring where the motion reaches…")
 LEAVES = _("The motion leaves the frame. “All motion” shows all of it.")
-KEEPS = _("All of the motion is in the frame.")
+KEEPS = _("The whole motion fits the frame.")
 PREVIEW, LARGEST_PREVIEW = 3.2, 6.0  # em: smallest and largest height
 
 

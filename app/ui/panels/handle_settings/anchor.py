@@ -17,22 +17,24 @@ def draw_anchor(look: Look, project: Project, chosen: list[Handle]) -> list[Acti
     layer = project.layer
     holder = next((h.name for h in layer.handles if h.position == layer.anchor), None)
     if layer.anchor is None:
-        small_text(look, _("Automatic: the middle of the shape stays calm between keys."))
+        small_text(look, _("Automatic: in-betweens turn around the middle of the shape."))
     elif holder is not None:
         name = shorten_text(holder, 12 * look.em)
         small_text(
             look,
-            _("“{name}” stays calm between keys: it goes the straightest way.").format(name=name),
+            _("In-betweens turn around “{name}”, which takes the straightest path.").format(
+                name=name
+            ),
         )
     else:
         anchor = layer.anchor
         y = project.document.canvas[1] - anchor.imag
-        text = _("The point {x:.0f}, {y:.0f} stays calm between keys.")
+        text = _("In-betweens turn around the point {x:.0f}, {y:.0f}.")
         small_text(look, text.format(x=anchor.real, y=y))
     is_chosen = len(chosen) == 1 and chosen[0].position != layer.anchor
     halves, actions = split_line(2), list[Action]()
     text = f"{icons.ICON_FA_ANCHOR}  {_('Follow this handle')}###anchor here"
-    hint, keys = _("Let this point stay calm between keys"), format_modified(CTRL, _("click"))
+    hint, keys = _("Let in-betweens turn around this point"), format_modified(CTRL, _("click"))
     if text_button(text, next(halves), hint, keys, enabled=is_chosen):
         actions.append(do(toggle_anchor_at_handle, chosen[0].id))
     has_own = layer.anchor is not None

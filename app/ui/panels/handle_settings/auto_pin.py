@@ -16,15 +16,15 @@ def draw_auto_pin(look: Look, project: Project, handle: Handle) -> list[Action]:
     heading(look, _("Between keys"))
     changed, free = imgui.checkbox(_("Free between keys"), handle.is_unpinned)
     draw_tooltip(
-        _("Let the handle move between two keys with equal targets. Without this it stays there.")
+        _("Let the handle move between two keys with equal targets. Otherwise it stays in place.")
     )
     if changed:
         command = handle_commands.unpin_handles(project.active, frozenset({handle.id}), free=free)
         actions.append(do(editing.edit_document, command))
     if not layer.has_auto_pins:
-        small_text(look, _("In this layer no handle stays between keys."))
-        hint = _("Let handles stay in place between two keys with equal targets")
-        if text_button(_("Let handles stay"), FILL, hint):
+        small_text(look, _("Auto-pin is off in this layer: handles with equal targets can move."))
+        hint = _("Keep handles in place between two keys with equal targets")
+        if text_button(_("Turn on auto-pin"), FILL, hint):
             command = shape_commands.set_auto_pins(project.active, enabled=True)
             actions.append(do(editing.edit_document, command))
     return actions

@@ -51,7 +51,7 @@ def _extent(look: Look, layer: Layer, handle: Handle) -> list[Action]:
     label(look, _("Extent"))
     usual = DEFAULT_DEPTH_EXTENT * diameter(layer.domain.outline)
     extents = Scale(left=0.1 * usual, right=8 * usual, logarithmic=True)
-    hint = _("How far around the handle its depth holds, in pixels along the drawing")
+    hint = _("How far the depth reaches around the handle, in pixels along the drawing")
     entered = slider(look, "extent", handle.extent or usual, extents, text="%.0f", hint=hint)
     if entered is None or entered.value <= 0:
         return []
@@ -64,7 +64,7 @@ def _from_key(look: Look, handle: Handle, key: Keyframe | None) -> list[Action]:
     imgui.begin_disabled(key is None)
     changed, keyed = imgui.checkbox(_("From this key on"), front is not None)
     imgui.end_disabled()
-    draw_tooltip(_("The depth holds from this key to the next key with a depth"))
+    draw_tooltip(_("The depth lasts until the next key with a depth"))
     if key is None:
         small_text(look, _("Go to a key to change the depth there."))
         return []

@@ -38,14 +38,26 @@ PRESET_NAMES = {
 }
 LEAST_FREQUENCY = 0.01  # Hz
 NEAREST = _("Nearest handle")
-NO_ROOT = _("It swings freely. Add a handle at its root, and it keeps its length.")
+NO_ROOT = _("The handle swings freely. Add a handle at its root to keep its length.")
 # The numbers of a spring: field, label, range, format, explanation.
 NUMBERS = (
-    ("frequency", _("Frequency"), FREQUENCIES, "%.2f", _("How often it swings in a second, in Hz")),
-    ("damping", _("Damping"), DAMPINGS, "%.2f", _("How soon it comes to rest: 0 never, 1 at once")),
-    ("lag", _("Lag"), LAGS, "%.1f", _("How many frames later it follows its place")),
-    ("strength", _("Strength"), STRENGTHS, "%.2f", _("How far it swings: 1 as a spring does")),
-    ("stretch", _("Stretch"), STRETCHES, "%.2f", _("How far its length changes: 0 not, 1 freely")),
+    ("frequency", _("Frequency"), FREQUENCIES, "%.2f", _("Swings per second, in Hz")),
+    (
+        "damping",
+        _("Damping"),
+        DAMPINGS,
+        "%.2f",
+        _("How soon the handle comes to rest: 0 never, 1 at once"),
+    ),
+    ("lag", _("Lag"), LAGS, "%.1f", _("How many frames the handle lags behind the shape")),
+    ("strength", _("Strength"), STRENGTHS, "%.2f", _("How far the handle swings: 1 is normal")),
+    (
+        "stretch",
+        _("Stretch"),
+        STRETCHES,
+        "%.2f",
+        _("How far its distance to the root changes: 0 not at all, 1 freely"),
+    ),
 )
 
 
@@ -60,20 +72,24 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
     label(look, _("Like"))
     names = [(name, PRESET_NAMES[name]) for name in SPRING_PRESETS]
     taken = option_buttons(look, "preset", names, "" if spring is None else _preset(spring))
-    draw_tooltip(_("Let the handle follow late and swing, like one of these"))
+    draw_tooltip(_("Let the handle lag and swing like one of these"))
     if taken is not None:
         frequency, damping = SPRING_PRESETS[taken]
         usual = spring or Spring(handle=handle.id, frequency=frequency, damping=damping)
         actions.append(_set(replace(usual, frequency=frequency, damping=damping)))
     if spring is None:
-        small_text(look, _("It follows the shape at once. Choose a spring to let it swing."))
+        small_text(
+            look, _("The handle follows the shape at once. Choose a spring to let it swing.")
+        )
         return actions
     track = project.layer.track_of(handle.id)
     if track is not None and track.enabled:
-        small_text(look, _("Its track comes first. The spring acts while the track is off."))
+        small_text(
+            look, _("The track overrides the spring. Switch the track off to use the spring.")
+        )
     label(look, _("Spring"))
     changed, enabled = imgui.checkbox(_("on") + "##spring", spring.enabled)
-    draw_tooltip(_("Switch the spring on or off. Its numbers stay."))
+    draw_tooltip(_("Switch the spring on or off. Its settings stay."))
     if changed:
         actions.append(_set(replace(spring, enabled=enabled)))
     actions += _root(look, project.layer, spring)
@@ -85,11 +101,11 @@ def draw_spring(look: Look, project: Project, handle: Handle) -> list[Action]:
             actions.append(_set(replace(spring, **changed_field)))
     can = spring.enabled and track is None
     hint = (
-        _("Turn the swing into a track with keys, which you can edit")
+        _("Turn the swing into a track with keys that you can edit")
         if can
         else _("Switch the spring on first")
         if not spring.enabled
-        else _("The track comes before the spring. Delete the track first.")
+        else _("The track overrides the spring. Delete the track first.")
     )
     if text_button(_("Bake to keys"), FILL, hint, enabled=can):
         actions.append(do(springs.bake_spring, handle.id))
@@ -127,7 +143,7 @@ def _root(look: Look, layer: Layer, spring: Spring) -> list[Action]:
             if root != spring.handle and imgui.menu_item_simple(f"{name}###about {root}"):
                 actions.append(_set(replace(spring, root=root)))
         imgui.end_combo()
-    draw_tooltip(_("The handle to which it keeps its distance, as an ear's tip to the head"))
+    draw_tooltip(_("The root: the handle keeps its distance to it, as an ear's tip to the head"))
     if nearest is None and spring.root is None:
         small_text(look, NO_ROOT)
     return actions

@@ -51,7 +51,7 @@ def draw_track(session: Session, look: Look, project: Project, handle: Handle) -
 def _together(look: Look, project: Project, track: Track) -> None:
     if len(track.handles) > 1:
         names = ", ".join(project.layer.handle(identity).name for identity in track.handles)
-        small_text(look, _("It moves {names} together.").format(names=names))
+        small_text(look, _("This track moves {names} together.").format(names=names))
 
 
 def _here(session: Session, look: Look, project: Project, track: Track) -> list[Action]:
@@ -60,14 +60,16 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
     frame = playback.current_frame(session, project)
     at = track_at(replace(track, enabled=True), project.clip, frame)
     if at is None:
-        small_text(look, _("The track acts from its first key to its last key, not in this frame."))
+        small_text(
+            look, _("At this frame the track does not act. It acts from its first to its last key.")
+        )
         return actions
     first, height = track.handles[0], project.document.canvas[1] if track.is_scene_space else 0.0
     name = _("Place") if track.is_scene_space else _("Offset")
     hint = (
-        _("Target here, in pixels from the upper left corner. Typing makes a key.")
+        _("Target at this frame, in pixels from the upper left corner. Typing sets a key.")
         if track.is_scene_space
-        else _("Offset from the pose here, in pixels right and down. Typing makes a key.")
+        else _("Offset from the pose at this frame, in pixels right and down. Typing sets a key.")
     )
     label(look, name)
     entered = []
@@ -85,9 +87,9 @@ def _here(session: Session, look: Look, project: Project, track: Track) -> list[
         )
         actions.append(do(tracks.set_handle_value, first, place))
     if track.keys_rotation:
-        label(look, _("Turned by"))
+        label(look, _("Turn"))
         turn = number_field("track turn", math.degrees(at.turn), "%.1f°")
-        draw_tooltip(_("Turn in addition to the pose, counter-clockwise. Typing makes a key."))
+        draw_tooltip(_("Turn added to the pose, counter-clockwise. Typing sets a key."))
         if turn is not None:
             actions.append(do(tracks.set_handle_value, first, at.place, math.radians(turn)))
     return actions
@@ -98,7 +100,9 @@ def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Ac
     actions: list[Action] = []
     label(look, _("Keys are"))
     kind = option_buttons(look, "kind", KINDS, "picture" if track.is_scene_space else "pose")
-    draw_tooltip(_("Offsets from the pose, or places in the picture, as of a foot on the ground"))
+    draw_tooltip(
+        _("Offsets from the pose, or fixed places in the picture, such as a foot on the ground")
+    )
     if kind is not None:
         actions.append(do(tracks.set_track_space, handle.id, kind == "picture"))
     label(look, _("Track"))
@@ -109,7 +113,7 @@ def _kind(look: Look, project: Project, handle: Handle, track: Track) -> list[Ac
         actions.append(do(editing.edit_document, command))
     imgui.same_line()
     changed, turns = imgui.checkbox(_("Key rotation"), track.keys_rotation)
-    draw_tooltip(_("Let the keys turn the shape at the handle. Without this it turns freely."))
+    draw_tooltip(_("Let the keys turn the shape at the handle. Otherwise it turns freely."))
     if changed:
         command = track_commands.set_turning(project.active, handle.id, turns=turns)
         actions.append(do(editing.edit_document, command))
@@ -121,7 +125,7 @@ def _numbers(look: Look, project: Project, handle: Handle, track: Track) -> list
     frames = project.document.frames
     longest = frames.last - frames.first if project.document.loop else LONGEST
     label(look, _("Delay"))
-    hint = _("How many frames late the track is. In a loop it comes round.")
+    hint = _("Delay of the track in frames. In a loop, the end continues at the beginning.")
     scale = Scale(left=0.0, right=float(max(longest, 1)))
     entered = slider(look, "delay", float(track.delay), scale, text="%.0f", hint=hint)
     if entered is not None:
@@ -146,19 +150,19 @@ def _copies(project: Project, handle: Handle) -> list[Action]:
             if other.id == handle.id:
                 continue
             has_track = layer.track_of(other.id) is not None
-            text = _("{name}  (has one)").format(name=other.name) if has_track else other.name
+            text = _("{name}  (has a track)").format(name=other.name) if has_track else other.name
             if imgui.menu_item_simple(f"{text}###copy to {other.id}"):
                 command = track_commands.copy_track
                 actions.append(do(editing.edit_layer, command, handle.id, other.id))
         imgui.end_combo()
-    draw_tooltip(_("Give another handle the same track, in place of its own"))
+    draw_tooltip(_("Copy this track to another handle and replace its track"))
     words = project.document.pairs
     partners = mirrored_handles(layer.handles, layer.axis, layer.domain.outline, words)
     is_pair = partners.get(handle.id, handle.id) != handle.id
     hint = (
-        _("Give its partner on the other side the mirrored track")
+        _("Copy this track, mirrored, to the partner on the other side")
         if is_pair
-        else _("Mirror its track: no partner on the other side was found by name or place")
+        else _("No partner was found on the other side by name or place")
     )
     if text_button(_("Mirror track") if not is_pair else _("Copy mirrored"), next(widths), hint):
         actions.append(do(editing.edit_layer, track_commands.mirror_track, handle.id, words))
@@ -170,5 +174,5 @@ def _out_of_reach(session: Session, look: Look, project: Project, handle: Handle
     frame, corrected = playback.current_frame(session, project), project.layer_runtime.corrected
     miss = corrected.misses.get(frame, {}).get(handle.id, 0.0) if corrected else 0.0
     if misses_target(project.layer, miss):
-        text = _("{miss:.0f} px short of its track here.").format(miss=miss)
+        text = _("{miss:.0f} px short of its track at this frame.").format(miss=miss)
         small_text(look, text, look.palette.danger)

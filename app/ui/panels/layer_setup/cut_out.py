@@ -41,7 +41,7 @@ HAND_TOOLS: tuple[tuple[CutTool, str, str, str], ...] = (
         "knife",
         icons.ICON_FA_SCISSORS,
         _("Knife"),
-        _("Draw a line between parts that touch, from outside inwards, to pose them apart"),
+        _("Separate parts that touch: draw a line between them, from outside inwards"),
     ),
 )
 
@@ -56,7 +56,7 @@ def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[A
         look,
         icons.ICON_FA_TRASH,
         "forget strokes",
-        _("Delete all strokes, lines of the knife and the mask"),
+        _("Delete all strokes, all knife lines and the mask"),
         enabled=cut_out.is_by_hand,
     ):
         actions.append(do(cut_out_editing.clear_cut_out_strokes))
@@ -70,12 +70,14 @@ def draw_cut_out_panel(session: Session, look: Look, project: Project) -> list[A
 
 def _background(session: Session, look: Look, project: Project, cut_out: CutOut) -> list[Action]:
     if not project.layer_runtime.is_opaque and cut_out.background == "auto":
-        small_text(
-            look, _("The picture is transparent around the drawing. Nothing has to be removed.")
-        )
+        small_text(look, _("The picture is already transparent around the drawing."))
     elif project.layer_runtime.is_opaque and project.layer_runtime.cut.value.is_all:
         small_text(
-            look, _("The whole picture is the drawing. Pick a colour, or brush the rest away.")
+            look,
+            _(
+                "The whole picture is the drawing. Pick the background's colour, or brush the "
+                "rest away."
+            ),
         )
     actions: list[Action] = []
     imgui.begin_disabled(cut_out.mask is not None)
@@ -87,7 +89,10 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
         case "colour":
             actions.append(do(cut_out_editing.toggle_cut_tool, "pick"))
     draw_tooltip(
-        _("A plain background is found at the picture's border, or has the colour that you pick")
+        _(
+            "Lissom removes a plain background: the colour at the picture's border, or the "
+            "colour that you pick"
+        )
     )
     imgui.end_disabled()
     label(look, _("Colour"))
@@ -109,8 +114,8 @@ def _background(session: Session, look: Look, project: Project, cut_out: CutOut)
     draw_tooltip(
         _(
             "Parts inside that have the background's colour, as between an arm and the body. "
-            "Automatic removes vivid colours, but not white, grey and black, which eyes and paper "
-            "have too. A click below changes one of them."
+            "Automatic removes vivid colours, but keeps white, grey and black, which eyes have "
+            "too. Use “Click holes” to change a single part."
         )
     )
     if project.layer_runtime.cut.value.background_like is not None:
@@ -161,7 +166,7 @@ def _mask(look: Look, cut_out: CutOut) -> list[Action]:
     if count:
         texts.append(ngettext("{count:,} stroke", "{count:,} strokes", count).format(count=count))
     if count := len(cut_out.cut_lines):
-        text = ngettext("{count:,} line of the knife", "{count:,} lines of the knife", count)
+        text = ngettext("{count:,} knife line", "{count:,} knife lines", count)
         texts.append(text.format(count=count))
     if texts:
         small_text(look, ", ".join(texts))
@@ -173,7 +178,7 @@ def _holes(session: Session, look: Look, project: Project) -> list[Action]:
     if holes is None or not holes.middles:
         small_text(look, _("There are no holes. Brush away a part inside to make a hole."))
         return []
-    text = f"{icons.ICON_FA_CIRCLE_HALF_STROKE}  {_('Keep or fill by a click')}"
+    text = f"{icons.ICON_FA_CIRCLE_HALF_STROKE}  {_('Click holes')}"
     hint = _("Click in a hole to keep it open, or to fill it")
     return _tool(session, look, "holes", text, hint, width=FILL)
 
@@ -200,19 +205,19 @@ def _state(session: Session, look: Look, project: Project) -> list[Action]:
         if progress_bar(resolver.progress, resolver.status_text):
             actions.append(do(resolving.cancel_solving_keys))
     elif session.cutting is not None:
-        hint, keys = _("Show the drawing as it is posed"), BINDINGS["pose"].shown_keys
+        hint, keys = _("Show the posed drawing"), BINDINGS["pose"].shown_keys
         if text_button(_("Back to posing") + "###done", FILL, hint, keys):
             actions.append(do(cut_out_editing.toggle_cut_tool, None))
     if project.layer.is_stale and project.layer is project.unbuildable:
         small_text(
             look,
             _(
-                "The mesh is still the previous one, because this cut-out gives none. Change the "
-                "cut-out, or undo."
+                "This cut-out leaves no shape, so the mesh did not change. Change the cut-out, "
+                "or undo."
             ),
         )
     small_text(
         look,
-        _("The mesh follows when the brush rests. Handles stay, and every key is posed again."),
+        _("When you pause, Lissom rebuilds the mesh and re-poses every key. Handles stay."),
     )
     return actions

@@ -29,7 +29,7 @@ DETAILS = (("coarse", _("Coarse")), ("normal", _("Normal")), ("fine", _("Fine"))
 TRIANGLES = Scale(left=2_000, right=1_000_000, logarithmic=True)
 SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
     ("outline", _("Outline"), _("The edge of the shape, which moves with the drawing")),
-    ("cage", _("Cage"), _("The polygon around the drawing at rest that moves every point inside")),
+    ("cage", _("Cage"), _("The polygon around the drawing that moves every point inside")),
     ("wireframe", _("Mesh"), _("The triangles that the drawing is cut into")),
 )
 
@@ -37,7 +37,7 @@ SHOWN: tuple[tuple[OverlayName, str, str], ...] = (
 def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Action]:
     heading(look, _("Show"))
     actions = _toggles(session.overlays)
-    heading(look, _("Facts"))
+    heading(look, _("Info"))
     _facts(look, project)
     heading(look, _("Rebuild"))
     layer = project.layer
@@ -57,7 +57,7 @@ def draw_domain_panel(session: Session, look: Look, project: Project) -> list[Ac
             actions.append(do(resolving.rebuild_mesh))
         if is_new and imgui.button(_("Revert") + "###forget", ImVec2(FILL, 0)):
             actions.append(do(viewing.preview_meshing, layer.meshing))
-    small_text(look, _("Handles stay, and every key is posed again. Undo restores both."))
+    small_text(look, _("Handles stay, and every key is re-posed. Undo restores both."))
     return actions
 
 
@@ -89,7 +89,7 @@ def _facts(look: Look, project: Project) -> None:
         _fact(look, _("Holes"), f"{len(domain.holes):,}")
     _fact(look, _("Triangles"), f"{len(domain.mesh.triangles):,}")
     _fact(look, _("Vertices"), f"{len(domain.mesh.vertices):,}")
-    _fact(look, _("Least angle"), f"{_smallest_angle(domain.mesh):.1f}°")
+    _fact(look, _("Smallest angle"), f"{_smallest_angle(domain.mesh):.1f}°")
     imgui.pop_style_var()
 
 
@@ -110,7 +110,7 @@ def _settings(look: Look, draft: Meshing) -> Meshing:
             draft = replace(draft, detail=detail)
     draw_tooltip(_("How closely the outline follows the drawing"))
     label(look, _("Triangles"))
-    hint = _("How many triangles to aim at: more bend smoothly, fewer draw faster")
+    hint = _("Approximate number of triangles: more bend smoothly, fewer draw faster")
     entered = slider(look, "triangles", draft.triangles, TRIANGLES, text="%.0f", hint=hint)
     if entered is not None:
         digits = 0 if entered.is_final and entered.value < 10_000 else -3

@@ -33,7 +33,7 @@ AMOUNTS = Scale(
 SOFTNESSES = Scale(left=0.0, right=1.0)
 TOOLS: tuple[tuple[MaterialTool, str, str, str], ...] = (
     ("stiff", icons.ICON_FA_CUBE, _("Stiff"), _("Brush over parts that bend and stretch less")),
-    ("soft", icons.ICON_FA_FEATHER, _("Soft"), _("Brush over parts that give way first")),
+    ("soft", icons.ICON_FA_FEATHER, _("Soft"), _("Brush over parts that bend and stretch more")),
     ("normal", icons.ICON_FA_ERASER, _("Normal"), _("Brush over parts to make them normal again")),
     (
         "bone",
@@ -84,20 +84,20 @@ def _brush(session: Session, look: Look, project: Project) -> list[Action]:
     if entered is not None:
         actions.append(do(cut_out_editing.set_brush_radius, entered.value))
     label(look, _("Strength"))
-    hint = _("How many times as stiff, or as soft, the brush makes the shape")
+    hint = _("How many times stiffer or softer the brush makes the shape")
     entered = slider(look, "strength", session.strength, STRENGTHS, text="%.1f ×", hint=hint)
     if entered is not None:
         actions.append(do(stiffness_editing.set_stiffness_strength, entered.value))
     label(look, _("Soft edge"))
-    hint = _("Part of the radius over which the strength fades")
+    hint = _("How much of the radius fades out")
     entered = slider(look, "softness", session.softness, SOFTNESSES, hint=hint)
     if entered is not None:
         actions.append(do(stiffness_editing.set_brush_softness, entered.value))
     small_text(
         look,
         _(
-            "The brush acts on the outline within its radius, and from there as deep as a limb is "
-            "thick."
+            "The brush changes the outline within its radius, and the shape behind it as deep "
+            "as a limb is thick."
         ),
     )
     if session.material == "stiff":
@@ -116,7 +116,7 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
     is_shown = any(bone.is_shown for bone in layer.bones)
     align_right(1.15 * imgui.get_frame_height())
     eye = icons.ICON_FA_EYE if is_shown else icons.ICON_FA_EYE_SLASH
-    if icon_button(look, eye, "show bones", _("Show or hide the bones. They act either way.")):
+    if icon_button(look, eye, "show bones", _("Show or hide the bones. Hidden bones act, too.")):
         actions.append(do(stiffness_editing.set_bones_visible, shown=not is_shown))
     for bone in layer.bones:
         first, second = (layer.handle(identity).name for identity in bone.ends)
@@ -127,7 +127,7 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
         align_right(1.15 * imgui.get_frame_height())
         if icon_button(look, icons.ICON_FA_XMARK, "delete bone", _("Delete this bone")):
             actions.append(do(stiffness_editing.remove_bone, bone.ends))
-        hint = _("How many times as stiff as usual the limb is")
+        hint = _("Stiffness of the limb: 1 is normal")
         entered = slider(look, "amount", bone.stiffness, AMOUNTS, text="%.1f ×", hint=hint)
         if entered is not None:
             actions.append(do(stiffness_editing.set_bone_stiffness, bone.ends, entered.value))
@@ -139,7 +139,7 @@ def _bones(look: Look, layer: Layer) -> list[Action]:
 def _describe_limits(layer: Layer, amount: float) -> str:
     """Describe the limits of new poses in a part of this stiffness."""
     if amount <= 1:
-        return _("This part gives way first, within the limits of the layer.")
+        return _("This part bends and stretches more, within the limits of the layer.")
     limits = layer.bounds.scaled_by(np.array([amount]))
     fields = limits.k, limits.sigma_a, limits.sigma_b
     shear, stretch, squeeze = (float(np.ravel(each)[0]) for each in fields)
@@ -165,7 +165,7 @@ def _whole(layer: Layer) -> list[Action]:
 
 
 def _keys(session: Session, look: Look, project: Project) -> list[Action]:
-    small_text(look, _("Keys keep their poses until they are posed again with this material."))
+    small_text(look, _("Keys keep their poses until you re-pose them with this material."))
     resolver = project.key_resolver
     if resolver is not None and resolver.new_layer is None:
         return (
@@ -178,9 +178,9 @@ def _keys(session: Session, look: Look, project: Project) -> list[Action]:
     is_here = is_possible and pose_at_playhead(session, project) is not None
     widths = split_line(2)
     hint = _("Pull the handles of the pose that is shown to their targets again")
-    if text_button(_("Pose this key again"), next(widths), hint, enabled=is_here):
+    if text_button(_("Re-pose this key"), next(widths), hint, enabled=is_here):
         actions.append(do(stiffness_editing.solve_shown_pose_again))
     hint = _("Pull the handles of every key to their targets again")
-    if text_button(_("Pose all keys again"), next(widths), hint, enabled=is_possible):
+    if text_button(_("Re-pose all keys"), next(widths), hint, enabled=is_possible):
         actions.append(do(resolving.solve_keys_again))
     return actions

@@ -42,9 +42,9 @@ def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: in
     actions, opacity = [], opacity_at(document, layer, frame)
     label(look, _("Opacity"))
     hint = (
-        _("How much the layer covers. A change sets a key at this frame.")
+        _("Opacity of the layer. A change sets a key at this frame.")
         if layer.opacity_keys
-        else _("How much the layer covers")
+        else _("Opacity of the layer")
     )
     faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
@@ -93,7 +93,9 @@ def draw_transform_channel(
         actions.append(do(key_transform, layer.id, complex(right, up), radians))
     keyed = keyed_frame(layer, layer.transform_keys, frame)
     if any(key.frame == keyed for key in layer.transform_keys) and text_button(
-        _("Delete transform key"), FILL, _("The layer then moves between the keys around this one")
+        _("Delete transform key"),
+        FILL,
+        _("The layer then moves from the key before to the key after"),
     ):
         actions.append(do(delete_transform_key, layer.id))
     if layer.has_parent and layer.transform_keys:
@@ -134,7 +136,7 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     draw_tooltip(_("From frame {frame} to the next order key").format(frame=frame))
     keyed = change_frame(layer.draw_order_keys, layer.cycles, frame)
     if any(each.frame == keyed for each in layer.draw_order_keys) and text_button(
-        _("Delete order key"), FILL, _("The previous order key then holds on")
+        _("Delete order key"), FILL, _("The previous order key then stays in effect")
     ):
         actions.append(do(delete_draw_order_key, layer.id))
     return actions

@@ -51,12 +51,10 @@ def draw_layer_menu(project: Project, row: TreeRow) -> tuple[list[Action], bool]
 def explain_unswitchable_groups(groups: Sequence[str]) -> str:
     """Explain why groups in a group cannot be switched, and name the remedy."""
     return ngettext(
-        "A switch shows one of several single layers, and {groups} is a group. Choose the layers "
-        "to "
-        "switch. A layer that is clipped to one of them is shown with it.",
-        "A switch shows one of several single layers, and {groups} are groups. Choose the layers "
-        "to "
-        "switch. A layer that is clipped to one of them is shown with it.",
+        "A switch shows one of several layers, but {groups} is a group. Select only layers. A "
+        "clipped layer is shown with the layer that it is clipped to.",
+        "A switch shows one of several layers, but {groups} are groups. Select only layers. A "
+        "clipped layer is shown with the layer that it is clipped to.",
         len(groups),
     ).format(groups=", ".join(groups))
 
@@ -88,11 +86,7 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
     if item(text.format(count=count), icons.ICON_FA_LOCK):
         actions.append(do(toggle_layers_locked, *whom))
     alone = project.solo == set(whom)
-    text = (
-        _("End solo")
-        if alone
-        else ngettext("Look at it alone", "Look at {count} layers alone", count)
-    )
+    text = _("End solo") if alone else ngettext("Solo", "Solo {count} layers", count)
     if item(text.format(count=count), SOLO):
         actions.append(do(solo_layers, *whom))
     if not is_many:
@@ -124,7 +118,7 @@ def _of_layer(project: Project, layer: Layer) -> list[Action]:
 
 def _kind(layer: Layer) -> list[Action]:
     actions: list[Action] = []
-    if item(_("Take into exports") if layer.reference else _("Reference only"), icons.ICON_FA_BAN):
+    if item(_("Include in exports") if layer.reference else _("Reference only"), icons.ICON_FA_BAN):
         actions.append(do(toggle_reference, layer.id))
     if item(_("Make posable") if layer.still else _("Make still picture"), icons.ICON_FA_IMAGE):
         turn = make_posable if layer.still else make_still
@@ -151,7 +145,7 @@ def _draw_switch_items(project: Project, switch_group: SwitchGroup) -> list[Acti
 def _of_group(project: Project, row: TreeRow, group: Group) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
-    if item(_("Choose all layers in it"), icons.ICON_FA_LIST_CHECK):
+    if item(_("Select its layers"), icons.ICON_FA_LIST_CHECK):
         actions.append(do(select_layers, *row.layers))
     if item(_("Show") if group.hidden else _("Hide"), icons.ICON_FA_EYE):
         actions.append(do(toggle_group_hidden, group.name))

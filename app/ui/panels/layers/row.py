@@ -52,21 +52,21 @@ def draw_row_tooltip(document: Document, row: TreeRow) -> None:
             imgui.text_unformatted(text.format(name=name, frame=joint.frame))
         imgui.text_disabled(
             _(
-                "Drag it to change the order, or onto another row to attach it there. Double-click "
-                "to rename it. Right-click for more."
+                "Drag to change the order, or onto another layer to attach it. Double-click to "
+                "rename. Right-click for more."
             )
         )
     elif row.switch_group is not None:
         imgui.text_disabled(
             _(
-                "Exactly one of these layers is visible. Open the switch and click on a circle to "
-                "show that layer from here on."
+                "Exactly one of these layers is visible. Open the switch and click a circle to "
+                "show its layer from this frame on."
             )
         )
     else:
         imgui.text_disabled(
             _(
-                "Click to select all layers in it. Drag it to move or attach them together. "
+                "Click to select all its layers. Drag to move or attach them together. "
                 "Right-click for more."
             )
         )
@@ -107,9 +107,9 @@ def draw_row_switches(look: Look, project: Project, row: TreeRow, frame: int) ->
         hidden = layers[0].hidden if group is None else group.hidden
         eye = icons.ICON_FA_EYE_SLASH if hidden else icons.ICON_FA_EYE
         if group is None:
-            hint = _("Show the layer") if hidden else _("Hide the layer, also in exports")
+            hint = _("Show the layer") if hidden else _("Hide the layer, in exports too")
         else:
-            hint = _("Show the group") if hidden else _("Hide the group, also in exports")
+            hint = _("Show the group") if hidden else _("Hide the group, in exports too")
         if icon_button(look, eye, f"eye {row.key}", hint, active=hidden):
             actions.append(
                 do(toggle_layers_hidden, *_of_chosen(project, row))

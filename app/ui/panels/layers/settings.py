@@ -90,7 +90,7 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     actions += draw_transform_channel(project.document, look, layer, frame)
     actions += draw_order_channel(project.document, look, layer, frame)
     if layer.still:
-        small_text(look, _("A still picture: it is shown as it was drawn."))
+        small_text(look, _("A still picture, shown as it was drawn."))
         if imgui.button(_("Make posable"), ImVec2(FILL, 0)):
             actions.append(do(make_posable, identity))
     elif imgui.button(_("Make still picture"), ImVec2(FILL, 0)):
@@ -103,7 +103,7 @@ def _group(look: Look, group: Group) -> list[Action]:
     imgui.push_id(group.name)
     name = group.name.rpartition("/")[2]
     label(look, shorten_text(_("In {name}").format(name=name), (LABEL_WIDTH - 0.5) * look.em))
-    hint = _("How much all layers of the group {name} together cover").format(name=group.name)
+    hint = _("Opacity of the whole group {name}").format(name=group.name)
     faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
         actions.append(do(set_group_opacity, group.name, min(max(faded.value / 100, 0.0), 1.0)))
@@ -125,10 +125,7 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
     text = _("Hide from frame {frame} on") if is_seen else _("Show from frame {frame} on")
     is_put_away = layer.hidden or document.is_in_hidden(layer)
     hint = (
-        _(
-            "The layer is hidden at all times now. With a key it is hidden before this frame and "
-            "visible from this frame on."
-        )
+        _("The layer is hidden in all frames. A key here shows it from this frame on.")
         if is_put_away
         else _("For props that come and go. Use a switch for layers that replace each other.")
     )
@@ -145,7 +142,7 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
             )
             for key in layer.visibility_keys
         )
-        small_text(look, _("This layer is {keys}.").format(keys=", ".join(keys)))
+        small_text(look, _("Visibility: {keys}.").format(keys=", ".join(keys)))
     return actions
 
 
@@ -163,7 +160,7 @@ def _draw_switch_keys(
             if imgui.selectable(f"{document.layer(each).name}###turn {each}", each == seen)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(_("Which of these layers is visible from frame {frame} on").format(frame=frame))
+    draw_tooltip(_("The layer that is visible from frame {frame} on").format(frame=frame))
     if text_button(
         _("Remove from switch"), FILL, _("The layer keeps its visibility, with keys of its own")
     ):
@@ -193,7 +190,7 @@ def _draw_parent(project: Project, look: Look, layer: Layer, frame: int) -> list
             if imgui.selectable(f"{other.name}###parent {other.id}", other is parent)[0]
         ]
         imgui.end_combo()
-    draw_tooltip(_("The layer moves with the place of its parent that is under its anchor now"))
+    draw_tooltip(_("The layer follows the point of its parent under its anchor"))
     if joint is not None and parent is not None:
         changed, turns = imgui.checkbox(_("Inherit rotation"), joint.inherits_rotation)
         if changed:
@@ -220,15 +217,15 @@ def _draw_reparent(project: Project, look: Look, layer: Layer, frame: int) -> li
             if imgui.menu_item_simple(name, enabled=not is_circle and other.id != now):
                 actions.append(do(reparent_layer, layer.id, other.id))
             if is_circle:
-                text = _("At frame {frame} it is attached to {name} itself")
+                text = _("At frame {frame} it is itself attached to {name}")
                 draw_tooltip(text.format(frame=frame, name=layer.name))
             elif other.id == now:
-                text = _("It is the parent at frame {frame} already")
+                text = _("It is already the parent at frame {frame}")
                 draw_tooltip(text.format(frame=frame))
         imgui.end_popup()
     keyed = layer.joint_frame(frame)
     if joint is not None and joint.frame == keyed and len(layer.attachments) > 1:
-        hint = _("The previous parent then stays the parent")
+        hint = _("The layer then keeps its previous parent")
         if text_button(_("Delete parent key") + "###joint", FILL, hint):
             actions.append(do(delete_parent_key, layer.id, keyed))
     if len(layer.attachments) > 1:

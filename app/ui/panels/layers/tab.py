@@ -47,11 +47,7 @@ def _summary(look: Look, project: Project) -> list[Action]:
     if not summary:
         return []
     count = len(summary.warnings)
-    title = (
-        _("What looks different here: {count}").format(count=count)
-        if count
-        else _("Imported as drawn")
-    )
+    title = _("Differences: {count}").format(count=count) if count else _("Imported as drawn")
     imgui.set_next_item_open(project.is_import_log_open)
     is_open = imgui.tree_node_ex(f"{title}###summary", _FOLD)
     actions = [do(viewing.toggle_import_log)] if imgui.is_item_toggled_open() else []
@@ -60,7 +56,7 @@ def _summary(look: Look, project: Project) -> list[Action]:
     for loss in few_notices(summary.warnings):
         small_text(look, message_of(loss), look.palette.text)
     if summary.notes and imgui.tree_node_ex(
-        _("Small matters: {count}").format(count=len(summary.notes)), _FOLD
+        _("Minor differences: {count}").format(count=len(summary.notes)), _FOLD
     ):
         for matter in few_notices(summary.notes):
             small_text(look, message_of(matter))

@@ -93,11 +93,11 @@ def _bar(look: Look, project: Project) -> list[Action]:
 
     forward, back = (do(move_layer, active, index + by) for by in (1, -1))
     count = len(chosen)
-    replace = _("Replace the layer's picture by another file: handles, keys and parents stay")
+    replace = _("Replace the layer's picture with another file. Handles, keys and parents stay.")
     delete = (
         ngettext("Delete the layer", "Delete the {count} selected layers", count)
         if last
-        else _("A scene has at least one layer")
+        else _("A scene needs at least one layer")
     ).format(count=count)
     group = ngettext(
         "Put the layer in a group", "Put the {count} selected layers in a group", count

@@ -90,7 +90,7 @@ def _row(look: Look, project: Project, given: AppliedMotion) -> list[Action]:
     text = _("{name}, frames {first} – {last}")
     imgui.text_unformatted(text.format(name=name, first=given.first, last=given.last))
     if not is_motion_unedited(project.layer, given):
-        small_text(look, _("This motion was edited by hand. It stays as it is."))
+        small_text(look, _("You edited this motion by hand. It stays as it is."))
     widths = split_line(2)
     if text_button(_("Change…"), next(widths), _("Apply it again with other settings")):
         actions.append(do(preset_setup.edit_applied_motion, given))
@@ -133,8 +133,8 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
     small_text(
         look,
         _(
-            "Drag the joints on the drawing to their places. A click on a joint here, or {keys} on "
-            "the drawing, leaves it out."
+            "Drag the joints to their places on the drawing. To leave a joint out, click it "
+            "here, or {keys} it on the drawing."
         ).format(keys=format_modified(ALT, _("click"))),
     )
     has_sides = draft.kind == "biped-front"
@@ -147,7 +147,7 @@ def _joints(look: Look, draft: MotionSetup) -> list[Action]:
             else _("Mirror right to left")
         )
         text = f"{binding.icon}  {way}###mirror joints"
-        hint = _("{hint}: from the side of the joint that was touched last")
+        hint = _("{hint}: from the side that you dragged last")
         hint = hint.format(hint=binding.hint)
         if text_button(text, next(widths), hint, enabled=bool(draft.joints)):
             actions.append(binding.action)
@@ -173,14 +173,20 @@ def _motions(look: Look, draft: MotionSetup) -> list[Action]:
 
 
 def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
-    heading(look, _("How"))
+    heading(look, _("Settings"))
     actions: list[Action] = []
     now = draft.parameters
     for name, text, scale, form, hint in (
         ("speed", _("Speed"), SPEEDS, "%.2f ×", _("How many times as fast as usual")),
         ("size", _("Size"), SIZES, "%.2f ×", _("How far limbs swing, and how far steps go")),
-        ("energy", _("Energy"), ENERGIES, "%.2f ×", _("How much it bounces and sways")),
-        ("start", _("Start"), SHARES, "%.2f", _("The share of the cycle at which it begins")),
+        ("energy", _("Energy"), ENERGIES, "%.2f ×", _("How much the body bounces and sways")),
+        (
+            "start",
+            _("Start"),
+            SHARES,
+            "%.2f",
+            _("Where in its cycle the motion begins, from 0 to 1"),
+        ),
     ):
         label(look, text)
         entered = slider(look, name, getattr(now, name), scale, text=form, hint=hint)
@@ -189,7 +195,7 @@ def _parameters(look: Look, draft: MotionSetup) -> list[Action]:
                 do(preset_setup.set_motion_parameters, **{name: scale.clamp(entered.value)})
             )
     label(look, _("Repeats"))
-    hint = _("How many times the motion plays, one after the other")
+    hint = _("How many times the motion plays")
     entered = slider(look, "rounds", draft.rounds, REPEATS, text="%.0f", hint=hint)
     if entered is not None:
         rounds = min(max(round(entered.value), 1), preset_setup.MOST_ROUNDS)
@@ -209,7 +215,7 @@ def _switches(look: Look, draft: MotionSetup) -> list[Action]:
     actions: list[Action] = []
     now = draft.parameters
     changed, mirrored = imgui.checkbox(_("Mirrored"), now.mirrored)
-    draw_tooltip(_("As in a mirror: the other arm waves, a walk goes the other way"))
+    draw_tooltip(_("Mirror the motion: the other arm waves, a walk goes the other way"))
     if changed:
         actions.append(do(preset_setup.set_motion_parameters, mirrored=mirrored))
     if draft.preset.template_for(draft.kind).can_travel:
@@ -217,7 +223,7 @@ def _switches(look: Look, draft: MotionSetup) -> list[Action]:
         changed, travels = imgui.checkbox(_("Travels"), now.travel)
         draw_tooltip(
             _(
-                "The layer moves on in the picture, and does not loop. Without this it walks on "
+                "The layer moves across the picture, and does not loop. Otherwise it walks on "
                 "the spot."
             )
         )
@@ -237,9 +243,7 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     actions: list[Action] = []
     imgui.separator()
     if draft.applied_motion is not None and preset_setup.is_applied_motion_edited(project):
-        changed, replaces = imgui.checkbox(
-            _("Replace what was edited by hand"), draft.replaces_edits
-        )
+        changed, replaces = imgui.checkbox(_("Replace edits"), draft.replaces_edits)
         if changed:
             actions.append(do(preset_setup.set_motion_options, replaces_edits=replaces))
     small_text(look, _where(project, draft))
@@ -249,7 +253,7 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
     widths = split_line(2)
     if main_button(look, _("Apply") + "###give", next(widths), enabled=not reason):
         actions.append(do(apply_motion.apply_motion_preset))
-    draw_tooltip(reason or _("Solve key after key, and play the motion. One undo takes it back."))
+    draw_tooltip(reason or _("Set the keys and play the motion. One undo removes them."))
     if text_button(_("Cancel") + "###no motion", next(widths), "", BINDINGS["pose"].shown_keys):
         actions.append(do(preset_setup.close_motion_setup))
     return actions
@@ -258,11 +262,11 @@ def _end(look: Look, project: Project, draft: MotionSetup) -> list[Action]:
 def _where(project: Project, draft: MotionSetup) -> str:
     period = draft.preset.frames(draft.parameters, project.document.fps) * draft.rounds
     if draft.applied_motion is not None:
-        text = _("It replaces frames {first} – {last}.")
+        text = _("It replaces the motion at frames {first} – {last}.")
         return text.format(first=draft.applied_motion.first, last=draft.applied_motion.last)
     text = ngettext(
-        "It begins at frame {first} and takes {count} frame.",
-        "It begins at frame {first} and takes {count} frames.",
+        "From frame {first}, {count} frame long.",
+        "From frame {first}, {count} frames long.",
         period,
     )
     return text.format(first=draft.first, count=period)

@@ -118,9 +118,9 @@ def _end_of_cycle(
     elif gesture is None and begin_tooltip():
         imgui.text_unformatted(text)
         imgui.text_disabled(
-            _("Drag to make each repeat longer or shorter, right click the repeats for more")
+            _("Drag to make each repeat longer or shorter, right-click the repeats for more")
             if is_stretch
-            else _("Drag to end the repeats elsewhere, right click the repeats for more")
+            else _("Drag to change where the repeats end, right-click the repeats for more")
         )
         imgui.end_tooltip()
     if not is_pressed():

@@ -144,9 +144,7 @@ def _draw_switch_keys(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup
                     layer=document.layer(seen).name, frame=start
                 )
             )
-            imgui.text_disabled(
-                _("Right click to show another layer, drag the beginning to move it")
-            )
+            imgui.text_disabled(_("Right-click to show another layer, drag the start to move it"))
             imgui.end_tooltip()
         actions += _menu(bands, switch, start)
     for start in starts[1:]:

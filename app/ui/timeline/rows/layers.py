@@ -280,7 +280,7 @@ def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[
             else _("Hidden from frame {frame} on")
         )
         imgui.text_unformatted(text.format(frame=frame))
-        imgui.text_disabled(_("Click to go there, drag to move it, right click to delete it"))
+        imgui.text_disabled(_("Click to go there, drag to move it, right-click to delete it"))
         imgui.end_tooltip()
     return []
 

@@ -29,9 +29,7 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
     """Return the possible gestures at the pointer."""
     project = screen.project
     if session.active_tool is not None:
-        return _sentence(
-            [*map(_format_hint, session.active_tool.active_hints), _("Esc takes it back")]
-        )
+        return _sentence([*map(_format_hint, session.active_tool.active_hints), _("Esc cancels")])
     if session.cutting is None and project.playhead.since is not None:
         return _("Space stops")
     if session.is_posing and not session.overlays.handles:
@@ -44,7 +42,7 @@ def find_hint(session: Session, screen: ScreenMapping, spot: PointerHit) -> str:
         for hint in tool.hints(session, project, spot)
     ]
     if not session.is_posing:
-        return _sentence([*hints, _("Esc goes back")])
+        return _sentence([*hints, _("Esc goes back to posing")])
     if spot.handle is not None:
         if spot.handle in find_auto_pinned(screen.shown):
             hints.append(_("auto-pinned: it stays until the next key"))

@@ -68,18 +68,18 @@ def draw_recording_bar(look: Look, project: Project, corner: ImVec2) -> list[Act
             "##smoothing", round(100 * take.smoothing), 0, 100, _("Smoothing") + " %d%%"
         )
         draw_tooltip(
-            _("Distance of the motion from the recorded drag: more smoothing makes fewer keys")
+            _("How far the motion may leave the recorded drag: more smoothing makes fewer keys")
         )
         if changed:
             actions.append(do(smooth_recording, min(max(percent, 0), 100) / 100))
         imgui.same_line()
         if imgui.button(_("Keep")):
             actions.append(do(accept_recording))
-        draw_tooltip(_("Keep these keys. They can be changed like all other keys."))
+        draw_tooltip(_("Keep these keys. You can edit them like all other keys."))
         imgui.same_line()
-        if imgui.button(_("Again")):
+        if imgui.button(_("Record again")):
             actions.append(do(retry_recording))
-        draw_tooltip(_("Discard this recording, and record the next drag"))
+        draw_tooltip(_("Discard this recording and record the next drag"))
     padding = ImVec2(PADDING * em, PADDING * em)
     low, high = imgui.get_item_rect_min() - padding, imgui.get_item_rect_max() + padding
     draw_list.channels_set_current(0)

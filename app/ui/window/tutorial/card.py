@@ -142,13 +142,13 @@ def _contents(session: Session, look: Look, guide: TutorialState, text: str) -> 
         imgui.same_line()
     elif not is_done:
         _dots(look, steps.index(guide.stage), len(steps))
-    words = _("Close") if is_done else _("Leave")
+    words = _("Close") if is_done else _("End guide")
     style = imgui.get_style()
     button = imgui.calc_text_size(words).x + 2 * style.frame_padding.x
     imgui.same_line(imgui.get_cursor_start_pos().x + width - button)
     if imgui.button(f"{words}###leave"):
         actions.append(do(tutorials.end_tutorial))
-    draw_tooltip(_("End the guide; what you made stays"), BINDINGS["leave guide"].shown_keys)
+    draw_tooltip(_("End the guide. Your work stays."), BINDINGS["leave guide"].shown_keys)
     return actions
 
 

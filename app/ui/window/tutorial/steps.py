@@ -120,9 +120,9 @@ def _to_pose(
     if screen.project.unkeyed_pose is not None:
         insert = BINDINGS["insert key"]
         return TutorialStep(
-            _("Auto-key is off, so no key has this pose: {action} ({keys}) makes a key.").format(
-                action=insert.label, keys=insert.shown_keys
-            ),
+            _(
+                "Auto-key is off, so this pose has no key. Press {keys} ({action}) to set a key."
+            ).format(action=insert.label, keys=insert.shown_keys),
             _box(places, "insert key"),
         )
     layer, handles = screen.shown.clip.layer, screen.shown.handle_positions
@@ -151,7 +151,7 @@ def _to_export(session: Session, project: Project, places: Places) -> TutorialSt
         window = imgui.internal.find_window_by_name("###Export")
         tab = None if window is None else window.dc.dock_tab_item_rect
         at = None if tab is None else Rect(tab.min, tab.max)
-        return TutorialStep(_("Open the tab Export."), at, anywhere=True)
+        return TutorialStep(_("Open the Export tab."), at, anywhere=True)
     if project.document.export.format != tutorials.FORMAT:
         return TutorialStep(_("Choose GIF as the format."), _box(places, "format"))
     return TutorialStep(

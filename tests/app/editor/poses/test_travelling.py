@@ -215,7 +215,7 @@ def test_words_for_sides_are_edited_and_whole_names_are_partners(session):
         rename_layer(session, identity(session, name), to)
     copying.copy_all_poses(session)
     go(session, 12)
-    assert "Nothing changes sides" in pasting.paste_disabled_reason(session, project, SWAPPED)
+    assert "Nothing was swapped" in pasting.paste_disabled_reason(session, project, SWAPPED)
     before = project.document
     pasting.paste_copied(session, SWAPPED)
     settle(session)

@@ -38,7 +38,10 @@ def _begin(session: Session, project: Project, draft: MotionSetup) -> None:
     before = project.document.layer(draft.layer)
     if before.domain is not draft.domain:
         session.show_notice(
-            _("The motion was not applied: the drawing has another shape by now. Start again.")
+            _(
+                "The motion was not applied: the drawing's shape changed meanwhile. Apply the "
+                "motion again."
+            )
         )
         return
     base = _without(project.document, draft)
@@ -122,7 +125,7 @@ def _accept(session: Session, project: Project, task: MotionJob, giving: MotionS
     before, draft = task.before, task.setup
     if before not in project.document.layers:
         session.show_notice(
-            _("The motion was not applied: the drawing was posed or changed meanwhile.")
+            _("The motion was not applied: the drawing changed meanwhile. Apply the motion again.")
         )
         project.motion_setup = project.motion_setup or draft
         return
@@ -143,20 +146,20 @@ def _show_unreached_joints(session: Session, giving: MotionSolve) -> None:
     if not giving.target_errors:
         return
     parts = [
-        _("{joint} by {distance:.0f} px").format(joint=_(name), distance=error)
+        _("{joint} ({distance:.0f} px short)").format(joint=_(name), distance=error)
         for name, (error, *_rest) in giving.target_errors.items()
     ]
     named, more = ", ".join(parts[:MOST_NAMED]), len(parts) - MOST_NAMED
     if more > 0:
         text = ngettext(
-            "Some joints fall short of the motion, held back by the limits: {joints} and {count} "
-            "more joint.",
-            "Some joints fall short of the motion, held back by the limits: {joints} and {count} "
-            "more joints.",
+            "The limits keep some joints from following the motion: {joints} and {count} more "
+            "joint.",
+            "The limits keep some joints from following the motion: {joints} and {count} more "
+            "joints.",
             more,
         ).format(joints=named, count=more)
     else:
-        text = _("Some joints fall short of the motion, held back by the limits: {joints}.")
+        text = _("The limits keep some joints from following the motion: {joints}.")
         text = text.format(joints=named)
     size = giving.reachable_size
     if size is None:
@@ -178,7 +181,7 @@ def apply_motion_at_size(
     found = project.document.layer(layer) if layer in project.layer_runtimes else None
     given = next((each for each in found.motions if each.first == first), None) if found else None
     if found is None or given is None:
-        session.show_notice(_("That motion is not there any more."))
+        session.show_notice(_("This motion was deleted."))
         return
     draft = preset_setup.setup_of_applied_motion(found, given)
     parameters = replace(draft.parameters, size=size)

@@ -122,7 +122,10 @@ def mirror_joints(session: Session, project: Project) -> None:
             outside += [other_side(name)] if nearest != mirrored else []
     project.motion_setup = draft.with_joints(joints, draft.selected_joint)
     if outside:
-        text = _("The mirrored places of {joints} are beside the drawing.")
+        text = _(
+            "The mirrored places of {joints} are outside the drawing. Drag these joints to "
+            "their places."
+        )
         session.show_notice(text.format(joints=", ".join(map(_, outside))))
 
 

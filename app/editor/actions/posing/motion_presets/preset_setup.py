@@ -22,10 +22,10 @@ def motion_disabled_reason(_session: Session, project: Project) -> str:
     """Return why the active layer cannot get a motion; empty if it can."""
     layer = project.layer
     if layer.still:
-        text = _("{layer} is a still picture, which has no shape to move.")
+        text = _("{layer} is a still picture. Make it posable first.")
         return text.format(layer=layer.name)
     if layer.locked:
-        text = _("{layer} is locked: unlock it in the list of layers first.")
+        text = _("{layer} is locked. Unlock it in the Layers tab first.")
         return text.format(layer=layer.name)
     return ""
 
@@ -220,7 +220,7 @@ def apply_motion_disabled_reason(project: Project) -> str:
         missing = ", ".join(map(_, draft.missing_joints))
         return text.format(motion=draft.preset.label, joints=missing)
     if is_applied_motion_edited(project) and not draft.replaces_edits:
-        return _("The motion was edited by hand since it was applied. The edits would be lost.")
+        return _("You edited the motion by hand. Applying it again would delete your edits.")
     return ""
 
 
