@@ -30,7 +30,7 @@ def keep_layer(document: Document, name: str) -> Document:
     names = [layer.name for layer in document.layers]
     if name not in names:
         raise LissomError(
-            _("there is no layer {name!r}; the layers are {names}").format(
+            _("there is no layer {name!r}; choose one of {names}").format(
                 name=name, names=join_names(names)
             )
         )

@@ -429,7 +429,7 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
     stroke(window, *FROM_BELOW)
     (slit,) = boots.layer.cut_out.cut_lines
     assert slit.points[0] == pytest.approx(FROM_BELOW[0], abs=1)
-    assert boots.history.undo_label == "Cut by the knife"
+    assert boots.history.undo_label == "Cut with knife"
     rest(window)
     layer = boots.layer
     assert not layer.is_stale

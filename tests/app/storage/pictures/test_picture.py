@@ -127,7 +127,7 @@ def test_sixteen_bits_of_other_formats_are_noticed_too():
     for data in (b"P6 5 3 65535\n" + samples, tiff + samples):
         picture = decode_picture(data, "drawing")
         assert abs(int(picture.rgba[1, 1, 0]) - 0x80) <= 1
-        assert picture.notices == ("reduced its deep colours to 8 bits per channel",)
+        assert picture.notices == ("its deep colours were reduced to 8 bits per channel",)
     assert decode_picture(b"P6 5 3 255\n" + samples[:45], "drawing").notices == ()
 
 
