@@ -183,11 +183,11 @@ def test_a_mask_is_taken_at_its_word() -> None:
 
 def test_masks_and_colours_that_are_none_are_refused() -> None:
     rgba = pictures.blob(100)
-    with pytest.raises(EngineError, match="keeps nothing"):
+    with pytest.raises(EngineError, match="removes the whole picture"):
         subject_mask(rgba, CutOut(mask=Mask.of(~visible(rgba))))
-    with pytest.raises(EngineError, match="90 × 100 pixels and the picture 100 × 100"):
+    with pytest.raises(EngineError, match="90 × 100 pixels, but the picture has 100 × 100"):
         subject_mask(rgba, CutOut(mask=Mask.of(visible(rgba)[:, 10:])))
-    with pytest.raises(EngineError, match="levels of a background"):
+    with pytest.raises(EngineError, match="three levels from 0 to 255"):
         subject_mask(rgba, CutOut(background=(0, 300, 0)))
     with pytest.raises(EngineError, match="Nothing is left"):
         subject_mask(pictures.on_plain(rgba, WHITE), CutOut(background=WHITE, tolerance=255))

@@ -125,7 +125,7 @@ def test_pairs_are_read_as_they_are_written(text):
         ("near/far/middle", says(NO_PAIR)),
         ("near/far, far/away", "“far” is twice"),
         ("near/near", "“near” is twice"),
-        ("/far", "of two words"),
+        ("/far", "must have two words"),
     ],
 )
 def test_what_is_no_pair_is_reported(text, words):

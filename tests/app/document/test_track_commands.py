@@ -388,7 +388,7 @@ def test_what_does_not_come_round_is_refused_in_a_loop():
     with pytest.raises(LissomError, match=r"late by 50 frames, .* longer than the loop of 48"):
         loop(late)
     undamped = tracks.put_spring(0, replace(SPRING, damping=0.0))
-    with pytest.raises(LissomError, match="no damping, so that it never comes round"):
+    with pytest.raises(LissomError, match="no damping, so its swing never repeats"):
         loop(undamped(tracked()))
     with pytest.raises(LissomError, match="no damping"):
         undamped(loop(tracked()))

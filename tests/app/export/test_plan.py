@@ -177,7 +177,7 @@ def test_impossible_rates_are_refused(document, tmp_path, fps):
 
 
 def test_rates_and_sizes_that_a_format_cannot_hold_are_refused(document, tmp_path):
-    with pytest.raises(LissomError, match="50 pictures a second"):
+    with pytest.raises(LissomError, match="50 frames a second"):
         plan_of(document, tmp_path / "a.gif", format="gif", fps=60.0)
     with pytest.raises(LissomError, match=r"16,383 pixels each way.*smaller size"):
         plan_of(document, tmp_path / "a.webp", format="webp", size=(16_384, 4))

@@ -139,7 +139,7 @@ def test_motion_out_of_reach_is_reported_with_a_size_in_reach(scenes):
     while not giving.is_over:
         giving = step_motion_solve(giving)
     (notice,) = giving.notices
-    assert "fall short" in notice
+    assert "miss their targets" in notice
     assert giving.reachable_size is not None
     assert 0 < giving.reachable_size < 2
     fits = replace(order, parameters=Parameters(size=giving.reachable_size))

@@ -251,7 +251,7 @@ def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
     window.act(cut_out_editing.load_mask, tmp_path / "small.png")
     window.settle()
     assert drawing.document is before
-    assert any("same width and height" in toast.text for toast in window.session.toasts)
+    assert any("of the picture's size" in toast.text for toast in window.session.toasts)
 
 
 def test_impossible_cut_out_is_reported_and_undone(window, drawing):

@@ -936,7 +936,7 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     arm, wall = identity(scene, "arm"), identity(scene, "wall")
     before = scene.document
     empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
-    for path, reason in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
+    for path, reason in ((empty, "it contains no shape"), (tmp_path / "none.png", "none.png")):
         window.session.toasts = []
         window.act(replace_picture, arm, path)
         window.settle()
@@ -991,7 +991,7 @@ def test_import_log_stays_in_the_panel(window, stranger):
     assert "One thing looks different here" in toast.text
     log = project.document.import_log
     assert log.warnings == ("shine, glow: drawn normally, not in the mode 'overlay'",)
-    assert "wall: opaque all over, so that it stands still" in log.notes
+    assert "wall: the picture is opaque everywhere, so there is no shape to pose" in log.notes
     window.show_tab("Handle")
     window.act(toast.action.apply)
     window.frames(3)

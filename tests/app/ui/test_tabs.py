@@ -368,7 +368,7 @@ def test_export_settings_are_entered_and_undone(window, project, tab):
 def test_what_single_formats_ask_is_entered(window, project, tab):
     def lay_out(robot):
         assert robot.item_exists("**/framing/###fit")
-        robot.item_click("**/trimmed/###All alike")
+        robot.item_click("**/trimmed/###Same size")
         robot.item_input_value("**/##padding", 999)
         robot.item_click("**/power_of_two/###Powers of two")
 
@@ -534,7 +534,7 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
         written.clear()
         window.show_tab(title)
         text = " ".join(written).lower()
-        assert "12 px short of its target" in text, title
+        assert "12 px from its target" in text, title
         assert reason in text, title
         assert "by the limits" not in text
     assert project.timeline.target_errors.value[pose] == {1: pytest.approx(12, abs=1e-6)}

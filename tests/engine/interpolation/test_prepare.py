@@ -258,7 +258,7 @@ def test_what_a_variant_needs_is_asked_for():
     interval = KeyframeSegment(sites, KeyframeBlend.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:
         if variant.needs_transform:
-            with pytest.raises(EngineError, match="needs a Hilbert transform"):
+            with pytest.raises(EngineError, match="needs the Hilbert transform"):
                 prepare_inbetweens(variant, interval)
         else:
             frame = prepare_inbetweens(variant, interval).frame(0.5)

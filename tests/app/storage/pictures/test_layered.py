@@ -121,9 +121,9 @@ def test_what_cannot_be_kept_is_reported():
     assert [layer.name for layer in read.layers] == ["head"]
     assert sorted(read.summary.warnings) == [
         "head: drawn normally, not in the mode 'overlay'",
-        "title: left out, since Lissom takes drawn layers only",
+        "title: left out, because Lissom reads only drawn layers",
     ]
-    assert read.summary.notes == ("nothing: left out, since it is empty",)
+    assert read.summary.notes == ("nothing: left out, because it is empty",)
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_what_cannot_be_kept_is_reported():
         (drawing(size=(0, 9)), "size of '0' pixels"),
         (drawing(HEAD.replace('x="10"', 'x="nan"')), "x='nan'"),
         (drawing(HEAD.replace("0.png", "7.png")), "lacks data/7.png"),
-        (drawing(""), "no layer on which anything is drawn"),
+        (drawing(""), "all of its layers are empty"),
         (drawing("<stack>" * 60 + "</stack>" * 60), says(GROUPS_DEEP, most=50)),
         (drawing("<stack>"), "stack.xml is damaged"),
         (drawing(HEAD * 201), "up to 200: merge"),
