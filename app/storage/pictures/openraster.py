@@ -78,7 +78,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         source = element.get("src", "")
         if source not in archive.NameToInfo:
             raise LissomError(
-                _("the picture {source} is missing").format(
+                _("it lacks {source}").format(
                     source=shortened(source) or _("the picture of a layer")
                 )
             )

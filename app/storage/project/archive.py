@@ -124,7 +124,7 @@ class Archive:
         Raises `LissomError` if the member is missing or larger; nothing is unpacked then.
         """
         if name not in self._members:
-            raise LissomError(_("the member {name} is missing").format(name=name))
+            raise LissomError(_("it lacks {name}").format(name=name))
         self._read.add(name)
         member = self._members[name]
         if largest is not None and member.file_size > largest:

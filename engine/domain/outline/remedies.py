@@ -62,7 +62,7 @@ def describe_curve(curve: MarginCurve, widening: float, area: int) -> tuple[Mess
     if fused >= LEAST_JOINED:
         notices.append(
             Message(
-                "limbs too close together were joined and move as one, along {share:.0%} of the "
+                "limbs too close together were fused and move as one, along {share:.0%} of the "
                 "edge",
                 {"share": fused},
             )
@@ -70,7 +70,7 @@ def describe_curve(curve: MarginCurve, widening: float, area: int) -> tuple[Mess
     if widening > 1:
         notices.append(
             Message(
-                "the margin was widened {factor:.1f} times, for an outline of few vertices",
+                "the margin was widened {factor:.1f} times for an outline of few vertices",
                 {"factor": widening},
             )
         )

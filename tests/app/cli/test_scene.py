@@ -335,7 +335,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
     assert main(["pose", *arguments, *FEW]) == 0
     notice = " ".join(capsys.readouterr().err.split())
-    assert "the parent of patch from frame 30 on is never seen: the animation ends" in notice
+    assert "the parent of patch from frame 30 on has no effect: the animation ends" in notice
     document = load_project(out)
     patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
     assert [joint.frame for joint in patch.attachments] == [0, 3, 6, 30]
@@ -558,7 +558,7 @@ def test_script_that_names_no_layer_takes_the_front_visible_one(opened):
 def test_choice_is_named_when_its_key_is_after_the_end(opened):
     late = {**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}
     _, notice = posed_face(opened, choices=[late])
-    assert "switch 'mouth': ah from frame 99 on is never seen: the animation ends" in notice
+    assert "switch 'mouth': ah from frame 99 on has no effect: the animation ends" in notice
 
 
 @pytest.mark.parametrize(

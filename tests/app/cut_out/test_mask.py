@@ -110,7 +110,7 @@ def test_a_picture_without_plain_background_is_kept_whole() -> None:
 def test_a_picture_of_nothing_but_background_is_kept_whole() -> None:
     subject = subject_mask(np.full((60, 90, 4), 255, dtype=np.uint8))
     assert subject.mask.all()
-    assert "would leave 0.0% of the picture" in subject.notices[0]
+    assert "only 0.0% of the picture would be left" in subject.notices[0]
 
 
 def test_the_tolerance_decides_what_belongs_to_the_background() -> None:

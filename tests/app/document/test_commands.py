@@ -89,7 +89,7 @@ def test_a_variant_may_be_given_by_its_name_in_files():
     for variant in VARIANTS:
         (layer,) = layers.set_variant(0, variant.value)(document).layers
         assert layer.variant is variant
-    with pytest.raises(LissomError, match=r"variant is one of metric, nu, .*not 'wobbly'"):
+    with pytest.raises(LissomError, match=r"variant must be one of metric, nu, .*not 'wobbly'"):
         layers.set_variant(0, "wobbly")(document)
 
 
@@ -345,10 +345,10 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
             "cage of 13 vertices, but the layer's cage has 12",
         ),
         (keys.insert_key(0, 10, POSE), KEYS_COLLIDE.format(frame=10)),
-        (keys.insert_key(0, -1, POSE), "key is at a frame from 0"),
-        (keys.insert_key(0, 1_000_000, POSE), "key is at a frame from 0"),
+        (keys.insert_key(0, -1, POSE), "key must be at a frame from 0"),
+        (keys.insert_key(0, 1_000_000, POSE), "key must be at a frame from 0"),
         (keys.move_keys(0, {0, 10}, 10), KEYS_COLLIDE.format(frame=20)),
-        (keys.move_keys(0, {0}, -1), "key is at a frame from 0"),
+        (keys.move_keys(0, {0}, -1), "key must be at a frame from 0"),
         (keys.move_keys(0, {3}, 1), says(NO_KEY, frame=3)),
         (keys.copy_keys(0, {0}, 0), KEYS_COLLIDE.format(frame=0)),
         (keys.copy_keys(0, {0}, 20), KEYS_COLLIDE.format(frame=20)),
@@ -369,7 +369,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (layers.set_variant(0, "arap"), "variant"),
         (layers.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
         (layers.set_anchor(0, complex("inf")), "anchor must be within"),
-        (settings.add_marker(-1), "marker is at a frame from 0"),
+        (settings.add_marker(-1), "marker must be at a frame from 0"),
         (settings.delete_marker(3), "no marker at frame 3"),
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
         (poses.save_pose(0, POSE, "  "), "needs a name"),

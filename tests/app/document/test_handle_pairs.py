@@ -123,8 +123,8 @@ def test_pairs_are_read_as_they_are_written(text):
     [
         ("near", says(NO_PAIR, words="near")),
         ("near/far/middle", says(NO_PAIR)),
-        ("near/far, far/away", "“far” is twice"),
-        ("near/near", "“near” is twice"),
+        ("near/far, far/away", "“far” is in two pairs"),
+        ("near/near", "“near” is in two pairs"),
         ("/far", "must have two words"),
     ],
 )

@@ -291,7 +291,7 @@ KNOWN = {
 }
 BETWEEN = KNOWN | {"first": 8, "start": 8, "last": 10}
 UNKNOWN_MOTIONS = (
-    (BETWEEN | {"motion": "nosuch"}, "There is no motion 'nosuch'"),
+    (BETWEEN | {"motion": "nosuch"}, "There is no motion preset 'nosuch'"),
     (BETWEEN | {"kind": "biped-side"}, "'breathe' is not a motion for 'biped-side'"),
     (BETWEEN | {"motion": "wave", "kind": "biped-side"}, "has no joint 'top'"),
     (BETWEEN | {"joints": {"top": 7}}, "is at handle 7, which does not exist"),
@@ -393,7 +393,7 @@ def test_changes_are_refused_when_they_repeat_too_often():
     repeating = document.with_layer(replace(layer, cycles=cycles))
     count = MAX_CHANGES - 3
     assert scene_commands.set_frames(FrameRange(0, 2 * count // 3))(repeating)
-    with pytest.raises(LissomError, match=f"more than {MAX_CHANGES:,}End the repeats"):
+    with pytest.raises(LissomError, match=f"more than {MAX_CHANGES:,}. End the repeats"):
         scene_commands.set_frames(FrameRange(0, LAST_FRAME))(repeating)
 
 

@@ -375,7 +375,7 @@ def test_what_single_formats_ask_is_entered(window, project, tab):
     def detail(robot):
         assert not robot.item_exists("**/framing/###fit")
         robot.item_input_value("**/##triangles", 900)
-        robot.item_click("**/tolerance/###Own")
+        robot.item_click("**/tolerance/###Custom")
         robot.item_input_value("**/##tolerance", 0.25)
 
     export_settings.set_export_settings(

@@ -194,7 +194,7 @@ def test_folds_are_found_wherever_they_are():
         ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, says(OTHER_CAGE)),
         ({"maps": [CAGE, CAGE]}, says(OTHER_KIND, name="keyframe 0", given="ndarray")),
         ({"shape": bar()}, says(OTHER_BOUNDARY)),
-        ({"variant": "wobbly"}, "no variant 'wobbly'; there are metric, nu"),
+        ({"variant": "wobbly"}, "no variant 'wobbly'; choose one of metric, nu"),
         ({"anchor": [0.5, 0.6]}, says(ONE_ANCHOR, count=2)),
         ({"anchor": []}, says(ONE_ANCHOR, count=0)),
         ({"anchor": 2 + 2j}, "anchor at .* is outside"),

@@ -137,7 +137,7 @@ def test_what_cannot_be_kept_is_reported():
         (drawing(""), "all of its layers are empty"),
         (drawing("<stack>" * 60 + "</stack>" * 60), says(GROUPS_DEEP, most=50)),
         (drawing("<stack>"), "stack.xml is damaged"),
-        (drawing(HEAD * 201), "up to 200: merge"),
+        (drawing(HEAD * 201), "at most 200. Merge"),
     ],
 )
 def test_bad_files_are_reported_in_words(data, words):
@@ -273,7 +273,7 @@ def test_names_that_are_alike_get_the_next_free_numbers():
 
 
 def test_too_many_groups_and_long_names_are_refused():
-    with pytest.raises(LissomError, match=f"{MOST_GROUPS:,} groups"):
+    with pytest.raises(LissomError, match=f"too many groups; Lissom reads at most {MOST_GROUPS:,}"):
         read_openraster(drawing(HEAD + "<stack/>" * (MOST_GROUPS + 1)))
     for stack in (f'<stack name="{"x" * 5000}">{HEAD}</stack>', HEAD.replace("head", "x" * 5000)):
         with pytest.raises(LissomError, match=f"up to {LONGEST_NAME:,}") as refusal:

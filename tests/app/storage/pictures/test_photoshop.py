@@ -270,5 +270,5 @@ def test_more_layers_than_there_is_time_for_are_refused_at_once(in_block):
     layer = Drawn(name="a", pixels=np.full((1, 1, 4), 200, np.uint8))
     few = read_photoshop(photoshop_file((9, 9), [layer] * 2, in_block=in_block))
     assert len(few.layers) == 2
-    with pytest.raises(LissomError, match=f"up to {MOST_RECORDS:,}"):
+    with pytest.raises(LissomError, match=f"at most {MOST_RECORDS:,}"):
         read_photoshop(photoshop_file((9, 9), [layer] * (MOST_RECORDS + 1), in_block=in_block))
