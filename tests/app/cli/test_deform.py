@@ -145,7 +145,7 @@ DOUBLE = np.array([0.0, 0.0])
         ({"outline": CAGE, "cage": OUTLINE}, "strictly inside|cage"),
         ({"k_max": 1.0}, says(IMPOSSIBLE_BOUND, name="k")),
         ({"sigma_a_max": 0.9}, "limit of sigma_a"),
-        ({"sigma_b_min": 1.0}, "bound on sigma_b"),
+        ({"sigma_b_min": 1.0}, "limit of sigma_b"),
         ({"k_max": np.array([0.5, 0.6])}, "k_max must be one number"),
         ({"k_max": "high"}, "'k_max' contains text"),
         ({"phi": CAGE}, "both phi and psi"),

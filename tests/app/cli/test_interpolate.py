@@ -161,7 +161,7 @@ FOLDED[1] = MAPS["phi"][1].conj() * 2
         ({"cage": CAGE[::-1]}, says(CAGE_ORDER)),
         ({"triangles": np.array([[0, 1, 99]])}, says(MESH_POINTS)),
         ({"triangles": np.array([[0.0, 1, 2]])}, "integers"),
-        ({"triangles": np.array([[0, 1, 2]])}, "not joined|leaves the outline"),
+        ({"triangles": np.array([[0, 1, 2]])}, "No triangles connect|leaves the outline"),
         ({"psi": None}, "'psi'"),
         ({"turns": np.array([1])}, says(TURN_COUNT, keyframes=3, count=2)),
         ({"turns": np.array([0.5, 1])}, says(TURN_COUNT, count=2, dtype="float64")),

@@ -214,7 +214,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
-            r"layers\[0\]\.keys\[0\] names the handle 'foot', which does not exist; the handles are ",
+            r"layers\[0\]\.keys\[0\] names the handle 'foot', which does not exist; the handles are",
         ),
         (
             {"keys": [{"frame": 0, "front": {"hand": "high"}}]},
@@ -229,8 +229,8 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         (
             {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
             (
-                r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which is not "
-                r"among the handles: hand"
+                r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which does not "
+                r"exist; the handles are hand"
             ),
         ),
         (
@@ -278,7 +278,7 @@ def test_refusal_names_layer_when_script_is_of_one_layer(drawing):
     notice = refused(drawing, script)
     assert "The handle 'foot' at (80, 40) lies outside" in notice
     assert "on the front layer 'patch'" in notice
-    assert "also 'wall', 'body', 'arm'" in notice
+    assert "also has 'wall', 'body', 'arm'" in notice
     assert '"layers": [{"layer": "patch", ...}]' in notice
     # What is wrong with it on any layer says nothing of others.
     on_it = {**script, "handles": {"spot": {"at": [180, 120], "front": 3}}}
@@ -642,7 +642,7 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     capsys.readouterr()
     assert main(["export", str(out), "--out", str(folder / "staged.glb")]) == 0
     notice = capsys.readouterr().err
-    assert "do not change: the opacity of arm, the order of body, the camera" in notice
+    assert "does not animate the opacity of arm, the order of body, the camera" in notice
 
 
 def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
@@ -654,9 +654,7 @@ def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
     ):
         _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
         notice = " ".join(notices)
-        assert (
-            "arm is attached to body and moves with it: its own movement" in notice
-        ) == is_reported
+        assert ("arm is attached to body, so its own movement" in notice) == is_reported
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):

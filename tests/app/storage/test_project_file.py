@@ -689,9 +689,9 @@ def test_text_that_is_no_object_is_refused(tmp_path, members, text):
 @pytest.mark.parametrize(
     ("field", "message"),
     [
-        (b'"x": NaN', "holds NaN"),
-        (b'"x": -Infinity', "holds -Infinity"),
-        (b'"x": 1e999', "holds 1e999"),
+        (b'"x": NaN', "contains NaN"),
+        (b'"x": -Infinity', "contains -Infinity"),
+        (b'"x": 1e999', "contains 1e999"),
         (b'"x": ' + b"[" * 45 + b"]" * 45, "nested deeper than"),
         (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, "nested deeper than"),
         (b'"x": 1' + b"0" * 5000, "not JSON"),
@@ -724,7 +724,7 @@ def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, me
         ("layers/0/cage.npy", npy(np.ones(2, complex)), says(FEW_ENTRIES, at_least=3)),
         ("layers/0/cage.npy", npy(np.ones(11, complex)), says(CAGE_REPEATS)),
         ("layers/0/cage.npy", npy(np.full(12, complex("nan"))), says(NOT_FINITE, name="cage")),
-        ("layers/0/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
+        ("layers/0/outline.npy", npy(np.ones(12, complex)), "outline has the same vertex twice"),
         ("layers/0/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
         (
             "layers/0/vertices.npy",

@@ -276,7 +276,7 @@ def test_too_many_groups_and_long_names_are_refused():
     with pytest.raises(LissomError, match=f"too many groups; Lissom reads at most {MOST_GROUPS:,}"):
         read_openraster(drawing(HEAD + "<stack/>" * (MOST_GROUPS + 1)))
     for stack in (f'<stack name="{"x" * 5000}">{HEAD}</stack>', HEAD.replace("head", "x" * 5000)):
-        with pytest.raises(LissomError, match=f"up to {LONGEST_NAME:,}") as refusal:
+        with pytest.raises(LissomError, match=f"at most {LONGEST_NAME:,}") as refusal:
             read_openraster(drawing(stack))
         assert len(str(refusal.value)) < 300
 
