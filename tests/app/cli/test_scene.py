@@ -214,7 +214,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
-            r"layers\[0\]\.keys\[0\] names the handle 'foot', which does not exist; the handles are",
+            r"layers\[0\]\.keys\[0\] names the handle 'foot', which does not exist; the handles",
         ),
         (
             {"keys": [{"frame": 0, "front": {"hand": "high"}}]},

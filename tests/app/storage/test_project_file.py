@@ -432,8 +432,8 @@ def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
     count = len(clocked_document().layers[0].stiffness)
     for wrong, message in (
         (np.ones(count - 1), "stiffness must be one number for each"),
-        (np.full(count, np.nan), "Stiffness must be from 1/30"),
-        (np.full(count, 1e3), "Stiffness must be from 1/30"),
+        (np.full(count, np.nan), "stiffness must be from 1/30"),
+        (np.full(count, 1e3), "stiffness must be from 1/30"),
         (np.ones(count + 1), "cut short|too large|one number for each"),
         (np.ones(count, np.float32), "is not an array of type float64"),
     ):

@@ -936,7 +936,7 @@ def test_a_picture_that_cannot_take_the_place_of_a_layers_changes_nothing(window
     arm, wall = identity(scene, "arm"), identity(scene, "wall")
     before = scene.document
     empty = saved(tmp_path / "empty.png", Image.new("RGBA", (60, 50)))
-    for path, reason in ((empty, "it contains no shape"), (tmp_path / "none.png", "none.png")):
+    for path, reason in ((empty, "there is no shape on it"), (tmp_path / "none.png", "none.png")):
         window.session.toasts = []
         window.act(replace_picture, arm, path)
         window.settle()

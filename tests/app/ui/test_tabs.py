@@ -534,7 +534,7 @@ def test_a_handle_that_is_outweighed_is_not_said_to_be_held_back_by_limits(
         written.clear()
         window.show_tab(title)
         text = " ".join(written).lower()
-        assert "12 px from its target" in text, title
+        assert "12 px short of its target" in text, title
         assert reason in text, title
         assert "by the limits" not in text
     assert project.timeline.target_errors.value[pose] == {1: pytest.approx(12, abs=1e-6)}

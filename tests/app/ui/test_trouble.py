@@ -467,8 +467,8 @@ def test_failing_graphics_driver_is_reported(window, project, monkeypatch, has_r
             patch.setattr("app.storage.files.atomic.os.fsync", full)
         window.frames(3)
     (text,) = (text for text in texts(window) if "the context was lost" in text)
-    assert ("work was backed up" in text) is has_room
-    assert ("work could not be backed up" in text) is not has_room
+    assert ("work was kept" in text) is has_room
+    assert ("work could not be kept" in text) is not has_room
     window.session.toasts = []
     kept = list(window.folder.glob("unsaved-*.lissom"))
     assert len(kept) == has_room
