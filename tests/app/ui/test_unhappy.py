@@ -387,7 +387,7 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
     window.settle()
     assert loose.document is before
     (toast,) = window.session.toasts
-    assert "from 0 to 1" in toast.text
+    assert "between 0 and 1" in toast.text
     assert toast.details == ""
 
 
