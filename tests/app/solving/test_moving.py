@@ -153,7 +153,7 @@ def test_motion_out_of_reach_is_reported_with_a_size_in_reach(scenes):
 
 def test_what_cannot_be_given_is_refused(scenes):
     chain, identity = scenes["chain"], scenes["chain"].layers[0].id
-    with pytest.raises(EngineError, match="There is no motion 'dance'"):
+    with pytest.raises(EngineError, match="There is no motion preset 'dance'"):
         MotionRequest(motion="dance", kind="chain", joints={})
     with pytest.raises(LissomError, match=r"the joint 'joint.2' at \(5, 5\) is not on the drawing"):
         start_motion_solve(

@@ -433,7 +433,9 @@ def test_a_key_on_request_pulls_with_bounded_force():
             assert (abs(layer.target_errors(key.pose)[1]) > 5) == far
     # A notice names the target error, and the target moves to where the handle is.
     assert len(notices) == 1
-    assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
+    assert re.fullmatch(
+        r"frame 8: 'end' is \d+\.\d px from its target, .* by the limits", notices[0]
+    )
     wanted = pulled.keys[1].pose.targets[0].position
     assert wanted.real < 450
     assert pulled.target_errors(pulled.keys[1].pose)[0] < 1
@@ -551,7 +553,7 @@ def test_a_script_says_what_repeats():
     assert layer.key(48).pose is layer.key(0).pose
     keys[-1] = {"frame": 24, "targets": {"end": [210, 50]}}
     script = parse_pose_script({**ROUND, "keys": keys, "cycles": cycles[1:]})
-    with pytest.raises(LissomError, match="frame 24 is where frames 0 to 24 begin again, but it"):
+    with pytest.raises(LissomError, match="frame 24 lies where frames 0 to 24 repeat, but it"):
         pose_document(opened, script, lambda _: None)
 
 
@@ -574,7 +576,7 @@ def test_a_script_says_what_repeats():
         ([{"from": 4, "to": 12, "until": 16}], "starts at frame 4. Set a key there"),
         (
             [{"from": 0, "to": 12, "until": 13}],
-            "end at frame 13, .* no motion leads to the key at frame 16; .* frame 12 instead",
+            "end at frame 13, .* no motion leads to the key at frame 16. .* frame 12 instead",
         ),
         ([{"from": 0}], says(NOT_A_FRAME, where="cycles[0]", name="to")),
         ([{"from": 0, "to": 24.5}], says(NOT_A_FRAME, where="cycles[0]", name="to")),
