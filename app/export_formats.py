@@ -69,11 +69,12 @@ class SpriteSheetOptions(FormatOptions):
 
     trimmed: bool = _option(
         True,  # noqa: FBT003 - the usual value
-        label=_("Frames are"),
-        choices=((True, _("Trimmed")), (False, _("All alike"))),
+        label=_("Frame area"),
+        choices=((True, _("Trimmed")), (False, _("Same size"))),
         flag="trim",
         description=_(
-            "keep only what is seen of a frame on a sprite sheet (default: the project's, yes)"
+            "trim each frame on a sprite sheet to its visible part (default: the project's "
+            "setting, yes)"
         ),
     )
     padding: int = _option(
@@ -89,7 +90,7 @@ class SpriteSheetOptions(FormatOptions):
         label=_("Sheet sides"),
         choices=((False, _("Any")), (True, _("Powers of two"))),
         flag="power-of-two",
-        description=_("let the sides of a sprite sheet be powers of two"),
+        description=_("make the sides of a sprite sheet powers of two"),
     )
 
 
@@ -104,24 +105,28 @@ class MeshOptions(FormatOptions):
     triangles: int = _option(
         4_000,
         label=_("Triangles"),
-        tip=_("Of each layer, about: more of them bend more smoothly, in a larger file"),
+        tip=_(
+            "The approximate number for each layer. More triangles bend more smoothly, in a "
+            "larger file"
+        ),
         flag="triangles",
-        description=_("of a model, about (default: 4000)"),
+        description=_("approximate number of triangles of each layer in a model (default: 4000)"),
         minimum=100,
         maximum=2_000_000,  # the largest number of triangles of a domain
     )
     tolerance: float | None = _option(
         None,
-        label=_("Within"),
+        label=_("Tolerance"),
         tip=_(
-            "How far the shapes may be from the motion, in pixels. As usual, it takes at most 8 of "
-            "them, which every viewer shows; a tolerance of your own takes as many as it needs"
+            "The largest distance between the model and the motion, in pixels. By default the "
+            "model has at most 8 shapes, which every viewer shows. A custom tolerance uses as "
+            "many shapes as it needs"
         ),
-        choices=((None, _("½ px, 8 shapes")), (0.5, _("Own"))),
+        choices=((None, _("½ px, 8 shapes")), (0.5, _("Custom"))),
         flag="tolerance",
         description=_(
-            "how far a model may be from the motion, in pixels, with as many shapes as "
-            "that takes (default: 0.5, with 8 shapes at most)"
+            "the largest distance of a model from the motion, in pixels, with as many shapes as "
+            "needed (default: 0.5, with at most 8 shapes)"
         ),
         minimum=0.001,
         maximum=100,
@@ -174,21 +179,19 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "png": ExportFormat(
             label=_("PNG frames"),
             group=_("Frames"),
-            use=_("For compositing and editing: exact, each frame a file of its own."),
+            use=_("For compositing and editing: exact, with each frame in its own file."),
             about=_(
-                "frame_0000.png, ... in the folder --out, which is made if it is missing. Frame "
-                "0 of the timeline is frame_0000.png; numbers go on one by one from that "
-                "of the first "
-                "frame, with --fps too, and have more digits if one needs them. Frames "
-                "of before with "
-                "the same names are replaced, other files stay."
+                "frame_0000.png, ... in the folder --out, which is created if it is missing. "
+                "Frame 0 of the timeline is frame_0000.png. Numbers count up from the first "
+                "frame, with --fps too, and have more digits if one needs them. Earlier frames "
+                "with the same names are replaced; other files stay."
             ),
         ),
         "picture": ExportFormat(
             label=_("PNG picture"),
             group=_("Frames"),
-            use=_("One pose, exact, at any size: the frame at the playhead."),
-            about=_("the frame --frame alone, as a PNG"),
+            use=_("The frame at the playhead, exact, at any size."),
+            about=_("only the frame --frame, as a PNG"),
             suffixes=(".png",),
             is_still=True,
         ),
@@ -202,10 +205,10 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "gif": ExportFormat(
             label=_("GIF"),
             group=_("Animation"),
-            use=_("Plays everywhere; hard edges, 255 colours, at most 50 pictures a second."),
+            use=_("Plays everywhere; hard edges, 255 colours, at most 50 frames a second."),
             about=_(
                 "an animation in 255 colours a frame; each pixel is opaque or transparent, so "
-                "that soft edges become hard"
+                "soft edges become hard"
             ),
             suffixes=(".gif",),
             largest=65_535,
@@ -214,7 +217,10 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "webp": ExportFormat(
             label=_("WebP"),
             group=_("Animation"),
-            use=_("As exact as Animated PNG and smaller; for browsers, few editors read it."),
+            use=_(
+                "Exact colours as in Animated PNG, in a smaller file; for browsers, as few "
+                "editors read it."
+            ),
             about=_("an animation with exact colours and transparency, smaller than apng"),
             suffixes=(".webp",),
             largest=16_383,
@@ -234,7 +240,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             label=_("WebM video"),
             group=_("Video"),
             use=_("For browsers: small, with soft transparency; few editors read it."),
-            about=_("VP9 video, with its transparency unless there is a background colour"),
+            about=_("VP9 video, with transparency unless there is a background colour"),
             suffixes=(".webm",),
             largest=16_384,
             extra="video",
@@ -244,7 +250,7 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
             group=_("Video"),
             use=_("For video editors: nearly exact, with transparency; large files."),
             about=_(
-                "ProRes 4444 video, with its transparency (straight alpha) unless there is a "
+                "ProRes 4444 video, with transparency (straight alpha) unless there is a "
                 "background colour"
             ),
             suffixes=(".mov",),
@@ -254,12 +260,14 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "spritesheet": ExportFormat(
             label=_("Sprite sheet"),
             group=_("Engine and web"),
-            use=_("For 2D engines: all frames in one PNG, with data; a fixed rate and size."),
+            use=_(
+                "For 2D engines: all frames in one PNG, with a data file; a fixed rate and size."
+            ),
             about=_(
-                "all frames in one PNG, row by row, and beside it a JSON that tells where each "
-                "is, as TexturePacker writes it, with durations and tags as in Aseprite; "
-                "tags are made "
-                "of the timeline's markers. Frames are trimmed and 2 pixels apart by default"
+                "all frames in one PNG, row by row, with a JSON file of their positions. The "
+                "JSON has the form of TexturePacker, with durations and tags as in Aseprite. "
+                "The timeline's markers become tags. By default frames are trimmed and 2 pixels "
+                "apart"
             ),
             suffixes=(".png",),
             data_suffix=".json",
@@ -273,10 +281,9 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
                 "For engines and Blender: a moving mesh at any rate and size, in one small file."
             ),
             about=_(
-                "a textured mesh with morph targets and their weights in time, for engines, "
-                "Blender and browsers: base shape and targets come within --tolerance of "
-                "the motion. "
-                "100 pixels are a metre, the middle of the canvas' lower edge is the origin"
+                "a textured mesh with animated morph targets, for engines, Blender and "
+                "browsers. Base shape and targets come within --tolerance of the motion. 100 "
+                "pixels are a metre, and the origin is the middle of the canvas' lower edge"
             ),
             suffixes=(".glb",),
             is_drawn=False,
@@ -288,12 +295,10 @@ EXPORT_FORMATS: Final[Mapping[str, ExportFormat]] = MappingProxyType(
         "html": ExportFormat(
             label=_("Web page"),
             group=_("Engine and web"),
-            use=_(
-                "For the web: one file that plays sharp at any size; needs a browser with WebGL 2."
-            ),
+            use=_("For the web: one file, sharp at any size; needs a browser with WebGL 2."),
             about=_(
-                "one page that plays the same shapes as glb by WebGL 2 and needs nothing else; "
-                "it fills its frame, is dragged to scrub and clicked to pause"
+                "one page that plays the same shapes as glb with WebGL 2 and needs no other "
+                "files. It fills its frame. Drag to scrub, and click to pause"
             ),
             suffixes=(".html", ".htm"),
             is_drawn=False,

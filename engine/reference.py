@@ -76,7 +76,10 @@ class Reference:
             return fz, self.rho(t) * eta / fz.conj()  # Equation (8)
         if variant in (Variant.ETA, Variant.METRIC):
             return fz, eta / fz.conj()  # Equation (7)
-        raise EngineError("The paper has no variant {variant!r}.", variant=variant)
+        raise EngineError(
+            "The paper has no variant {variant!r}; choose one of the paper's variants.",
+            variant=variant,
+        )
 
     def rho(self, t: float) -> float:
         """Return ρ(t), the largest that all nodes of the outline allow (Section 7.3)."""

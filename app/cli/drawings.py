@@ -25,9 +25,9 @@ from app.storage import (
 )
 from app.texts import N_, _
 
-MANY_LAYERS = N_("{path} has {count} layers; name one by --layer, from the front: {names}")
+MANY_LAYERS = N_("{path} has {count} layers; name one with --layer, from the front: {names}")
 NO_LAYER = N_("{path} has no layer {layer!r}; its layers are, from the front: {names}")
-NO_LAYERS = N_("{path} has no layers; leave --layer out")
+NO_LAYERS = N_("{path} has no layers; leave out --layer")
 
 
 def parse_cut_out(arguments: argparse.Namespace) -> CutOut:

@@ -52,7 +52,7 @@ def _rendering(backend: Backend) -> CheckResult:
     try:
         if _draws_exactly(backend):
             return CheckResult(name, text)
-        problem = _("its pictures are wrong")
+        problem = _("it draws wrong pictures")
     except (LissomError, GlError) as error:
         problem = message_of(error)
     failure = _("{text}. Drawing fails: {problem}. Install another graphics driver")
@@ -94,7 +94,9 @@ def _dialogs() -> CheckResult:
     found = find_system_dialogs()
     if found:
         return CheckResult(name, found)
-    remedy = _("none, Lissom uses its own; for the system's: sudo apt install zenity")
+    remedy = _(
+        "none; Lissom uses its own dialogs. For the system's dialogs: sudo apt install zenity"
+    )
     return CheckResult(name, remedy, works=False)
 
 

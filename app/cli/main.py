@@ -30,17 +30,19 @@ TOO_LITTLE_MEMORY = N_(
 # loaded when it runs, after the arguments are checked.
 COMMANDS = {
     "window": _("Open the window, with a picture or a project if you name one."),
-    "domain": _("Find a picture's outline; build its cage and its triangles."),
-    "deform": _("Drag handles of a shape within limits, from file to file."),
+    "domain": _("Find the outline of a picture, and build its cage and triangles."),
+    "deform": _("Drag the handles of a shape within limits, from file to file."),
     "pose": _("Make a project from a picture and a script of handles and keys."),
-    "move": _("Make a project in which a drawing walks, waves or sways by a motion preset."),
+    "move": _(
+        "Make a project in which a motion preset moves a drawing: walk, wave, sway and more."
+    ),
     "certify": _("Measure how far an animation distorts its drawing, and prove its limits."),
-    "interpolate": _("Make in-betweens of keyframes at points, from file to file."),
+    "interpolate": _("Make in-betweens of keyframes, from file to file."),
     "figures": _("Draw the paper's figures, with measured numbers beside them."),
     "export": _("Render an animation to picture files or video."),
     "thumbnail": _("Write the thumbnail of a project, for file managers."),
-    "desktop": _("Add Lissom to the menu of applications, or remove it."),
-    "manual": _("Copy the manual, pages for any browser, into a folder."),
+    "desktop": _("Add Lissom to the applications menu, or remove it."),
+    "manual": _("Copy the manual, a set of pages for any browser, into a folder."),
     "doctor": _("Check what works on this machine, and what to install."),
 }
 

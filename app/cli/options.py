@@ -27,7 +27,7 @@ DEFAULT_TOLERANCE = 18
 VARIANTS = tuple(variant.value for variant in Variant)
 METHODS = (*VARIANTS, *(method.value for method in Baseline))
 FRAMINGS = ("canvas", "fit")
-NAMED_LIKE_FOLDER = N_("cannot write {name}: it is the name of a folder; name a file")
+NAMED_LIKE_FOLDER = N_("cannot write {name}: this is a folder; name a file")
 NO_STANDARD_OUTPUT = N_("Lissom cannot write to standard output; name a file instead of -")
 
 
@@ -78,7 +78,7 @@ def output_file(text: str) -> Path:
 def _named(text: str) -> str:
     """Return the name of a file; refuse an empty one, which Python takes for the current folder."""
     if not text:
-        raise LissomError(_("the name of a file is empty; give a name"))
+        raise LissomError(_("the file name is empty; give a name"))
     return text
 
 
@@ -106,7 +106,7 @@ def add_project(parser: argparse.ArgumentParser) -> None:
 def add_out(
     parser: argparse.ArgumentParser,
     metavar: str,
-    about: str = _("where to write"),
+    about: str = _("the file to write"),
     *,
     place: Callable[[str], Path | Output] = output_file,
 ) -> None:
@@ -120,7 +120,7 @@ def add_meshing_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         type=int,
         default=DEFAULT_TRIANGLES,
-        help=_("number of triangles to aim at, 1000 to 2000000 (default: %(default)s)"),
+        help=_("approximate number of triangles, 1000 to 2000000 (default: %(default)s)"),
     )
     parser.add_argument(
         "--detail",
@@ -138,38 +138,38 @@ def add_cut_out_options(parser: argparse.ArgumentParser) -> None:
         type=_background,
         default="auto",
         help=_(
-            "the background of an opaque picture, which is removed: auto, none, or a colour such "
-            "as #fff that reaches the border (default: %(default)s)"
+            "the background to remove from an opaque picture: auto, none, or a colour such as "
+            "#fff that reaches the border (default: %(default)s)"
         ),
     )
     either.add_argument(
         "--mask",
         metavar="MASK.png",
         type=input_file,
-        help=_("a picture of the same size: white is kept, black is removed"),
+        help=_("a picture of the same size, in which white parts are kept and black parts removed"),
     )
     parser.add_argument(
         "--tolerance",
         metavar="N",
         type=int,
         default=DEFAULT_TOLERANCE,
-        help=_("levels by which the background may vary, 0 to 255 (default: %(default)s)"),
+        help=_("how many levels the background's colour may vary, 0 to 255 (default: %(default)s)"),
     )
     parser.add_argument(
         "--enclosed",
         choices=ENCLOSED,
         default=ENCLOSED[0],
         help=_(
-            "what happens to parts of the background's colour inside the subject, such as the gap "
-            "between an arm and the body; auto removes vivid colours, and keeps white, grey and "
-            "black (default: %(default)s)"
+            "treatment of enclosed parts of the background's colour, such as the gap between an "
+            "arm and the body; auto removes vivid colours, and keeps white, grey and black "
+            "(default: %(default)s)"
         ),
     )
     parser.add_argument(
         "--holes",
         choices=HOLES,
         default=HOLES[0],
-        help=_("whether large holes are kept or filled (default: %(default)s)"),
+        help=_("keep or fill large holes (default: %(default)s)"),
     )
 
 
@@ -192,5 +192,5 @@ def add_variant_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--variant",
         choices=VARIANTS,
-        help=_("how to blend the keyframes (default: as in the project)"),
+        help=_("how to blend the keyframes (default: the project's variant)"),
     )

@@ -36,7 +36,7 @@ from app.ui.window.window import Window
 
 EXIT_FAILED = 1
 DISPLAY_GONE = _("the display is gone")
-WORK_KEPT = _("your unsaved work was kept; Lissom offers it at the next start")
+WORK_KEPT = _("your unsaved work was backed up; Lissom offers it at the next start")
 START_ERRORS = (*EXPECTED_ERRORS, ImportError, MemoryError, OSError, RuntimeError)
 # Seconds for workers to end: after the person has closed the window, and after other ends.
 LEISURE, HURRY = 6.0, 2.0
@@ -47,8 +47,8 @@ def run_window(file: Path | None) -> int:
     if not has_display():
         exit_with_error(
             _(
-                "there is no display for the window; the command line works without one, for "
-                "example 'lissom export PROJECT --out DIR'"
+                "there is no display for the window. The command line works without a display, "
+                "for example 'lissom export PROJECT --out DIR'"
             )
         )
     set_switch_interval()
@@ -115,12 +115,14 @@ def _show(window: Window, endings: SignalHandler) -> int:
 
 def _report(session: Session, error: Exception) -> None:
     """Print the error that ended the window, and keep a report of it."""
-    notice = _("the window failed; the report above was kept, and nothing is sent")
+    notice = _("the window failed; the report above was stored, and nothing is sent")
     try:
         text = error_reports.keep_crash_report(session, error)
     except EXPECTED_ERRORS as reason:
         text = error_reports.problem_report_text(session)
-        notice = _("the window failed; the report above cannot be kept ({reason}), and is not sent")
+        notice = _(
+            "the window failed, and the report above cannot be stored ({reason}). Nothing is sent"
+        )
         notice = notice.format(reason=message_of(reason))
     print(text, file=sys.stderr)
     print_notice(notice)
@@ -140,7 +142,7 @@ def _make(folder: Path, session: Session) -> None:
         make_settings_folder(folder)
     except EXPECTED_ERRORS as error:
         session.show_notice(
-            _("Unsaved work and settings cannot be kept: {error}. Save often.").format(
+            _("Unsaved work and settings cannot be backed up: {error}. Save often.").format(
                 error=message_of(error)
             ),
             tone="error",
@@ -162,7 +164,9 @@ def _keep(session: Session) -> None:
     try:
         autosaving.autosave_now(session)
     except EXPECTED_ERRORS as error:
-        print_notice(_("unsaved work could not be kept: {error}").format(error=message_of(error)))
+        print_notice(
+            _("unsaved work could not be backed up: {error}").format(error=message_of(error))
+        )
         return
     if session.project is not None and not session.project.history.is_saved:
         print_notice(WORK_KEPT)

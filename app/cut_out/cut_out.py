@@ -40,7 +40,7 @@ class Mask:
         width, height = self.size
         if self.bits.shape != (-(-width * height // 8),):
             raise EngineError(
-                "A mask of {width} × {height} pixels is not of {count} bytes.",
+                "A mask of {width} × {height} pixels cannot have {count} bytes.",
                 width=width,
                 height=height,
                 count=self.bits.size,
@@ -83,7 +83,7 @@ class Stroke:
         object.__setattr__(self, "points", points)
         if not SMALLEST_RADIUS <= self.radius <= LARGEST_RADIUS:
             raise EngineError(
-                "The radius of a brush is {least:g} to {most:g} pixels, not {radius:g}.",
+                "The radius of a brush must be from {least:g} to {most:g} pixels, not {radius:g}.",
                 least=SMALLEST_RADIUS,
                 most=LARGEST_RADIUS,
                 radius=self.radius,
@@ -155,7 +155,7 @@ class CutOut:
             levels = self.background
             if len(levels) != 3 or not all(0 <= level <= 255 for level in levels):
                 raise EngineError(
-                    "The levels of a background's colour are three of 0 to 255, not {levels}.",
+                    "A background colour must have three levels from 0 to 255, not {levels}.",
                     levels=levels,
                 )
         else:
@@ -185,7 +185,7 @@ class CutOut:
 def _require_near(points: Complexes, name: str) -> None:
     if max(np.abs(points.real).max(), np.abs(points.imag).max()) > FARTHEST_STROKE:
         raise EngineError(
-            "{name} goes farther from the picture than {farthest:,.0f} pixels.",
+            "{name} goes farther than {farthest:,.0f} pixels from the picture.",
             name=name,
             farthest=FARTHEST_STROKE,
         )

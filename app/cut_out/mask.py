@@ -21,13 +21,13 @@ LEAST_AGREEMENT = 0.80  # share of the border with the background's colour
 SUBJECT_SHARES = (0.01, 0.97)  # of the picture: range in which a background is removed
 MOST_ENCLOSED = 0.8  # of the subject: lines on coloured paper enclose more
 NOTICED_ENCLOSED = 0.012  # radius of a disc, of the picture's diagonal: larger parts are reported
-NO_PICTURE = "A picture must be an array of uint8 (h, w, 4), not a {given}."
-PICTURE_TYPE = "A picture must be uint8 (h, w, 4), not {dtype} {shape}."
+NO_PICTURE = "A picture must be a uint8 array of shape (h, w, 4), not a {given}."
+PICTURE_TYPE = "A picture must be a uint8 array of shape (h, w, 4), not {dtype} of shape {shape}."
 TRANSPARENT = "The picture is fully transparent; give one with a visible drawing."
-ALL_REMOVED = "The brush has removed all of the picture; keep a part of it."
+ALL_REMOVED = "The brush removed the whole picture; keep a part of the picture."
 SMALL_SUBJECT = (
-    "The subject is only {width} × {height} pixels; give a picture in which it is at least "
-    "{smallest} pixels across."
+    "The subject is only {width} × {height} pixels; it must be at least {smallest} pixels "
+    "across. Give a larger picture."
 )
 
 
@@ -181,7 +181,7 @@ def _masked(visible: Booleans, mask: Mask) -> Booleans:
     if mask.size != visible.shape[::-1]:
         height, width = visible.shape
         raise EngineError(
-            "The mask has {mask_width} × {mask_height} pixels and the picture {width} × "
+            "The mask has {mask_width} × {mask_height} pixels, but the picture has {width} × "
             "{height}; give a mask of the picture's size.",
             mask_width=mask.size[0],
             mask_height=mask.size[1],
@@ -190,7 +190,7 @@ def _masked(visible: Booleans, mask: Mask) -> Booleans:
         )
     subject: Booleans = visible & mask.kept
     if not subject.any():
-        raise EngineError("The mask keeps nothing of the picture; make white what is to be kept.")
+        raise EngineError("The mask removes the whole picture; paint the parts to keep white.")
     return subject
 
 
@@ -214,11 +214,14 @@ def _without_colour(
     flooded = background.mask & visible
     name = "#{:02x}{:02x}{:02x}".format(*colour)
     if not flooded.any():
-        notice = _("no background of the colour {colour} at the picture's border")
+        notice = _(
+            "the picture's border has no background of colour {colour}; choose another colour"
+        )
         return visible, (notice.format(colour=name),), None
     if not (visible & ~flooded).any():
         raise EngineError(
-            "Nothing is left without the background of the colour {name}; lower the tolerance.",
+            "Nothing is left after the background of colour {name} is removed; lower the "
+            "tolerance.",
             name=name,
         )
     notice = _("background removed ({share:.0%} of the picture)").format(share=flooded.mean())
@@ -238,13 +241,13 @@ def _without_background(
     if background.agreement < LEAST_AGREEMENT:
         share = background.agreement
         notice = _(
-            "opaque picture kept as a whole rectangle: only {share:.0%} of the border has one "
-            "colour"
+            "the opaque picture was kept as a whole rectangle: only {share:.0%} of its border "
+            "has one colour"
         )
     else:
         notice = _(
-            "opaque picture kept as a whole rectangle: removing the background would leave "
-            "{share:.1%} of the picture"
+            "the opaque picture was kept as a whole rectangle: without its background only "
+            "{share:.1%} of the picture would be left"
         )
     return np.ones(rgb.shape[:2], dtype=np.bool_), (notice.format(share=share),), None
 

@@ -61,4 +61,4 @@ def _labelled(mask: Booleans) -> tuple[npt.NDArray[Any], int]:
         labels: npt.NDArray[Any] = np.empty(mask.shape, dtype=dtype)
         with suppress(RuntimeError):  # more parts than the type can count
             return labels, int(ndimage.label(mask, np.ones((3, 3)), output=labels))
-    raise EngineError("The picture has too many parts; scale it down.")
+    raise EngineError("The picture has too many parts; scale the picture down.")

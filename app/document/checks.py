@@ -36,7 +36,7 @@ def require_frame(frame: int, what: str) -> None:
     """Raise a `LissomError` unless the frame is from 0 to LAST_FRAME; `what` begins the message."""
     if not 0 <= frame <= LAST_FRAME:
         raise LissomError(
-            _("{what} is at a frame from 0 to {largest:,}, not at {frame}.").format(
+            _("{what} must be at a frame from 0 to {largest:,}, not at {frame}.").format(
                 what=what, largest=LAST_FRAME, frame=frame
             )
         )
@@ -46,7 +46,7 @@ def require_id(identity: int, what: str) -> None:
     """Raise a `LissomError` unless the id is from 0 to MAX_ID."""
     require(
         0 <= identity <= MAX_ID,
-        N_("{what} has an id from 0 to {largest:,}, not {identity}."),
+        N_("{what} must have an id from 0 to {largest:,}, not {identity}."),
         what=what,
         largest=MAX_ID,
         identity=identity,

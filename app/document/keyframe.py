@@ -92,7 +92,7 @@ def require_depth(front: float) -> None:
     """Raise a `LissomError` unless the depth is from −1 to 1."""
     require(
         -1 <= front <= 1,
-        N_("A depth is from −1, behind, to 1, in front, not {depth:g}."),
+        N_("A depth must be from −1 (behind) to 1 (in front), not {depth:g}."),
         depth=front,
     )
 
@@ -138,8 +138,8 @@ class Pose:
         require(
             largest <= LARGEST_COEFFICIENT,
             N_(
-                "The coefficients of a pose are at most {most:g} pixels, not "
-                "{largest:.3g}; move its targets nearer, or choose tighter limits."
+                "The coefficients of a pose can be at most {most:g} pixels, not {largest:.3g}. "
+                "Move the pose's targets nearer, or choose tighter limits."
             ),
             most=LARGEST_COEFFICIENT,
             largest=largest,
@@ -171,7 +171,7 @@ class LibraryPose:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(bool(self.name.strip()), N_("A pose of the library needs a name."))
+        require(bool(self.name.strip()), N_("A pose in the library needs a name."))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -193,7 +193,10 @@ class Keyframe:
         require_frame(self.frame, _("A key"))
         require(
             abs(self.revolutions) <= MAX_REVOLUTIONS,
-            N_("There may be at most {most} whole turns on the way to a key, not {revolutions}."),
+            N_(
+                "A handle can make at most {most} whole turns on the way to a key, not "
+                "{revolutions}."
+            ),
             most=MAX_REVOLUTIONS,
             revolutions=self.revolutions,
         )

@@ -49,8 +49,8 @@ from engine.variant import Variant
 Posed = TypeVar("Posed", Keyframe, LibraryPose)
 NO_KEY = N_("There is no key at frame {frame}.")
 NO_HANDLE = N_("There is no handle with the id {identity}.")
-DUPLICATE_BONES = N_("Two bones are between handles {value!r}.")
-POSE_COUNT = N_("The layer has {count} poses, not {given}.")
+DUPLICATE_BONES = N_("Two bones connect handles {value!r}; keep one of them.")
+POSE_COUNT = N_("The layer has {count} poses, but {given} were given.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -63,10 +63,10 @@ class PictureFile:
     sha256: str = field(init=False)
 
     def __post_init__(self) -> None:
-        require(len(self.data) > 0, N_("The picture is empty."))
+        require(len(self.data) > 0, N_("The picture is empty; give a picture with a drawing."))
         require(
             re.fullmatch(r"\.[a-z0-9]{1,8}", self.suffix) is not None,
-            N_("A picture's file name ends as in '.png', not {suffix!r}."),
+            N_("The file name of a picture must have an ending such as '.png', not {suffix!r}."),
             suffix=self.suffix,
         )
         require_size(self.size, _("The picture"))
@@ -141,12 +141,12 @@ class Layer:
         require_point(self.corner, _("The corner of {layer!r}").format(layer=self.name))
         require(
             0 <= self.opacity <= 1,
-            N_("Opacity is between 0 and 1, not {opacity:g}."),
+            N_("Opacity must be from 0 to 1, not {opacity:g}."),
             opacity=self.opacity,
         )
         require(
             self.blend in BLENDS,
-            N_("The blend of {name!r} is one of {blends}, not {blend!r}."),
+            N_("The blend of {name!r} must be one of {blends}, not {blend!r}."),
             name=self.name,
             blends=", ".join(BLENDS),
             blend=self.blend,
@@ -154,7 +154,7 @@ class Layer:
         require_ascending_visibility_keys(self.visibility_keys)
         require(
             not self.attachments or self.anchor is not None,
-            N_("{name!r} is attached, but has no anchor."),
+            N_("{name!r} is attached but has no anchor; set an anchor."),
             name=self.name,
         )
         require_attachments(self.attachments)
@@ -163,20 +163,18 @@ class Layer:
         require_ascending_keys(self.draw_order_keys, N_("The order of {layer!r}"), self.name)
         require(
             all(key.beside != self.id for key in self.draw_order_keys),
-            N_("{name!r} cannot be in front of itself, nor behind."),
+            N_("{name!r} cannot be in front of itself or behind itself."),
             name=self.name,
         )
         require(
             not self.still or (len(self.keys) == 1 and not self.handles),
-            N_("{name!r} is a still picture: it has neither handles nor a second key."),
+            N_("{name!r} is a still picture, so it cannot have handles or a second key."),
             name=self.name,
         )
         mask = self.cut_out.mask
         require(
             mask is None or mask.size == self.picture.size,
-            N_(
-                "The mask has another size than the picture; give one of the same width and height."
-            ),
+            N_("The mask and the picture have different sizes; give a mask of the picture's size."),
         )
         self._check_handles()
         self._check_keys()
@@ -187,7 +185,7 @@ class Layer:
             require_point(complex(self.mirror), _("The axis of mirroring"))
         require(
             self.variant in VARIANTS,
-            N_("The variant is one of {variants}, not {variant!r}."),
+            N_("The variant must be one of {variants}, not {variant!r}."),
             variants=", ".join(VARIANTS),
             variant=str(self.variant),
         )
@@ -370,9 +368,7 @@ class Layer:
         handles = self.handles
         require(
             len(handles) <= MOST_HANDLES,
-            N_(
-                "{name!r} has {count:,} handles, more than the {largest:,} that a drawing may have."
-            ),
+            N_("{name!r} has {count:,} handles; a drawing can have at most {largest:,}."),
             name=self.name,
             count=len(handles),
             largest=MOST_HANDLES,
@@ -382,14 +378,16 @@ class Layer:
             (handle.id for handle in handles), N_("Two handles have the id {value!r}.")
         )
         require_distinct(
-            (handle.name for handle in handles), N_("Two handles have the name {value!r}.")
+            (handle.name for handle in handles),
+            N_("Two handles have the name {value!r}; rename one of them."),
         )
         require_distinct(
-            (each.position for each in handles), N_("Two handles have the place {value!r}.")
+            (each.position for each in handles),
+            N_("Two handles are at the position {value!r}; move or delete one of them."),
         )
         require(
             all(handle.id < self.next_handle for handle in self.handles),
-            N_("The next handle's id {next_handle} is taken."),
+            N_("The next handle's id, {next_handle}, already belongs to a handle."),
             next_handle=self.next_handle,
         )
         places = {
@@ -418,12 +416,16 @@ class Layer:
             )
 
     def _check_keys(self) -> None:
-        require(len(self.keys) > 0, N_("An animation has at least one key."))
+        require(len(self.keys) > 0, N_("An animation needs at least one key."))
         for before, after in pairwise(key.frame for key in self.keys):
-            require(after != before, N_("Two keys are at frame {before}."), before=before)
+            require(
+                after != before,
+                N_("Two keys are at frame {before}; move or delete one of them."),
+                before=before,
+            )
             require(
                 after > before,
-                N_("The keys at frames {before} and {after} are mixed up."),
+                N_("The keys at frames {before} and {after} are out of order."),
                 before=before,
                 after=after,
             )
@@ -431,7 +433,7 @@ class Layer:
             self._check_pose(key.pose, _("The key at frame {frame}").format(frame=key.frame))
             require(
                 key.depths.keys() <= key.pose.targets.keys(),
-                N_("The key at frame {frame} puts a handle in front that is not there."),
+                N_("The key at frame {frame} moves a handle to the front that does not exist."),
                 frame=key.frame,
             )
         frames = [key.frame for key in self.keys]
@@ -441,7 +443,8 @@ class Layer:
 
     def _check_library(self) -> None:
         require_distinct(
-            (kept.name for kept in self.library), N_("Two poses have the name {value!r}.")
+            (kept.name for kept in self.library),
+            N_("Two poses have the name {value!r}; rename one of them."),
         )
         for kept in self.library:
             self._check_pose(kept.pose, _("The pose {name!r}").format(name=kept.name))
@@ -452,12 +455,12 @@ class Layer:
         following = [spring.handle for spring in self.springs]
         for identity in {*tracked, *following} - known:
             raise LissomError(_(NO_HANDLE).format(identity=identity))
-        require_distinct(tracked, N_("Two tracks are of the handle {value!r}."))
-        require_distinct(following, N_("Two springs are of the handle {value!r}."))
+        require_distinct(tracked, N_("The handle {value!r} has two tracks; keep one of them."))
+        require_distinct(following, N_("The handle {value!r} has two springs; keep one of them."))
         for root in {spring.root for spring in self.springs} - {None}:
             require(
                 root in known,
-                N_("A spring swings about the handle {root}, which is not there."),
+                N_("A spring has the root handle {root}, which does not exist."),
                 root=root,
             )
         require_motions(self.motions, known)
@@ -470,7 +473,7 @@ class Layer:
             )
         require(
             len(self.bones) <= MOST_HANDLES,
-            N_("A drawing has at most {largest:,} bones, not {count:,}."),
+            N_("A drawing can have at most {largest:,} bones, not {count:,}."),
             largest=MOST_HANDLES,
             count=len(self.bones),
         )
@@ -479,7 +482,7 @@ class Layer:
             for end in bone.ends:
                 require(
                     end in known,
-                    N_("A bone ends at the handle {end}, which is not there."),
+                    N_("A bone ends at handle {end}, which does not exist."),
                     end=end,
                 )
         require_distinct((tuple(sorted(bone.ends)) for bone in self.bones), DUPLICATE_BONES)
@@ -487,20 +490,23 @@ class Layer:
     def _check_pose(self, pose: Pose, what: str) -> None:
         require(
             pose.targets.keys() == {handle.id for handle in self.handles},
-            N_("{what} does not have one target for each handle."),
+            N_("{what} must have one target for each handle."),
             what=what,
         )
         count = sum(map(len, self.domain.cages))
         require(
             len(pose.phi) == len(pose.psi) == count,
-            N_("{what} has coefficients for a cage of {given} vertices, not of {count}."),
+            N_(
+                "{what} has coefficients for a cage of {given} vertices, but the layer's cage "
+                "has {count}."
+            ),
             what=what,
             given=len(pose.phi),
             count=count,
         )
         require(
             len(pose.logs) == len(self.domain.holes),
-            N_("{what} is around {given} holes, not {count}."),
+            N_("{what} has {given} holes, but the layer has {count}."),
             what=what,
             given=len(pose.logs),
             count=len(self.domain.holes),

@@ -27,7 +27,8 @@ from app.texts import N_, _
 
 NO_LAYER = N_("There is no layer with the id {identity}.")
 PARENT_CIRCLE = N_(
-    "{name!r} would be attached to itself at frame {frame:g}: {links}; detach one of them first."
+    "{name!r} would be attached to itself at frame {frame:g}: {links}. Detach one of these "
+    "layers first."
 )
 # Sum over all layers, repeats of cycles included.
 MAX_CHANGES = 100_000
@@ -82,15 +83,19 @@ class Document:
         require(
             self.preview is None
             or (self.preview.first in self.frames and self.preview.last in self.frames),
-            N_("The preview range {preview} is not within {frames}."),
+            N_("The preview range {preview} lies outside the frames {frames}."),
             preview=self.preview,
             frames=self.frames,
         )
         for before, after in pairwise(marker.frame for marker in self.markers):
-            require(after != before, N_("Two markers are at frame {before}."), before=before)
+            require(
+                after != before,
+                N_("Two markers are at frame {before}; move or delete one of them."),
+                before=before,
+            )
             require(
                 after > before,
-                N_("The markers at frames {before} and {after} are mixed up."),
+                N_("The markers at frames {before} and {after} are out of order."),
                 before=before,
                 after=after,
             )
@@ -216,14 +221,15 @@ class Document:
         return first + (frame - first) % period if is_beyond else frame
 
     def _check_layers(self) -> None:
-        require(len(self.layers) > 0, N_("A document has at least one layer."))
+        require(len(self.layers) > 0, N_("A document must have at least one layer."))
         if self.size is not None:
             require_size(self.size, _("The canvas"))
         require_distinct(
             (layer.id for layer in self.layers), N_("Two layers have the id {value!r}.")
         )
         require_distinct(
-            (layer.name for layer in self.layers), N_("Two layers are called {value!r}.")
+            (layer.name for layer in self.layers),
+            N_("Two layers have the name {value!r}; rename one of them."),
         )
         self._check_groups()
         for layer in self.layers:
@@ -250,8 +256,8 @@ class Document:
         require(
             count <= MAX_CHANGES,
             N_(
-                "With their repeats, layers are shown, hidden, ordered and attached {count:,} "
-                "times, more than {most:,}; let the repeats end earlier."
+                "With repeats, layers have {count:,} keys of visibility, draw order and "
+                "attachment, more than {most:,}. End the repeats earlier."
             ),
             count=count,
             most=MAX_CHANGES,
@@ -311,7 +317,8 @@ class Document:
 
     def _check_switch_groups(self) -> None:
         require_distinct(
-            (choice.name for choice in self.switch_groups), N_("Two switches are called {value!r}.")
+            (choice.name for choice in self.switch_groups),
+            N_("Two switches have the name {value!r}; rename one of them."),
         )
         taken: dict[int, str] = {}
         for choice in self.switch_groups:
@@ -320,8 +327,8 @@ class Document:
                 require(
                     identity not in taken,
                     N_(
-                        "The layer {layer!r} is in two switches, {other!r} and {name!r}; remove it "
-                        "from one."
+                        "The layer {layer!r} is in two switches, {other!r} and {name!r}; remove "
+                        "it from one of them."
                     ),
                     layer=layer.name,
                     other=taken.get(identity),
@@ -331,7 +338,8 @@ class Document:
                     not layer.visibility_keys,
                     N_(
                         "The layer {layer!r} has visibility keys and is in the switch {name!r}, "
-                        "which alone decides the visibility; remove one of them."
+                        "but a switch alone decides visibility. Delete the visibility keys, or "
+                        "remove the layer from the switch."
                     ),
                     layer=layer.name,
                     name=choice.name,
@@ -347,18 +355,23 @@ class Document:
         known: set[str] = set()
         for group in self.groups:
             require(
-                group.name not in known, N_("Two groups are called {group!r}."), group=group.name
+                group.name not in known,
+                N_("Two groups have the name {group!r}; rename one of them."),
+                group=group.name,
             )
             require(
                 known.issuperset(ancestor_paths(group.name)[:-1]),
-                N_("The group {group!r} comes before the one that it is in."),
+                N_(
+                    "The group {group!r} comes before its parent group in the list; list the "
+                    "parent first."
+                ),
                 group=group.name,
             )
             known.add(group.name)
         for layer in self.layers:
             require(
                 not layer.group or layer.group in known,
-                N_("{layer!r} is in the group {group!r}, which is not there."),
+                N_("{layer!r} is in the group {group!r}, which does not exist."),
                 layer=layer.name,
                 group=layer.group,
             )
@@ -370,8 +383,8 @@ class Document:
             require(
                 any(cycle.contains(key.frame) for key in layer.keys),
                 N_(
-                    "There is no key of {layer!r} in {cycle} that could repeat in a "
-                    "loop; insert one there first."
+                    "No key of {layer!r} in {cycle} could repeat in a loop; insert a key there "
+                    "first."
                 ),
                 layer=layer.name,
                 cycle=cycle.description,
@@ -380,8 +393,8 @@ class Document:
             require(
                 track.delay <= period,
                 N_(
-                    "A track of {layer!r} is late by {delay} frames, which is longer than the "
-                    "loop of {period}; make its delay shorter first."
+                    "A track of {layer!r} is delayed by {delay} frames, longer than the loop of "
+                    "{period} frames. Shorten the delay first."
                 ),
                 layer=layer.name,
                 delay=track.delay,
@@ -391,8 +404,8 @@ class Document:
             require(
                 spring.damping > 0 or not spring.enabled,
                 N_(
-                    "A spring of {layer!r} has no damping, so that it never comes round in a "
-                    "loop; give it some."
+                    "A spring of {layer!r} has no damping, so its swing never repeats in a "
+                    "loop. Set a damping above 0."
                 ),
                 layer=layer.name,
             )

@@ -24,7 +24,7 @@ class Playhead:
     def __post_init__(self) -> None:
         if self.speed == 0 or not math.isfinite(self.speed):
             raise LissomError(
-                _("The speed of play must be a number other than 0, not {speed}.").format(
+                _("The playback speed must be a number other than 0, not {speed}.").format(
                     speed=self.speed
                 )
             )

@@ -39,17 +39,17 @@ class DistortionLimitPreset(NamedTuple):
 STIFF: Final = DistortionLimitPreset(
     name=N_("Stiff"),
     bounds=Bounds(k=0.35, sigma_a=1.5, sigma_b=0.67),
-    hint=N_("It bends a little, and keeps its size"),
+    hint=N_("The layer bends a little and keeps its size"),
 )
 NATURAL: Final = DistortionLimitPreset(
     name=N_("Natural"),
     bounds=Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5),
-    hint=N_("Limbs bend and stretch, and a head stays a head"),
+    hint=N_("Limbs bend and stretch, and a head keeps its shape"),
 )
 RUBBERY: Final = DistortionLimitPreset(
     name=N_("Rubbery"),
     bounds=Bounds(k=0.8, sigma_a=5.0, sigma_b=0.2),
-    hint=N_("It follows far pulls, which may draw it out of shape"),
+    hint=N_("The layer follows far drags, which may distort it strongly"),
 )
 LIMIT_PRESETS: Final = (STIFF, NATURAL, RUBBERY)
 
@@ -82,7 +82,7 @@ def require_fps(fps: float, what: str) -> None:
     """Raise a `LissomError` unless the rate is from SLOWEST to FASTEST."""
     require(
         SLOWEST <= fps <= FASTEST,
-        N_("{what} is from 1/60 to {fastest:,.0f} frames per second, not {fps:g}."),
+        N_("{what} must be from 1/60 to {fastest:,.0f} frames per second, not {fps:g}."),
         what=what,
         fastest=FASTEST,
         fps=fps,
@@ -98,8 +98,8 @@ class FrameRange:
         require(
             0 <= self.first <= self.last <= LAST_FRAME,
             N_(
-                "Frames {first} to {last} are not a range: it goes from 0 or later to the same "
-                "frame or a later one, at most {largest:,}."
+                "Frames {first} to {last} are not a valid range. A range must start at frame 0 "
+                "or later, and end no earlier and at most at frame {largest:,}."
             ),
             first=self.first,
             last=self.last,
@@ -143,7 +143,7 @@ class PictureSettings:
 def _require_pictures(name: str, size: tuple[int, int] | None, background: str) -> None:
     require(
         name in EXPORT_FORMATS,
-        N_("The export format is one of {formats}, not {name!r}."),
+        N_("The export format must be one of {formats}, not {name!r}."),
         formats=", ".join(EXPORT_FORMATS),
         name=name,
     )
@@ -151,7 +151,10 @@ def _require_pictures(name: str, size: tuple[int, int] | None, background: str) 
         require_size(size, _("The export"))
     require(
         re.fullmatch(r"transparent|#[0-9a-fA-F]{6}", background) is not None,
-        N_("The background is 'transparent' or a colour '#rrggbb' or '#rgb', not {background!r}."),
+        N_(
+            "The background must be 'transparent' or a colour '#rrggbb' or '#rgb', not "
+            "{background!r}."
+        ),
         background=background,
     )
 
@@ -181,7 +184,7 @@ class ExportSettings(FormatSettings):
         _require_pictures(self.format, self.size, self.background)
         require(
             self.framing in FRAMINGS,
-            N_("The framing is one of {framings}, not {framing!r}."),
+            N_("The framing must be one of {framings}, not {framing!r}."),
             framings=", ".join(FRAMINGS),
             framing=self.framing,
         )
@@ -189,8 +192,8 @@ class ExportSettings(FormatSettings):
             re.fullmatch(rf"{_LITERAL}#+{_LITERAL}", self.names) is not None
             and not self.names.startswith("."),
             N_(
-                "File names of frames have '#' for each digit of the number, as in "
-                "{example}, and nothing that file names cannot hold, unlike {names!r}."
+                "{names!r} cannot name frames. Write '#' for each digit of the number, as in "
+                "{example}, and only characters that file names can hold."
             ),
             example=FRAME_NAMES,
             names=self.names,
@@ -233,13 +236,13 @@ class Meshing:
         details = get_args(Detail)
         require(
             self.detail in details,
-            N_("The detail is one of {details}, not {detail!r}."),
+            N_("The detail must be one of {details}, not {detail!r}."),
             details=details,
             detail=self.detail,
         )
         require(
             0 < self.triangles <= MOST_TRIANGLES,
-            N_("There must be 1 to {most:,} triangles, not {triangles}."),
+            N_("The number of triangles must be from 1 to {most:,}, not {triangles}."),
             most=MOST_TRIANGLES,
             triangles=self.triangles,
         )

@@ -38,8 +38,8 @@ def clipboard_program() -> tuple[str, ...]:
     needed = "wl-clipboard" if os.environ.get("WAYLAND_DISPLAY") else "xclip"
     raise LissomError(
         _(
-            "nothing here takes pictures to the clipboard: install {needed} (sudo apt install "
-            "{needed}), or export the picture as a file"
+            "no program here copies pictures to the clipboard. Install {needed} (sudo apt "
+            "install {needed}), or export the picture as a file"
         ).format(needed=needed)
     )
 
@@ -68,6 +68,7 @@ def put_on_clipboard(picture: Path) -> None:
     except (OSError, subprocess.SubprocessError) as error:
         raise LissomError(
             _(
-                "the picture could not be put on the clipboard by {command}; export it as a file"
+                "{command} could not copy the picture to the clipboard; export the picture as a "
+                "file"
             ).format(command=command[0])
         ) from error

@@ -19,13 +19,13 @@ PROJECT: Final = "{name}"
 # A dot before a digit starts no suffix, as in v1.2.
 _ENDING: Final = re.compile(r"\.[a-z]\w*")
 NAMED_LIKE_FILE = N_(
-    "{label} go to a folder, but {out} is named like a file; name a folder, or choose "
-    "the format of the name"
+    "{label} need a folder, but {out} is the name of a file. Name a folder, or choose the "
+    "format of that file"
 )
 FRAMES_TO_FILE = N_("cannot write frames to {out}: it is a file; name a folder")
 TOO_LITTLE_ROOM = N_(
-    "there are only {left:,.1f} MB left where {folder} is, and this export takes "
-    "{needed:,.1f} MB or more; make room or choose another folder"
+    "the export needs {needed:,.1f} MB or more, but {folder} has only {left:,.1f} MB left. Free "
+    "some space, or choose another folder"
 )
 
 
@@ -76,7 +76,8 @@ def check_destination(
     if out.name.lower() in _all_suffixes():
         raise LissomError(
             _(
-                "{out} is only the ending of a name; put a name before it, as in animation{ending}"
+                "{out} is only the ending of a file name; add a name before it, as in "
+                "animation{ending}"
             ).format(out=out, ending=out.name)
         )
     if suffixes:
@@ -84,7 +85,7 @@ def check_destination(
         ending = out.suffix.lower()
         if ending not in suffixes and (ending in _all_suffixes() or _ENDING.fullmatch(ending)):
             raise LissomError(
-                _("{out} is not named like {name}; let the name end in {suffixes}").format(
+                _("{out} is not a file name for {name}; use the ending {suffixes}").format(
                     out=out, name=name, suffixes=", ".join(suffixes)
                 )
             )
@@ -106,7 +107,8 @@ def check_destination(
     if not os.access(folder, os.W_OK):
         raise LissomError(
             _(
-                "cannot write {out}: the folder {folder} may not be written to; choose another one"
+                "cannot write {out}: you have no permission to write to {folder}; choose "
+                "another folder"
             ).format(out=out, folder=folder)
         )
 

@@ -149,7 +149,7 @@ class FrameRenderer:
         box = bounding_box(np.concatenate(positions))
         if not np.isfinite(box).all():
             raise LissomError(
-                _("frame {frame:g} cannot be drawn: its points are not all finite").format(
+                _("frame {frame:g} cannot be drawn: some of its points are not finite").format(
                     frame=frame
                 )
             )
@@ -238,7 +238,7 @@ class FrameRenderer:
         # A camera crops on purpose.
         if self._document.camera or self._room.contains(self._reach, slack=_OUTSIDE):
             return ()
-        return (_("the motion leaves the frame; the framing 'fit' shows all of it"),)
+        return (_("the motion leaves the frame; the framing 'fit' shows all of the motion"),)
 
     def release(self) -> None:
         self._owned.close()
@@ -272,8 +272,8 @@ def _tiles(view: View, side: int) -> list[_Tile]:
     if width * height > _MOST_PIXELS:
         raise LissomError(
             _(
-                "a frame of {width} × {height} pixels is too large: it may have "
-                "{most:,} of them; choose a smaller size"
+                "a frame of {width} × {height} pixels is too large; a frame can have at most "
+                "{most:,} pixels. Choose a smaller size"
             ).format(width=width, height=height, most=_MOST_PIXELS)
         )
     size = min(width, side), min(height, side)

@@ -44,7 +44,7 @@ def check_largest_size(name: str, size: tuple[int, int]) -> None:
     if largest is not None and max(size) > largest:
         raise LissomError(
             _(
-                "{name} holds at most {largest:,} pixels each way, not {width} × {height}; "
+                "{name} can have at most {largest:,} pixels each way, not {width} × {height}; "
                 "choose a smaller size"
             ).format(name=name, largest=largest, width=size[0], height=size[1])
         )
@@ -77,8 +77,7 @@ def list_added_pixels(name: str, size: tuple[int, int]) -> tuple[str, ...]:
         return ()
     return (
         _(
-            "{format} needs even sides: the frames are extended by background to {width} "
-            "× {height} "
+            "{format} needs even sides, so background extends the frames to {width} × {height} "
             "pixels"
         ).format(format=name, width=width, height=height),
     )

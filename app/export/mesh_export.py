@@ -98,22 +98,22 @@ class MeshExport:
             if wanted is None and error > DEFAULT_TOLERANCE:
                 found.append(
                     _(
-                        "{count} shapes come within {error:.2g} pixels of the motion of {name}; "
-                        "a tolerance of your own takes as many as it needs"
+                        "{name} has {count} shapes, within {error:.2g} pixels of the motion; a "
+                        "custom tolerance uses as many as it needs"
                     ).format(count=count, error=error, name=shape.name)
                 )
             elif count > MOST_TARGETS:
                 found.append(
                     _(
-                        "{name} has {count} shapes, and viewers of glTF need show only {most}; a "
-                        "larger tolerance takes fewer"
+                        "{name} has {count} shapes, but viewers of glTF need not show more than "
+                        "{most}; a larger tolerance needs fewer shapes"
                     ).format(name=shape.name, count=count, most=MOST_TARGETS)
                 )
             if len(shape.triangle_orders) > 1 and not format_.keeps_order:
                 found.append(
                     _(
-                        "the parts of {name} change their depth; the {format} keeps their first "
-                        "order"
+                        "the parts of {name} change their depth, but the {format} keeps the "
+                        "order of the first frame"
                     ).format(name=shape.name, format=format_.label)
                 )
         layers = self._document.exported_layers
@@ -130,7 +130,7 @@ class MeshExport:
         constant += [_("the camera")] if self._document.camera and not format_.has_frame else []
         if constant:
             found.append(
-                _("in the {format} these do not change: {channels}").format(
+                _("the {format} does not animate {channels}").format(
                     format=format_.label, channels=", ".join(constant)
                 )
             )
@@ -140,9 +140,9 @@ class MeshExport:
         """Yield notices about blends that a format without compositing cannot show."""
         groups = self._document.groups
         painted: list[Layer | Group] = [*self._document.exported_layers, *groups]
-        not_multiplied = _("{names}: not multiplied in the {format}, but painted over the rest")
-        not_screened = _("{names}: not screened in the {format}, but painted over the rest")
-        not_clipped = _("{names}: not clipped in the {format}, but painted over the rest")
+        not_multiplied = _("the {format} cannot multiply {names}; they are painted over the rest")
+        not_screened = _("the {format} cannot screen {names}; they are painted over the rest")
+        not_clipped = _("the {format} cannot clip {names}; they are painted over the rest")
         for notice, names in (
             (not_multiplied, [each.name for each in painted if each.blend == "multiply"]),
             (not_screened, [each.name for each in painted if each.blend == "screen"]),
@@ -153,8 +153,8 @@ class MeshExport:
         faint = [group.name for group in groups if group.opacity < 1]
         if faint:
             yield _(
-                "{names}: faded layer by layer in the {format}, so that the layers shine through "
-                "each other"
+                "in the {format} the layers of {names} fade one by one, and shine through each "
+                "other"
             ).format(names=", ".join(faint), format=label)
 
     def _write(self, scene: MorphScene, cancellation: Cancellation) -> None:

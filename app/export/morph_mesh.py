@@ -125,7 +125,9 @@ def build_morph_scene(
         and any(is_visible(document, layer, frame) for frame in numbers)
     ]
     if not clips:
-        raise LissomError(_("no layer is seen in these frames; there is nothing to export"))
+        raise LissomError(
+            _("no layer is visible in these frames, so there is nothing to export; show a layer")
+        )
     found = []
     for index, clip in enumerate(clips):
         layer, mesh = clip.layer, clip.layer.domain.mesh

@@ -126,7 +126,9 @@ def check_request(document: Document, request: ExportRequest) -> None:
     """
     settings = request.settings
     if not document.exported_layers:
-        raise LissomError(_("there is nothing to export: every layer is hidden or a reference"))
+        raise LissomError(
+            _("there is nothing to export: every layer is hidden or a reference; show a layer")
+        )
     frames = _frames(document, settings)
     if frames.first not in document.frames or frames.last not in document.frames:
         text = (
@@ -152,14 +154,14 @@ def check_request(document: Document, request: ExportRequest) -> None:
         check_blocks(name, settings.size)
     if request.fps is not None and not format_.is_drawn:
         raise LissomError(
-            _("{name} plays at any rate; leave the frames per second out").format(name=name)
+            _("{name} plays at any rate; leave out the frames per second").format(name=name)
         )
     fps = document.fps if request.fps is None else request.fps
     if format_.fastest is not None and fps > format_.fastest:
         raise LissomError(
             _(
-                "{name} shows at most {fastest:g} pictures a second, not {fps:g}; choose fewer "
-                "frames per second for it, or apng or webp"
+                "{name} shows at most {fastest:g} frames a second, not {fps:g}; choose fewer "
+                "frames per second, or the format apng or webp"
             ).format(name=name, fastest=format_.fastest, fps=fps)
         )
     if not format_.is_transparent and settings.background == "transparent":
@@ -285,8 +287,8 @@ def _left_frames(plan: ExportPlan) -> tuple[str, ...]:
     which = others[0] if len(others) == 1 else f"{others[0]} … {others[-1]}"
     return (
         ngettext(
-            "{folder} holds {count} frame of another export ({names}), which stays as it is",
-            "{folder} holds {count} frames of another export ({names}), which stay as they are",
+            "{folder} contains {count} frame of another export ({names}), which is kept",
+            "{folder} contains {count} frames of another export ({names}), which are kept",
             len(others),
         ).format(folder=plan.out, count=len(others), names=which),
     )

@@ -19,11 +19,12 @@ th, td { padding: .25rem .9rem .25rem 0; text-align: right; border-bottom: 1px s
 th:first-child, td:first-child { text-align: left }
 """
 INTRODUCTION = _(
-    "The figures of <cite>Bounded Distortion Harmonic Shape Interpolation</cite> (Chien, Chen and "
-    "Weber, SIGGRAPH 2016), made anew with Lissom's own drawings. Where a table speaks of a key, a "
-    "number is relative to the larger of both keyframes: k and τ − 1 of the 100 points of highest "
-    "distortion, each against its own; then the largest of all points, and the least area over "
-    "time. Bounded in-betweens do not exceed 1."
+    "The figures of <cite>Bounded Distortion Harmonic Shape Interpolation</cite> (Chien, Chen "
+    "and Weber, SIGGRAPH 2016), redrawn with Lissom's own drawings. In a table, a number for a "
+    "key is relative to the larger of both keyframes. The tables show k and τ − 1 of the 100 "
+    "points of highest distortion, each relative to its own keyframe. They then show the "
+    "largest values of all points, and the least area over time. Bounded in-betweens do not "
+    "exceed 1."
 )
 
 

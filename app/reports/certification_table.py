@@ -26,7 +26,7 @@ def format_certification_table(reports: Mapping[str, Report], *, details: bool) 
 def _overview(reports: Mapping[str, Report]) -> str:
     """Return the verdict of a scene, and a line for each layer: its worst values, and where."""
     if not reports:
-        return _("All in all: proven. Everything in this project stands still.")
+        return _("Overall: proven. Nothing in this project moves.")
     verdict = Verdict.worst(report.verdict for report in reports.values())
     whole = {
         Verdict.PROVEN: _("All {count} layers are proven to keep their limits at every moment."),
@@ -46,11 +46,11 @@ def _overview(reports: Mapping[str, Report]) -> str:
         if places:
             word = _("{verdict} at {places}").format(verdict=word, places=places)
         lines.append(_line(name, cells, word, width=width, cell=9))
-    return "\n".join([*lines, _("Add --details for the keys and segments of each layer.")])
+    return "\n".join([*lines, _("Add --details to see the keys and segments of each layer.")])
 
 
 def _all_in_all(verdict: Verdict) -> str:
-    return _("All in all: {verdict}.").format(verdict=WORDS[verdict])
+    return _("Overall: {verdict}.").format(verdict=WORDS[verdict])
 
 
 def _places(report: Report) -> list[str]:
@@ -83,9 +83,9 @@ def _as_table(report: Report) -> str:
     lines += _corrected_lines(report)
     lines.append(
         _(
-            "In brackets beside a measured value: the worse value of the two keys. In brackets "
-            "beside a proven value: its excess over that. With auto-pins or smooth tangents, the "
-            "excess is over the layer's limits."
+            "In brackets beside a measured value is the worse value of the two keys. In "
+            "brackets beside a proven value is its excess over that value. With auto-pins or "
+            "smooth tangents, the excess is over the layer's limits."
         )
     )
     lines.append(_all_in_all(report.verdict))
@@ -93,9 +93,9 @@ def _as_table(report: Report) -> str:
     if largest > 0:
         lines.append(
             _(
-                "To close around holes, the in-betweens are stretched and turned by up to "
-                "{largest:.2%}. Equation (13) of the metric variant is met by least squares only. "
-                "The proven values include this."
+                "To close around holes, the in-betweens are stretched and rotated by up to "
+                "{largest:.2%}. Equation (13) of the metric variant is met by least squares "
+                "only. The proven values include this correction."
             ).format(largest=largest)
         )
     return "\n".join(lines)
@@ -104,12 +104,12 @@ def _as_table(report: Report) -> str:
 def _cycle_line(cycle: Cycle) -> str:
     if cycle.until is None:
         text = _(
-            "Frames {first} to {last} repeat. Every repeat is the same motion, and is listed once."
+            "Frames {first} to {last} repeat. Every repeat is the same motion and is listed once."
         )
     else:
         text = _(
-            "Frames {first} to {last} repeat until frame {until}. Every repeat is the same motion, "
-            "and is listed once."
+            "Frames {first} to {last} repeat until frame {until}. Every repeat is the same "
+            "motion and is listed once."
         )
     return text.format(first=cycle.first, last=cycle.last, until=cycle.until)
 

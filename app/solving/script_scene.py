@@ -51,8 +51,8 @@ def with_attachments(document: Document, identity: int, part: LayerScript) -> Do
     if part.anchor is None and not layer.covers(np.array([anchor])).all():
         raise LissomError(
             _(
-                "it is attached at ({x:g}, {y:g}), which is on {parent!r} but not on itself; give "
-                "it an anchor, or choose a point that is on both"
+                "it is attached at ({x:g}, {y:g}), where only {parent!r} has a shape. Give the "
+                "layer an anchor, or choose a point on both layers"
             ).format(x=anchor.real, y=anchor.imag, parent=part.attach[0].to)
         )
     return document.with_layer(replace(layer, anchor=anchor, attachments=joints))
@@ -64,9 +64,10 @@ def _attachment(document: Document, joint: ScriptAttachment, anchor: complex) ->
         at = complex(parent.domain.nearest(np.array([anchor]))[0])
     elif parent is not None and at is not None and not parent.covers(np.array([at])).all():
         raise LissomError(
-            _("it is attached at ({x:g}, {y:g}), which is not on {parent!r}").format(
-                x=at.real, y=at.imag, parent=parent.name
-            )
+            _(
+                "it is attached at ({x:g}, {y:g}), but {parent!r} has no shape there; choose a "
+                "point on both layers"
+            ).format(x=at.real, y=at.imag, parent=parent.name)
         )
     return Attachment(
         parent=None if parent is None else parent.id,
@@ -146,10 +147,9 @@ def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
         ancestors = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
         if all(ancestors):
             notices.append(
-                _(
-                    "{layer} is attached to {parent} and moves with it: its own movement has no "
-                    "effect"
-                ).format(layer=part.layer, parent=ancestors[0][0].name)
+                _("{layer} is attached to {parent}, so its own movement has no effect").format(
+                    layer=part.layer, parent=ancestors[0][0].name
+                )
             )
     return notices
 
@@ -161,7 +161,9 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
     keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
     keyed += [key.frame for key in part.order]
     notices = [
-        _("no key is in {cycle}: there is nothing to repeat").format(cycle=cycle.description)
+        _("{cycle} contain no key, so nothing repeats; set a key there").format(
+            cycle=cycle.description
+        )
         for cycle in part.cycles
         if not (
             any(map(cycle.contains, keyed))
@@ -170,10 +172,12 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
         )
     ]
     rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]] = {
-        _("its movement ends otherwise than it begins in {cycle}, and does not repeat"): (
+        _("its movement does not repeat, because it ends differently than it starts in {cycle}"): (
             part.movement
         ),
-        _("its opacity ends otherwise than it begins in {cycle}, and does not repeat"): opacity,
+        _(
+            "its opacity does not repeat, because it ends differently than it starts in {cycle}"
+        ): opacity,
     }
     for notice, row in rows.items():
         cycle = next(
@@ -186,8 +190,8 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
         if changes and not attachments_repeat(layer.attachments, cycle):
             notices.append(
                 _(
-                    "its attachments do not repeat with {cycle}: the parent changes in the repeats "
-                    "too, or differs at their start and end"
+                    "its attachments do not repeat with {cycle}: the parent also changes in the "
+                    "repeats, or differs at their start and end"
                 ).format(cycle=cycle.description)
             )
     return notices
@@ -204,8 +208,8 @@ def warn_unused_switches(document: Document) -> list[str]:
         if cycle is not None and others:
             notices.append(
                 _(
-                    "switch {name!r}: its keys do not repeat, since {cycle} do not repeat in "
-                    "{layers}; give all its layers that cycle, or leave it out"
+                    "switch {name!r}: its keys do not repeat, because {cycle} do not repeat in "
+                    "{layers}. Give all its layers that cycle, or leave the cycle out"
                 ).format(name=choice.name, cycle=cycle.description, layers=", ".join(others))
             )
     return notices
@@ -225,27 +229,27 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
             continue
         if choice is not None:
             notices.append(
-                _("{layer} is never seen: the switch {name!r} never shows it").format(
+                _("{layer} is never visible: the switch {name!r} never shows it").format(
                     layer=part.layer, name=choice.name
                 )
             )
         elif part.visible is None:
             notices.append(
                 _(
-                    "{layer} is hidden in the drawing, so that it is never seen; show it with "
+                    "{layer} is hidden in the drawing and never visible; show it with "
                     '"visible": [[0, true]]'
                 ).format(layer=part.layer)
             )
         elif late:
             notices.append(
                 _(
-                    "{layer} is never seen: it is shown from frame {frame} on, and the animation "
-                    "ends at frame {last}"
+                    "{layer} is never visible: it is shown from frame {frame} on, but the "
+                    "animation ends at frame {last}"
                 ).format(layer=part.layer, frame=late[0], last=last)
             )
         else:
             notices.append(
-                _("{layer} is never seen: its visible shows it at no frame").format(
+                _('{layer} is never visible: its "visible" shows it at no frame').format(
                     layer=part.layer
                 )
             )
@@ -260,7 +264,7 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
         late_changes += [(parent, joint.frame) for joint in part.attach]
         late_changes += [(order, each.frame) for each in part.order]
     return notices + [
-        _("{what} from frame {frame} on is never seen: the animation ends at frame {last}").format(
+        _("{what} from frame {frame} on has no effect: the animation ends at frame {last}").format(
             what=what, frame=frame, last=last
         )
         for what, frame in late_changes

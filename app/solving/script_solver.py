@@ -123,9 +123,9 @@ def _among(document: Document, identity: int, part: LayerScript) -> Iterator[Non
         own = layer.name
         raise LissomError(
             _(
-                "{error} The script names no layer, so that its handles are on {own!r}, the "
-                "one in front. The drawing has also {names}: say which layer is meant in "
-                '"layers": [{{"layer": {name}, ...}}].'
+                "{error} The script names no layer, so its handles are on the front layer "
+                '{own!r}. The drawing also has {names}. Name the layer in "layers": [{{"layer": '
+                "{name}, ...}}]."
             ).format(
                 error=message_of(error),
                 own=own,
@@ -148,8 +148,8 @@ def _by_layer(document: Document, script: PoseScript) -> dict[int, LayerScript]:
         if layer is None or (layer.still and is_posed):
             raise LissomError(
                 _(
-                    "the layer {layer!r} stands still: there is no shape on it to be posed; it "
-                    "may be moved as a whole, without handles and with one key"
+                    "the layer {layer!r} cannot be posed, because it contains no shape. Leave "
+                    "out its handles, and give it one key; it can still move as a whole"
                 ).format(layer=part.layer)
             )
         named[layer.id] = part
@@ -212,8 +212,8 @@ def _with_material(
             notices.append(
                 whose
                 + _(
-                    "no outline is within {radius:g} px of ({x:g}, {y:g}): nothing is stiff or "
-                    "soft there"
+                    "no outline lies within {radius:g} px of ({x:g}, {y:g}), so nothing becomes "
+                    "stiff or soft there"
                 ).format(radius=each.radius, x=at.real, y=at.imag)
             )
         document = stiffness_commands.paint_stiffness(identity, [at], **options)(document)
@@ -254,8 +254,8 @@ def _posed(
             if not is_alike or key.fronts:
                 raise LissomError(
                     _(
-                        "the key at frame {frame} is where {cycle} begin again, but it differs "
-                        "from the key at frame {first}; leave it out, or end the cycle elsewhere"
+                        "the key at frame {frame} lies where {cycle} repeat, but it differs "
+                        "from the key at frame {first}. Leave it out, or end the cycle elsewhere"
                     ).format(frame=key.frame, cycle=cycle.description, first=again.frame)
                 )
             continue
@@ -297,7 +297,8 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     carried = layer.sprung_handles & named.keys()
     notices = [
         _(
-            "frame {frame}: {handle!r} has a spring and follows the body; its target has no effect"
+            "frame {frame}: {handle!r} has a spring, which ignores targets of keys; leave its "
+            "target out"
         ).format(frame=key.frame, handle=layer.handle(identity).name)
         for identity in sorted(carried)
     ]
@@ -322,7 +323,7 @@ def _solve(rig: Rig, start: Pose, key: PoseKey) -> tuple[Pose, list[str]]:
     # Joints of bones may yield, since the script does not hold them.
     joints = {identity for hand in rig.find_yielding_joints(hands) for identity in hand.handles}
     notices += [
-        _("frame {frame}: {handle!r} is {error:.1f} px short of its target, {reason}").format(
+        _("frame {frame}: {handle!r} is {error:.1f} px from its target, {reason}").format(
             frame=key.frame,
             handle=layer.handle(identity).name,
             error=error,

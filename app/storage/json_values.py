@@ -23,7 +23,7 @@ NOT_POINT = N_("{where} must be a point [x, y], not {content}")
 NOT_FINITE = N_("{where} must be finite, not {content}")
 NOT_JSON = N_("{path} is not JSON: {reason} in line {line}, column {column}")
 TOO_NESTED = N_("{path} is nested too deeply")
-LACKS_FIELD = N_("{where} lacks the field {name!r}")
+LACKS_FIELD = N_("{where} needs the field {name!r}")
 
 
 class JsonObject(dict[str, Any]):
@@ -121,6 +121,6 @@ def check_repeated_fields(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(content) < len(pairs):
         ((repeated, _count),) = Counter(name for name, _value in pairs).most_common(1)
         raise LissomError(
-            _("the field {name!r} is given twice in one object").format(name=repeated)
+            _("one object has the field {name!r} twice; keep one of them").format(name=repeated)
         )
     return content

@@ -75,7 +75,7 @@ def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Ope
     merged = encode_png(Image.fromarray(flatten_layers(scene.document, textures)))
     opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
     count = len(scene.document.layers)
-    merged_layers = _("the {count} layers of {name} are merged into one drawing").format(
+    merged_layers = _("the {count} layers of {name} were merged into one drawing").format(
         count=count, name=path.name
     )
     notices = (merged_layers,) if count > 1 else ()
@@ -186,7 +186,9 @@ def make_posable_layer(
     file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
     cut_out = WHOLE if is_cut_out else CutOut()
     domain, still = rectangle_domain(*picture.size), True
-    notices: tuple[str, ...] = (_("opaque all over, so that it stands still"),)
+    notices: tuple[str, ...] = (
+        _("the picture is opaque everywhere, so there is no shape to pose"),
+    )
     if not (is_cut_out and picture.is_opaque):
         try:
             domain, found = build_picture_domain(
@@ -197,7 +199,7 @@ def make_posable_layer(
             )
             still, notices = False, tuple(map(message_of, found))
         except EngineError as error:
-            notices = (_("stands still: {reason}").format(reason=message_of(error)),)
+            notices = (_("cannot be posed: {reason}").format(reason=message_of(error)),)
     layer = replace(
         new_layer(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
         id=identity,
@@ -274,7 +276,7 @@ def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> Op
         for imported, (layer, _) in zip(drawing.layers, made, strict=True)
     )
     if all(layer.still for layer in layers):
-        raise LissomError(_("none of its layers can be posed: there is no shape on any of them"))
+        raise LissomError(_("none of its layers can be posed, because none contains a shape"))
     pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
     collector = NoticeCollector()
     for layer, notices in made:

@@ -120,7 +120,9 @@ def make_settings_folder(folder: Path) -> None:
             )
         ) from error
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise LissomError(_("the folder {folder} may not be written to").format(folder=folder))
+        raise LissomError(
+            _("you have no permission to write to the folder {folder}").format(folder=folder)
+        )
 
 
 def load_preferences(folder: Path) -> Preferences:

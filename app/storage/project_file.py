@@ -38,8 +38,8 @@ PROJECT_JSON, THUMBNAIL = "project.json", "thumbnail.png"
 # Nesting of lists and objects. Unknown fields are kept, and must be writable.
 DEEPEST = 40
 NEWER_LISSOM = N_(
-    "it was saved by a newer Lissom ({version}, schema {schema}); this version reads "
-    "schema {own}. Update Lissom to open it"
+    "a newer Lissom ({version}, schema {schema}) saved it; this version reads schema {own}. "
+    "Update Lissom to open it"
 )
 _readable: Final = WeakSet[Layer]()  # layers unchanged since they were read from a file
 
@@ -152,7 +152,7 @@ def _require_readable(
             _read(Archive(written, size, arrays), known)
     except (*EXPECTED_ERRORS, *DAMAGED_ZIP) as error:
         raise LissomError(
-            _("cannot write {path}, as Lissom could not open it again: {error}").format(
+            _("cannot write {path}, because Lissom could not open the file again: {error}").format(
                 path=path, error=message_of(error)
             )
         ) from error
@@ -166,7 +166,9 @@ def _read(archive: Archive, known: Mapping[int, Layer] = MappingProxyType({})) -
         app_version = shortened(as_text(content.get("app_version", "?"), "app_version"))
         raise LissomError(_(NEWER_LISSOM).format(version=app_version, schema=schema, own=SCHEMA))
     if schema < 1:
-        raise LissomError(_("its schema {schema} does not exist").format(schema=schema))
+        raise LissomError(
+            _("it names the schema {schema}, which does not exist").format(schema=schema)
+        )
     document = read_document(content, archive, known)
     attachments = {name: archive.read(name) for name in archive.unread if name != THUMBNAIL}
     return (
@@ -181,7 +183,7 @@ def _read_json(archive: Archive) -> JsonObject:
     # Each value but the first follows one of these marks. A decoded value takes some hundred bytes.
     if sum(text.count(mark) for mark in (b",", b"[", b"{")) > MOST_VALUES:
         raise LissomError(
-            _("its project.json holds more values than any project, which has {most:,}").format(
+            _("its project.json has too many values; a project has at most {most:,}").format(
                 most=MOST_VALUES
             )
         )
@@ -207,7 +209,7 @@ def _finite(text: str) -> float:
     number = float(text)
     if not isfinite(number):
         raise LissomError(
-            _("its project.json holds {text}, which is not a finite number").format(text=text)
+            _("its project.json contains {text}, which is not a finite number").format(text=text)
         )
     return number
 

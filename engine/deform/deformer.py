@@ -27,12 +27,13 @@ PATH_REST = 1e-3
 # Steps without progress after which a drag is handed over to the search for the minimum.
 PATIENCE = 4
 UNSETTLED = (
-    "The shape did not come to rest in {count} steps: it is {status}. Give more steps (at_most), "
-    "wider bounds or nearer targets, or take the shape as it is (throw=False)."
+    "The shape did not converge in {count} steps: it is {status}. Give more steps (at_most), "
+    "wider limits or nearer targets, or accept the shape as it is (throw=False)."
 )
 UNCERTIFIED_START = (
-    "The start map is not certified within the bounds: it has k up to {k:.4g}, sigma_a up to "
-    "{sigma_a:.4g} and sigma_b down to {sigma_b:.4g}. Start from another map or widen the bounds."
+    "The start map is not certified within the limits: it has k up to {k:.4g}, sigma_a up to "
+    "{sigma_a:.4g} and sigma_b down to {sigma_b:.4g}. Start from another map, or widen the "
+    "limits."
 )
 
 
@@ -80,8 +81,8 @@ class Deformer(ConstrainedShape):
             return self.start(harmonic_map)
         if not (certificate.k < 1 and certificate.sigma_b > 0):
             raise EngineError(
-                "The start map folds, or nearly: it is not proven to be locally injective. Start "
-                "from another map."
+                "The start map folds, or nearly folds: it is not proven to be locally "
+                "injective. Start from another map."
             )
         limits = self._limits_for(harmonic_map, certificate)
         return State(

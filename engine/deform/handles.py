@@ -35,13 +35,13 @@ OTHER_ROTATIONS = (
     "remove one of the handles."
 )
 TARGET_FAR = (
-    "Handle {handle} is wanted at ({x:.3g}, {y:.3g}), more than {farthest:.0e} times the size of "
-    "the shape away; give it a target near the shape."
+    "The target of handle {handle}, ({x:.3g}, {y:.3g}), is farther from the shape than "
+    "{farthest:.0e} times the shape's size. Move the target near the shape."
 )
 WEIGHT_NOT_POSITIVE = "The weight of handle {handle} must be positive, not {weight:g}."
 MOST_CAGE = (
-    "The cages have {count} vertices, and more than {most} would take minutes to come to rest; "
-    "choose a coarser cage."
+    "The cages have {count} vertices. A drag with more than {most} would take minutes; choose a "
+    "coarser cage."
 )
 
 
@@ -220,8 +220,8 @@ class Handles:
         angles = as_reals(rotations, "rotations")
         if angles.shape != targets.shape or np.isinf(angles).any():
             raise EngineError(
-                "Rotations must be {count} finite angles, or NaN where a handle may turn "
-                "freely; got {shape} {angles}.",
+                "Rotations must be {count} finite angles, or NaN for a handle that may rotate "
+                "freely, not {shape} {angles}.",
                 count=len(targets),
                 shape=angles.shape,
                 angles=angles,
@@ -240,8 +240,7 @@ def require_held(points: npt.ArrayLike, domain: Domain) -> Complexes:
     points = as_points(points, "handles")
     if len(points) > MOST_HANDLES:
         raise EngineError(
-            "{count:,} handles are too many, as their memory grows with their square; give "
-            "at most {most:,}.",
+            "{count:,} handles need too much memory; give at most {most:,}.",
             count=len(points),
             most=MOST_HANDLES,
         )
@@ -258,7 +257,9 @@ def _weights(weights: npt.ArrayLike | None, count: int) -> Floats:
     factors = np.ones(count) if weights is None else as_reals(weights, "weights")
     if factors.shape != (count,):
         raise EngineError(
-            "{count} handles need as many weights, not {shape}.", count=count, shape=factors.shape
+            "{count} handles need {count} weights, not an array of shape {shape}.",
+            count=count,
+            shape=factors.shape,
         )
     if not (np.isfinite(factors) & (factors > 0)).all():
         bad = int(np.flatnonzero(~(np.isfinite(factors) & (factors > 0)))[0])

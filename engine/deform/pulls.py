@@ -21,10 +21,15 @@ from engine.errors import EngineError
 # Largest force of a pull, per L. An arm needs 1 to 2 to straighten to its limits. Measured on 18
 # pulls within reach: none is lost with 10, three are with 5.
 MAX_PULL_FORCE = 10.0
-FORCE_NOT_POSITIVE = "A hand must pull with a positive force, not {pull:g}."
-CONSTRAINT_ENDS = "A link between handles {first} and {second} is none."
-CONSTRAINT_LENGTHS = "A link cannot be from {shortest:g} to {longest:g} long."
-PULL_HANDLES = "A hand pulls at handles {handles} of {count}."
+FORCE_NOT_POSITIVE = "The force of a pull must be positive, not {pull:g}."
+CONSTRAINT_ENDS = (
+    "A distance cannot be kept between handles {first} and {second}; name two different handles "
+    "that exist."
+)
+CONSTRAINT_LENGTHS = (
+    "The distance between two handles cannot be limited to {shortest:g} to {longest:g}."
+)
+PULL_HANDLES = "A pull names handles {handles}, but there are only {count} handles."
 
 
 class BoundedPull(NamedTuple):
@@ -77,14 +82,14 @@ class BoundedPulls(NamedTuple):
             if not pull > 0:
                 raise EngineError(FORCE_NOT_POSITIVE, pull=pull)
             if len(handles) == 0:
-                raise EngineError("A hand pulls at nothing; leave it out.")
+                raise EngineError("A pull names no handle; leave the pull out.")
             if not all(handle in range(len(stiffness)) for handle in handles):
                 raise EngineError(PULL_HANDLES, handles=list(handles), count=len(stiffness))
             weights[number, list(handles)] = stiffness[list(handles)]
         twice = np.flatnonzero(np.count_nonzero(weights, axis=0) > 1)
         if len(twice):
             raise EngineError(
-                "Two hands pull at handle {handle}; let one of them do it.", handle=twice[0]
+                "Two pulls name handle {handle}; name it in one pull only.", handle=twice[0]
             )
         totals = weights.sum(axis=1)
         forces = np.array([hand.max_force for hand in hands]) / size

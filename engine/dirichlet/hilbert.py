@@ -44,10 +44,10 @@ from engine.geometry import (
 )
 
 OUTSIDE = (
-    "{count} of the points lie outside the domain, the first of them {distance:.3g} from its "
-    "boundary; leave them out."
+    "{count} of the points lie outside the domain, the first {distance:.3g} from its boundary. "
+    "Leave them out."
 )
-PARTS_SHAPE = "Real parts must be of shape ({count}, j), one row for each node, not {shape}."
+PARTS_SHAPE = "Real parts must have the shape ({count}, j), one row for each node, not {shape}."
 EDGE_DEPTH, CORNER_DEPTH = 1e-9, 1e-13  # of points on the outline, relative to its size
 
 

@@ -34,8 +34,8 @@ MOST_TRIANGLES = 2_000_000
 LONGEST_EDGE, FEWEST_EDGES = 0.05, 16
 # Size of the cage around a rectangle; any cage serves a picture that is never deformed.
 FRAME = 1.1
-NO_DETAIL = "There is no detail {detail!r}; there are {details}."
-NO_MASK = "A mask is an array of bool of shape (h, w), not {dtype} of shape {shape}."
+NO_DETAIL = "There is no detail {detail!r}; choose one of {details}."
+NO_MASK = "A mask must be a bool array of shape (h, w), not {dtype} of shape {shape}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -31,13 +31,13 @@ NEAREST = 1e-6
 FARTHEST_CLOSED = 0.01
 # Of the outline's area.
 SAME_AREA = 1e-9
-MESH_UNFILLED = "The mesh does not fill the inside of the outline exactly."
-MESH_CORNERS = "The mesh has triangles whose corners are none of its vertices."
+MESH_UNFILLED = "The mesh does not fill the inside of the outline exactly; give a mesh that does."
+MESH_CORNERS = "The mesh has triangles that name vertices which do not exist."
 MESH_FLAT = "The mesh has triangles that are flat or run clockwise."
 MESH_UNUSED = "The mesh has vertices that belong to no triangle."
-MESH_OVERLAPS = "The mesh has edges on which triangles overlap."
+MESH_OVERLAPS = "The mesh has overlapping triangles."
 MESH_SIZE = "The mesh must have 1 to {most:,} triangles, not {count:,}."
-VERTEX_COUNT = "The {name} must have at most {most:,} vertices, not {count:,}."
+VERTEX_COUNT = "The {name} can have at most {most:,} vertices, not {count:,}."
 TOO_FAR = "The {name} lies farther from the origin than {farthest:,.0f} pixels."
 
 
@@ -67,7 +67,9 @@ def require_domain(domain: MeshedDomain) -> None:
     require_around(domain.cage, domain.outline)
     room = distance_to_boundary(domain.outline, np.concatenate(domain.cages), domain.loops[1:])
     if room.min() < NEAREST * diameter(domain.outline):
-        raise EngineError("The cage comes too near the outline; it must keep a distance.")
+        raise EngineError(
+            "The cage comes too close to the outline; move the cage away from the outline."
+        )
     if domain.closed is not None:
         corners = np.concatenate(domain.loops)
         away = np.inf

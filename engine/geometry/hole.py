@@ -53,7 +53,7 @@ def require_cages_in_holes(holes: Sequence[Hole], outline: Complexes) -> None:
         require_simple(hole.cage, f"cage of hole {number}", clockwise=True)
         if not lies_within(hole.cage, hole.outline):
             raise EngineError(
-                "The cage of hole {number} is not inside the hole; it must lie strictly within.",
+                "The cage of hole {number} is not inside the hole; move it strictly inside.",
                 number=number,
             )
         if not contains(hole.cage, np.array([hole.centre])).all():

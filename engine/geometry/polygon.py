@@ -24,14 +24,17 @@ OUTSIDE_OUTLINE = (
 )
 CAGE_ORDER = "The cage does not run once counter-clockwise around the outline; check its order."
 CAGE_TOUCHES = "The cage touches or crosses the outline; the outline must lie strictly inside it."
-CAGE_REPEATS = "The cage repeats a vertex, or nearly; give each vertex once."
-CAGE_FAR = "The cage lies too far from the outline; let it follow the outline."
-HOLE_LEAVES = "Hole {number} leaves the outline, or meets another hole; holes lie apart inside."
+CAGE_REPEATS = "The cage has the same vertex twice, or nearly; give each vertex once."
+CAGE_FAR = "The cage lies too far from the outline; move the cage closer to the outline."
+HOLE_LEAVES = (
+    "Hole {number} leaves the outline, or meets another hole. Keep holes apart and inside the "
+    "outline."
+)
 SELF_TOUCHING = "The {name} crosses or touches itself; it must be a simple polygon."
 FEW_VERTICES = "The {name} needs at least 3 vertices, not {count}."
 FEW_DIGITS = (
-    "The {name} is {size:.3g} large and lies {distance:.3g} from the origin, of which numbers keep "
-    "too few digits; move or scale it."
+    "The {name} is {size:.3g} large and lies {distance:.3g} from the origin, too far for the "
+    "precision of numbers. Move it nearer, or scale it up."
 )
 
 
@@ -107,7 +110,7 @@ def require_simple(polygon: Complexes, name: str, *, clockwise: bool = False) ->
     if len(polygon) < 3:
         raise EngineError(FEW_VERTICES, name=name, count=len(polygon))
     if np.any(edge_vectors(polygon) == 0):
-        raise EngineError("The {name} repeats a vertex; give each vertex once.", name=name)
+        raise EngineError("The {name} has the same vertex twice; give each vertex once.", name=name)
     size = diameter(polygon)
     if not SIZES[0] < size < SIZES[1] or np.abs(polygon).max() > FARTHEST * size:
         raise EngineError(FEW_DIGITS, name=name, size=size, distance=np.abs(polygon).max())
@@ -267,7 +270,7 @@ def sample_graded(
     def is_fine(pieces: Pieces) -> Booleans:
         distance = distance_to_segments(centres, pieces.starts, pieces.ends).min(axis=0)
         if np.any(distance == 0):
-            raise EngineError("A cage vertex lies on the outline; the cage must keep a distance.")
+            raise EngineError("A cage vertex lies on the outline; move it away from the outline.")
         return np.asarray(pieces.lengths <= np.minimum(ratio * distance, longest))
 
     return bisect_segments(Pieces.whole(polygon, np.roll(polygon, -1)), is_fine).starts

@@ -49,7 +49,9 @@ def frame_at(
         As `prepare_inbetweens`, and if the time is not in [0, 1].
     """
     if not 0.0 <= time <= 1.0:
-        raise EngineError("An interval runs from time 0 to 1; {time} is outside.", time=time)
+        raise EngineError(
+            "A segment runs from time 0 to 1, so time {time} is out of range.", time=time
+        )
     if interval.sampled_domain.closer is not None:
         found = prepare_inbetweens(variant, interval)
     else:

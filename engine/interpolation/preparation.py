@@ -23,9 +23,12 @@ from engine.variant import Variant
 
 TWO_KEYFRAMES = "In-betweens need at least two keyframes, not {count}."
 NO_MAP = "Keyframe {number} is a {kind}, not a harmonic map."
-OTHER_CAGE = "Keyframe {number} has another cage than keyframe 0; they must share it."
+OTHER_CAGE = (
+    "Keyframe {number} has another cage than keyframe 0; all keyframes must have the same cage."
+)
 OTHER_BOUNDARY = (
-    "The keyframes have another cage than the boundary; sample the boundary of their own domain."
+    "The keyframes have another cage than the boundary samples; sample the boundary of the "
+    "keyframes' own domain."
 )
 TIME_RANGE = "Time {time} is out of range: the keyframes span the times from 0 to {last}."
 
@@ -178,7 +181,7 @@ def _known(variant: Variant | str) -> Variant:
     except ValueError:
         names = ", ".join(Variant)
         raise EngineError(
-            "There is no variant {variant!r}; there are {names}.", variant=variant, names=names
+            "There is no variant {variant!r}; choose one of {names}.", variant=variant, names=names
         ) from None
 
 

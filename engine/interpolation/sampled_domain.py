@@ -25,18 +25,19 @@ from engine.paths import (
 )
 
 ONE_ANCHOR = (
-    "One anchor is needed, not {count}: its pose fixes the in-betweens, and a second could not be "
-    "met. Leave it out, and the engine chooses one."
+    "The in-betweens need exactly one anchor, not {count}. Leave the anchor out, and the engine "
+    "chooses one."
 )
 OTHER_OUTLINE = (
-    "The Hilbert transform is of another outline, of {others} vertices, than the points', of "
-    "{own}; build it anew for this one."
+    "The Hilbert transform is for an outline of {others} vertices, but the points have an "
+    "outline of {own}. Build the transform again for this outline."
 )
 NO_SAMPLES = (
-    "A proof needs the samples of the boundary: as the first points, or as the last value points."
+    "A proof needs the boundary samples, either as the first points or as the last value points."
 )
 VALUES_OR_TRIANGLES = (
-    "Values alone are wanted at points beside those of triangles; prepare sites of their own."
+    "The domain has triangles, so it cannot also have points for values alone; prepare separate "
+    "sites for those points."
 )
 
 

@@ -10,8 +10,8 @@ from engine.errors import EngineError
 from engine.geometry import next_on_loop
 from engine.maps.boundary import Boundary
 
-IMPOSSIBLE_SIGMA_A = "The bound on sigma_a must be a finite number above 1, not {value:g}."
-IMPOSSIBLE_BOUND = "The bound on {name} must be between 0 and 1, not {value:g}."
+IMPOSSIBLE_SIGMA_A = "The limit of sigma_a must be a finite number above 1, not {value:g}."
+IMPOSSIBLE_BOUND = "The limit of {name} must be between 0 and 1, not {value:g}."
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -145,9 +145,7 @@ def _offsets(cage: Complexes, points: Complexes) -> tuple[Floats, Floats, Floats
     y = cage.imag - points.imag[:, None]
     squared = x * x + y * y
     if squared.size and squared.min() == 0.0:
-        raise EngineError(
-            "A point lies on a vertex of the cage; points must be strictly inside it."
-        )
+        raise EngineError("A point lies on a vertex of the cage; move the point inside the cage.")
     return x, y, squared
 
 

@@ -44,7 +44,10 @@ MOST_BISECTED = 20_000
 # Fewer segments, counted with the functions of the span, are cut into four at once: that costs less
 # than another round.
 FEW = 4096
-OTHER_SPAN = "The map is over another cage than the outline's samples."
+OTHER_SPAN = (
+    "The map and the samples of the outline have different cages; use samples of the map's own "
+    "cage."
+)
 # Relative error of F and G themselves, from rounding; generous.
 ROUNDING = 1e-11
 

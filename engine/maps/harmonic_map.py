@@ -12,9 +12,9 @@ from engine.errors import EngineError
 from engine.geometry import Hole
 from engine.maps.span import Span
 
-NO_MAPS = "There is no map to take the derivatives of; give one at least."
+NO_MAPS = "There is no map to differentiate; give at least one."
 COEFFICIENT_COUNT = (
-    "A map over a cage of {count} vertices needs as many coefficients, not {phi} phi and {psi} psi."
+    "A map over a cage of {count} vertices needs {count} coefficients, not {phi} phi and {psi} psi."
 )
 
 
@@ -59,7 +59,7 @@ class HarmonicMap:
             raise EngineError(COEFFICIENT_COUNT, count=count, phi=len(self.phi), psi=len(self.psi))
         if len(self.logs) != len(self.holes):
             raise EngineError(
-                "A map around holes needs a logarithm for each of the {count}, not {given}.",
+                "A map needs one logarithm for each of the {count} holes, not {given}.",
                 count=len(self.holes),
                 given=len(self.logs),
             )

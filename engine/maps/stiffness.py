@@ -18,12 +18,12 @@ SOFTEST, STIFFEST = 1 / 30, 100.0
 # Tolerance for rounding at the ends of the range.
 ROUNDING = 1e-9
 STIFFNESS_RANGE = (
-    "stiffness must be from 1/30 to {stiffest:g}, and is {value:g} at vertex {vertex}; 1 is the "
-    "usual one."
+    "stiffness must be from 1/30 to {stiffest:g}, not {value:g} as at vertex {vertex}; 1 is the "
+    "default."
 )
 STIFFNESS_SHAPE = (
-    "stiffness must be one number for each of the {count} vertices of the outline and of the "
-    "holes' outlines, not of shape {shape}, {dtype}."
+    "stiffness must be one number for each of the {count} vertices of the outline and the "
+    "holes' outlines, not an array of shape {shape}, {dtype}."
 )
 
 

@@ -13,7 +13,8 @@ MOST_TURNS = 1_000_000  # in all at the anchor; with more an angle has less than
 LARGEST_TURN = 1.0  # radians that f_z may turn along a step without a subdivision
 MOST_BISECTIONS = 12
 TURN_COUNT = (
-    "The turns between {keyframes} keyframes are {count} integers, not {dtype} of shape {shape}."
+    "The turns between {keyframes} keyframes must be {count} integers, not {dtype} of shape "
+    "{shape}."
 )
 
 
@@ -90,7 +91,7 @@ def root_sheets(anchor_fz: Complexes, turns: npt.ArrayLike | None = None) -> Int
     sheets = np.cumsum(np.round((shorter - np.diff(principal)) / (2 * np.pi)) + extra)
     if np.abs(sheets).max(initial=0.0) > MOST_TURNS:
         raise EngineError(
-            "The keyframes make more than {most:,} turns; give smaller turns.", most=MOST_TURNS
+            "The keyframes make more than {most:,} whole turns; give fewer turns.", most=MOST_TURNS
         )
     return freeze(np.concatenate([[0], sheets]).astype(np.int32))
 
@@ -117,7 +118,8 @@ def _turns_along(
             return turns
         pieces *= 2
     raise EngineError(
-        "f_z vanishes, or nearly so, close to ({x:.6g}, {y:.6g}); the keyframe folds there.",
+        "f_z vanishes, or nearly vanishes, close to ({x:.6g}, {y:.6g}); the keyframe folds there. "
+        "Pose it again without folds.",
         x=starts[todo[0]].real,
         y=starts[todo[0]].imag,
     )

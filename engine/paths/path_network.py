@@ -48,7 +48,7 @@ EDGE_LEAVES = (
     "of the inside only, or none."
 )
 ANCHOR_UNREACHED = (
-    "No point of the mesh near the anchor {anchor:.6g} can be reached straight; choose an anchor "
+    "No point of the mesh has a straight path to the anchor {anchor:.6g}; choose an anchor "
     "inside the triangles."
 )
 
@@ -104,7 +104,9 @@ def mesh_network(
         the rest by triangles. Also if the anchor has no straight path to a vertex near it.
     """
     if not len(triangles):
-        raise EngineError("There are no triangles; leave them out and the engine finds its paths.")
+        raise EngineError(
+            "There are no triangles. Leave the triangles out, and the engine finds its own paths."
+        )
     if triangles.min(initial=0) < 0 or triangles.max(initial=0) >= len(vertices):
         raise EngineError(
             MESH_POINTS, smallest=triangles.min(), largest=triangles.max(), last=len(vertices) - 1
@@ -128,8 +130,8 @@ def mesh_network(
     reached = shortest_parents(along + against, int(seen[0]))
     if np.any(reached < 0):
         raise EngineError(
-            "Point {point} is not joined to the anchor by triangles; leave the triangles "
-            "out and the engine finds its own paths.",
+            "No triangles connect point {point} to the anchor. Leave the triangles out, and the "
+            "engine finds its own paths.",
             point=np.flatnonzero(reached < 0)[0],
         )
     nodes, parents = np.concatenate([anchor, vertices]), np.concatenate([[0], reached + 1])
@@ -218,7 +220,9 @@ def with_loops(
                 break
         else:
             raise EngineError(
-                "No point near hole {number} sees it; give more points around it.", number=number
+                "No point of the mesh near hole {number} has a straight path to the hole; give "
+                "more points around the hole.",
+                number=number,
             )
         order = first + np.roll(np.arange(len(along)), -begin)
         own = np.empty(len(along), dtype=np.intp)

@@ -16,7 +16,7 @@ from engine.errors import EngineError
 # Shares of the tolerance: for the basis, for the linear weights between times, and for the targets
 # left out. Times cost little, targets much.
 OF_BASIS, OF_TIME, OF_RANK = 0.02, 0.1, 0.85
-NO_TIMES = "times must be finite numbers, one at least, not {times}."
+NO_TIMES = "times must be finite numbers, at least one, not {times}."
 TIMES_FALL = "times must increase from one to the next."
 BLOCK = 256  # moments that are evaluated at once
 SHORTEST = 2.0**-6  # duration of a jump of the motion, in which no tolerance is kept

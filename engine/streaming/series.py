@@ -80,11 +80,13 @@ class Series:
         """
         time = as_number(time, "time")
         if not 0.0 <= time <= 1.0:
-            raise EngineError("A series runs from time 0 to 1; {time} is outside.", time=time)
+            raise EngineError(
+                "A series runs from time 0 to 1, so time {time} is out of range.", time=time
+            )
         piece = self._piece_at(time)
         if piece is None:
             raise EngineError(
-                "The series does not cover the time {time}; take the direct path.", time=time
+                "The series does not cover time {time}; solve this time directly.", time=time
             )
         return piece, piece.weights(time)
 

@@ -90,7 +90,7 @@ def test_a_handle_or_anchor_in_a_hole_is_refused():
     with pytest.raises(LissomError, match="lies outside the shape"):
         replace(layer, handles=(replace(layer.handles[0], position=MIDDLE + 3),))
     pose = replace(layer.keys[0].pose, logs=np.empty(0))
-    with pytest.raises(LissomError, match="is around 0 holes, not 1"):
+    with pytest.raises(LissomError, match="has 0 holes, but the layer has 1"):
         replace(layer, keys=(Keyframe(frame=0, pose=pose),))
 
 

@@ -111,7 +111,7 @@ def _full_export(rng: np.random.Generator, folder: Path) -> None:
         partial(export_friend, folder, name, "#ff0000"),
         partial(_limit_files, int(rng.integers(0, 2500))),
     )
-    expect("make room" in words, words)
+    expect("free some space" in words, words)
     expect(words.count("\n") == 1, words)
     expect(_contents(folder) == {}, "something is left of an export")
 
@@ -175,7 +175,7 @@ def refused_places(_: np.random.Generator, __: int) -> dict[str, float]:
         save = partial(save_project, path, numbered(document, 2))
 
         path.chmod(0o444)
-        _expect_words(save, "it may only be read")
+        _expect_words(save, "the file is read-only")
         path.chmod(0o666)
 
         def lose() -> None:
@@ -202,9 +202,11 @@ def refused_places(_: np.random.Generator, __: int) -> dict[str, float]:
         (settings / "unsaved-1.lissom").write_bytes(before)
         (settings / "unsaved-2.lissom").write_bytes(before)
         (settings / "unsaved-2.lissom").chmod(0)
-        _expect_words(keep, "may not be written to")
-        _expect_words(partial(make_settings_folder, settings), "may not be written to")
-        _expect_words(partial(save_preferences, settings, Preferences()), "may not be written to")
+        _expect_words(keep, "no permission to write to")
+        _expect_words(partial(make_settings_folder, settings), "no permission to write to")
+        _expect_words(
+            partial(save_preferences, settings, Preferences()), "no permission to write to"
+        )
 
         def look() -> None:
             expect(len(find_recoverable_files(settings)) == 2, "unsaved work is not offered")
@@ -219,7 +221,7 @@ def refused_places(_: np.random.Generator, __: int) -> dict[str, float]:
         settings.chmod(0o755)
 
         folder.chmod(0o555)
-        _expect_words(save, "may not be written to; choose another one")
+        _expect_words(save, "choose another folder")
         expect(path.read_bytes() == before, "what may not be written to was written to")
 
         def without_home() -> None:

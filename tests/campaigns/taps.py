@@ -60,7 +60,7 @@ def campaign(seed: int, amount: int) -> Iterator[tuple[str, dict[str, float]]]:
         for busy in (0, 2 * (os.cpu_count() or 1)):
             where = f"{name}, {busy} others at work"
             yield where, tapped(rng, amount, pace=pace, busy=busy)
-    yield "3 pictures a second", tapped(rng, amount // 4, pace=(0.1, 0.5), rest=1 / 3)
+    yield "3 frames per second", tapped(rng, amount // 4, pace=(0.1, 0.5), rest=1 / 3)
 
 
 def tapped(

@@ -241,7 +241,7 @@ def _end_in_order(
             seconds = time.monotonic() - begun
         last = int((first + told).split()[-1])
         expect(window.process.returncode == status, f"{window.process.returncode}: {said}")
-        expect("your unsaved work was kept" in said, said)
+        expect("your unsaved work was backed up" in said, said)
         expect("Traceback" not in said, said)
         expect(seconds < MOST_SECONDS, f"it takes {seconds} s to end")
         (kept,) = find_recoverable_files(home / "lissom")

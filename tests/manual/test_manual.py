@@ -206,7 +206,7 @@ def test_the_command_does_not_copy_it_onto_itself(capsys):
     with pytest.raises(SystemExit) as left:
         main(["manual", "--out", str(build.SITE)])
     assert left.value.code == 2
-    assert "from which it is made" in capsys.readouterr().err
+    assert "the file that it is made from" in capsys.readouterr().err
 
 
 def test_a_page_that_is_missing_is_told(monkeypatch, tmp_path):

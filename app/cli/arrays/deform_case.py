@@ -89,9 +89,9 @@ def _rows(case: Mapping[str, npt.NDArray[Any]], count: int) -> list[npt.NDArray[
     path = case.get("path", np.empty((0, count)))
     if path.ndim != 2 or path.shape[1] != count:
         raise LissomError(
-            _("path must have one column for each of {count} handles; its shape is {shape}").format(
-                count=count, shape=path.shape
-            )
+            _(
+                "path must have one column for each of {count} handles, not the shape {shape}"
+            ).format(count=count, shape=path.shape)
         )
     return [*path, case["targets"]]
 
@@ -120,7 +120,7 @@ def _pulls(case: Mapping[str, npt.NDArray[Any]], points: Complexes) -> list[Boun
 def _start(case: Mapping[str, npt.NDArray[Any]], boundary: Boundary) -> HarmonicMap | None:
     """Return the map to start from, or None for the identity."""
     if ("phi" in case) != ("psi" in case):
-        raise LissomError(_("the map to start from needs both phi and psi"))
+        raise LissomError(_("the start map needs both phi and psi"))
     if "phi" not in case:
         return None
     return HarmonicMap(

@@ -18,7 +18,7 @@ HOLE_ARRAYS = (
     "hole_cage_sizes",
     "hole_centres",
 )
-HOLES_LACK = N_("the holes lack the array {name}; write the domain again")
+HOLES_LACK = N_("the array {name} of the holes is missing; write the domain again")
 HOLE_SIZES = N_("{sizes} must be whole numbers that add up to the {count} vertices of {name}")
 
 

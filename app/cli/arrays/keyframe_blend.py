@@ -16,7 +16,7 @@ from engine.interpolation import Variant, prepare
 from engine.maps import Boundary, Bounds
 
 UNFINISHED = 1e-8  # angle defect, in radians, from which on a notice is printed
-NO_PRINCIPAL = N_("--principal is for arap and mesh-eta; leave it out")
+NO_PRINCIPAL = N_("--principal applies only to arap and mesh-eta; leave it out")
 
 
 class BlendOptions(NamedTuple):
@@ -57,7 +57,7 @@ def blend_keyframes(given: Keyframes, options: BlendOptions) -> dict[str, npt.ND
 def _harmonic(given: Keyframes, options: BlendOptions) -> dict[str, npt.NDArray[Any]]:
     """Interpolate by one of the paper's variants."""
     if options.bounds and not options.through:
-        raise LissomError(_("--bounds are limits for --through; add --through as well"))
+        raise LissomError(_("--bounds applies only with --through; add --through as well"))
     if options.principal:
         raise LissomError(_(NO_PRINCIPAL))
     outline = given.outline
@@ -65,8 +65,8 @@ def _harmonic(given: Keyframes, options: BlendOptions) -> dict[str, npt.NDArray[
         meshes = ", ".join(each for each in Baseline if not each.needs_maps)
         raise LissomError(
             _(
-                "{variant} needs keyframes that are harmonic maps, and these are poses of a mesh; "
-                "choose one of {methods}"
+                "{variant} needs keyframes that are harmonic maps, not poses of a mesh; choose "
+                "one of {methods}"
             ).format(variant=options.variant, methods=meshes)
         )
     prepared = prepare(
@@ -101,19 +101,24 @@ def _compared(given: Keyframes, options: BlendOptions) -> dict[str, npt.NDArray[
     baseline = Baseline(options.variant)
     if given.triangles is None:
         raise LissomError(
-            _("{method} needs the array 'triangles', of the points").format(method=baseline)
+            _("{method} needs the array 'triangles': the triangles of the points").format(
+                method=baseline
+            )
         )
     if options.through:
         raise LissomError(
-            _("{method} cannot pass through keyframes; leave --through out").format(method=baseline)
+            _("{method} cannot pass through keyframes; leave out --through").format(method=baseline)
         )
     if options.bounds and baseline is not Baseline.HANDLES:
-        raise LissomError(_("{method} keeps no limits; leave --bounds out").format(method=baseline))
+        raise LissomError(_("{method} keeps no limits; leave out --bounds").format(method=baseline))
     if options.principal and not baseline.unwraps:
         raise LissomError(_(NO_PRINCIPAL))
     if baseline is Baseline.HANDLES and given.handles is None:
         raise LissomError(
-            _("handles needs the array 'handles', the points that go straight from key to key")
+            _(
+                "the method handles needs the array 'handles': the points that go straight from "
+                "key to key"
+            )
         )
     prepared = prepare_baseline(
         baseline,
@@ -141,8 +146,8 @@ def _compared(given: Keyframes, options: BlendOptions) -> dict[str, npt.NDArray[
     defect = max(results.get("angle_defect", np.zeros(1)))
     if defect > UNFINISHED:
         print_notice(
-            _("a mesh could not be flattened; angles of {defect:.2g} radians remain").format(
-                defect=defect
-            )
+            _(
+                "the mesh could not be flattened; angle errors of up to {defect:.2g} radians remain"
+            ).format(defect=defect)
         )
     return results

@@ -21,8 +21,8 @@ from engine.maps import HarmonicMap
 OPTIONAL = ("anchor", "triangles", "turns", "handles")
 NEAR = 1e-4  # error of harmonic coordinates, over the size, up to which no notice is printed
 COEFFICIENT_SHAPE = N_(
-    "phi and psi must both be of shape (keyframes, cage vertices); their shapes are {phi} and "
-    "{psi}, and the cages have {count} vertices"
+    "phi and psi must both have the shape (keyframes, cage vertices). Their shapes are {phi} "
+    "and {psi}, but the cages have {count} vertices"
 )
 
 
@@ -67,7 +67,9 @@ def read_keyframes(paths: list[Path]) -> Keyframes:
     (path,) = paths
     if path.suffix.lower() == ".obj":
         raise LissomError(
-            _("{path} is one pose; name the meshes of all keyframes, in order").format(path=path)
+            _("{path} is only one keyframe; name the meshes of all keyframes, in order").format(
+                path=path
+            )
         )
     names = read_arrays(path, required=(), optional=("phi", "boundary", "positions"))
     if "phi" not in names and "boundary" in names:
@@ -90,7 +92,7 @@ def _from_coefficients(path: Path) -> Keyframes:
     logs = data.get("logs", np.zeros((len(phi), len(holes))))
     if logs.shape != (len(phi), len(holes)):
         raise LissomError(
-            _("logs must be of shape (keyframes, holes), {wanted}, not {shape}").format(
+            _("logs must have the shape (keyframes, holes), {wanted}, not {shape}").format(
                 wanted=(len(phi), len(holes)), shape=logs.shape
             )
         )
@@ -109,14 +111,14 @@ def _from_boundary(path: Path) -> Keyframes:
     )
     if read_holes(data):
         raise LissomError(
-            _("the array 'boundary' is for domains without holes; give phi and psi instead")
+            _("the array 'boundary' works only without holes; give phi and psi instead")
         )
     boundary = data["boundary"]
     if boundary.ndim != 2 or not len(boundary):
         raise LissomError(
-            _("boundary must be of shape (keyframes, vertices of the outline), not {shape}").format(
-                shape=boundary.shape
-            )
+            _(
+                "boundary must have the shape (keyframes, vertices of the outline), not {shape}"
+            ).format(shape=boundary.shape)
         )
     maps, error = harmonic_coordinate_maps(data["outline"], data["cage"], list(boundary))
     if error > NEAR:
@@ -133,7 +135,7 @@ def _from_poses(path: Path) -> Keyframes:
     poses = data["positions"]
     if poses.ndim != 2 or not len(poses):
         raise LissomError(
-            _("positions must be of shape (keyframes, points), not {shape}").format(
+            _("positions must have the shape (keyframes, points), not {shape}").format(
                 shape=poses.shape
             )
         )

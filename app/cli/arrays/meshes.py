@@ -15,7 +15,7 @@ from engine.arrays import Complexes, Integers
 
 LARGEST = 64 * 1024 * 1024  # bytes; the size of a mesh of a million triangles
 FLAT = 1e-9  # spread of z, over that of x and y, up to which a mesh is plane
-NO_VERTEX = N_("a face of {path} names vertex {number}, and there are only {count}")
+NO_VERTEX = N_("a face of {path} names vertex {number}, but there are only {count}")
 
 
 class PlaneMesh(NamedTuple):
@@ -49,8 +49,9 @@ def read_mesh_keyframes(
         if not np.array_equal(mesh.triangles, first):
             raise LissomError(
                 _(
-                    "{path} has other triangles ({count}) than {first} ({first_count}); keyframes "
-                    "must be poses of one mesh, with the same vertices in the same order"
+                    "{path} has other triangles ({count}) than {first} ({first_count}). "
+                    "Keyframes must be poses of one mesh, with the same vertices in the same "
+                    "order"
                 ).format(
                     path=path,
                     count=len(mesh.triangles),
@@ -94,8 +95,8 @@ def _parsed(text: str, path: Path) -> PlaneMesh:
     if np.ptp(deep) > FLAT * max(np.ptp(across), np.ptp(up)):
         raise LissomError(
             _(
-                "{path} is not plane; z goes from {least:g} to {most:g}. Turn the mesh into the "
-                "plane of x and y"
+                "{path} is not flat: z goes from {least:g} to {most:g}. Rotate the mesh into "
+                "the plane of x and y"
             ).format(path=path, least=deep.min(), most=deep.max())
         )
     return PlaneMesh(across + 1j * up, triangles.astype(np.int32))

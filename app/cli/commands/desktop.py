@@ -109,12 +109,10 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         if arguments.install:
             _install(home)
-            text = _(
-                "Lissom is in the menu of applications, and .lissom files open with it ({folder})."
-            )
+            text = _("Lissom is in the applications menu, and opens .lissom files ({folder}).")
         else:
             _remove(home)
-            text = _("Everything of Lissom is removed from {folder}.")
+            text = _("Lissom is removed from the applications menu ({folder}).")
     except OSError as error:
         raise LissomError(
             _("cannot change {path}: {reason}").format(path=error.filename, reason=error.strerror)

@@ -31,5 +31,5 @@ def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001
     if any(check.works for check in rendering):
         print_line(_("Lissom can render here."))
         return 0
-    print_line(_("Lissom cannot render here. Install one of the drivers that are named above."))
+    print_line(_("Lissom cannot render here. Install one of the drivers named above."))
     return 1

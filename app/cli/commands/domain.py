@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--layer",
         metavar="NAME",
-        help=_("a layer of the drawing; by default the command lists the layers"),
+        help=_("the layer of the drawing to use; without this option the command lists the layers"),
     )
     add_meshing_options(parser)
     add_cut_out_options(parser)
@@ -72,8 +72,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help=_(
-            "separate parts that touch, along a line from outside to a place inside, in pixels of "
-            "the picture from its upper left corner, y down; may be given several times"
+            "separate touching parts along a line, from outside to a point inside. Points are "
+            "pixels from the picture's upper left corner, y down; may be given several times"
         ),
     )
     parser.add_argument(
@@ -156,7 +156,7 @@ def _line(text: str) -> tuple[complex, ...]:
         numbers = []
     if len(numbers) < 4 or len(numbers) % 2 or not all(map(isfinite, numbers)):
         raise argparse.ArgumentTypeError(
-            _("expected x,y,x,y,... of at least two places in pixels, not {text!r}").format(
+            _("expected x,y,x,y,... for at least two points in pixels, not {text!r}").format(
                 text=text
             )
         )

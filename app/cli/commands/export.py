@@ -16,7 +16,7 @@ from app.texts import N_, _
 if TYPE_CHECKING:
     from app.document import ExportSettings
 
-NO_USE = N_("{name} has no use for --{flag}; leave it out")
+NO_USE = N_("{name} does not use --{flag}; leave it out")
 
 COLUMN = max(map(len, EXPORT_FORMATS)) + 4
 FORMATS = "\n".join(
@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_out(
         parser,
         "DIR_OR_FILE",
-        _("a folder for PNG frames, a file for every other format"),
+        _("a folder for PNG frames, or a file for every other format"),
         place=output,
     )
     either = parser.add_mutually_exclusive_group()
@@ -70,13 +70,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--frame",
         metavar="N",
         type=int,
-        help=_("one frame; with a name that ends in .png, one picture"),
+        help=_("render only this frame; with a name that ends in .png, as one picture"),
     )
     parser.add_argument(
         "--fps", metavar="F", type=float, help=_("frames per second (default: the project's)")
     )
     parser.add_argument(
-        "--size", metavar="WxH", type=_size, help=_("in pixels (default: as the framing needs)")
+        "--size",
+        metavar="WxH",
+        type=_size,
+        help=_("the size of a frame in pixels (default: from the framing)"),
     )
     parser.add_argument(
         "--background", metavar="COLOUR", help=_("transparent, or a colour such as #fff or #ffffff")
@@ -84,14 +87,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--framing",
         choices=FRAMINGS,
-        help=_("the canvas, or all of the motion; with a camera both are its view"),
+        help=_("show the canvas, or fit all of the motion; with a camera both show its view"),
     )
     parser.add_argument(
         "--names",
         metavar="PATTERN",
         help=_(
-            'names of PNG frames, such as "{name}_####": "#" for each digit of the frame, {name} '
-            "for the project's name, which --out may contain too (default: the project's names, "
+            'names of PNG frames, such as "{name}_####". "#" is a digit of the frame; {name} is '
+            "the project's name, which --out may contain too (default: the project's names, "
             "frame_####)"
         ),
     )
@@ -194,7 +197,7 @@ def _format_of(out: Path, own: "ExportSettings", *, is_one: bool) -> str | None:
     if suffix not in every:
         raise LissomError(
             _(
-                "no format has names that end in {suffix}; choose one of {suffixes}, or add "
+                "no format has the file name ending {suffix}; choose one of {suffixes}, or add "
                 "--format"
             ).format(suffix=out.suffix, suffixes=", ".join(every))
         )
@@ -206,8 +209,8 @@ def _format_of(out: Path, own: "ExportSettings", *, is_one: bool) -> str | None:
     several = [name for name, format_ in EXPORT_FORMATS.items() if suffix in format_.suffixes]
     raise LissomError(
         _(
-            "{path} may be in several formats ({formats}); add --format, or --frame N for the "
-            "picture of a frame"
+            "the name {path} fits several formats ({formats}); add --format, or --frame N for a "
+            "picture of one frame"
         ).format(path=out, formats=", ".join(several))
     )
 

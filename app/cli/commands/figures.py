@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=int,
         choices=FIGURES,
         action="append",
-        help=_("make this figure, of {numbers}; may be given several times").format(
+        help=_("make only this figure, one of {numbers}; may be given several times").format(
             numbers=", ".join(map(str, FIGURES))
         ),
     )

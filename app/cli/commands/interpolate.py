@@ -79,7 +79,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="KEYFRAMES",
         nargs="+",
         type=input_file,
-        help=_("an NPZ file with domain, keyframes and points, or a mesh for each keyframe"),
+        help=_("an NPZ file with domain, keyframes and points, or one mesh file for each keyframe"),
     )
     parser.add_argument(
         "--variant",
@@ -93,32 +93,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         metavar="T,T,...",
         type=_numbers,
-        help=_("in [0, q - 1], with --loop in [0, q], in any order, separated by commas"),
+        help=_("times from 0 to q - 1, with --loop from 0 to q, in any order, separated by commas"),
     )
     parser.add_argument(
         "--through",
         action="store_true",
-        help=_("go through keyframes at one velocity, within limits, instead of in a corner"),
+        help=_(
+            "pass through keyframes at a continuous velocity, within limits, instead of in a corner"
+        ),
     )
     parser.add_argument(
         "--loop",
         action="store_true",
-        help=_("the last keyframe leads to the first keyframe, at time q"),
+        help=_("let the last keyframe lead back to the first keyframe, at time q"),
     )
     parser.add_argument(
         "--bounds",
         metavar="K,SA,SB",
         type=_bounds,
         help=_(
-            "limits for --through and handles: the largest k and sigma_a and the smallest sigma_b "
-            "(default: those of a new project)"
+            "limits for --through and the method handles: the largest k and sigma_a and the "
+            "smallest sigma_b (default: as in a new project)"
         ),
     )
     parser.add_argument(
         "--principal",
         action="store_true",
         help=_(
-            "with arap and mesh-eta: the angle of each triangle by itself is between -180 and 180 "
+            "with arap and mesh-eta: keep the angle of each triangle between -180 and 180 "
             "degrees, which fails if shapes turn far"
         ),
     )

@@ -59,57 +59,63 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "picture", metavar="DRAWING", type=input_file, nargs="?", help=_("the drawing")
     )
     parser.add_argument(
-        "--list", action="store_true", help=_("list the motion presets, with their kinds of bodies")
+        "--list",
+        action="store_true",
+        help=_("list the motion presets, with the kinds of body that they fit"),
     )
     parser.add_argument("--motion", metavar="NAME", help=_("the motion preset to apply"))
     parser.add_argument(
-        "--out", metavar="PROJECT.lissom", type=output_file, help=_("where to write")
+        "--out", metavar="PROJECT.lissom", type=output_file, help=_("the file to write")
     )
     parser.add_argument("--kind", metavar="KIND", help=_("the kind of body"))
     parser.add_argument(
         "--joints", metavar="JOINTS.json", type=input_file, help=_("the joints of the drawing")
     )
     parser.add_argument(
-        "--facing", choices=("left", "right"), help=_("where it looks (default: guessed)")
+        "--facing",
+        choices=("left", "right"),
+        help=_("the side that the drawing faces (default: guessed)"),
     )
     parser.add_argument(
         "--speed",
         metavar="X",
         type=float,
         default=1.0,
-        help=_("factor of the usual speed, 0.1 to 4"),
+        help=_("speed of the motion, 0.1 to 4 (1 is usual)"),
     )
     parser.add_argument(
         "--size",
         metavar="X",
         type=float,
         default=1.0,
-        help=_("factor of the usual swings and steps, 0.05 to 2"),
+        help=_("size of swings and steps, 0.05 to 2 (1 is usual)"),
     )
     parser.add_argument(
         "--energy",
         metavar="X",
         type=float,
         default=1.0,
-        help=_("factor of the usual bounce and sway of the body, 0 to 2"),
+        help=_("amount of bounce and sway of the body, 0 to 2 (1 is usual)"),
     )
     parser.add_argument(
-        "--mirrored", action="store_true", help=_("the other side begins, or moves alone")
+        "--mirrored", action="store_true", help=_("let the other side begin, or move alone")
     )
     parser.add_argument(
         "--start",
         metavar="X",
         type=float,
         default=0.0,
-        help=_("the share of its cycle at which it begins, from 0 to below 1"),
+        help=_("where in its cycle the motion starts, from 0 to below 1"),
     )
     parser.add_argument(
         "--travel",
         action="store_true",
-        help=_("advance by one stride, with feet planted in the picture; it does not loop"),
+        help=_(
+            "advance by one stride, with feet planted in the picture; the motion then does not loop"
+        ),
     )
     parser.add_argument(
-        "--bones", action="store_true", help=_("add a bone to each limb, which keeps it stiff")
+        "--bones", action="store_true", help=_("add a bone to each limb, to keep it stiff")
     )
     add_meshing_options(parser)
     add_cut_out_options(parser)
@@ -190,7 +196,7 @@ def _read_joints(arguments: argparse.Namespace) -> "JointsFile":
         return given
     find_kind(arguments.kind)
     if given.kind not in (None, arguments.kind):
-        text = _("--kind is {kind!r}, but {path} is of {other!r}")
+        text = _("--kind is {kind!r}, but {path} is for {other!r}; leave --kind out")
         raise LissomError(text.format(kind=arguments.kind, path=arguments.joints, other=given.kind))
     return replace(given, kind=arguments.kind)
 

@@ -24,8 +24,8 @@ SAME_POSE_DISTANCE = 1e-6
 
 Moving = TypeVar("Moving", TransformKey, OpacityKey)
 TWO_POSES_SHOWN = N_(
-    "Frames {first} and {last} show two poses, but a cycle ends with the pose with "
-    "which it begins; give them the same pose, or choose other keys."
+    "A cycle must end with the pose of its start, but frames {first} and {last} show different "
+    "poses. Make the poses equal, or choose other keys."
 )
 
 
@@ -146,8 +146,8 @@ def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
         if first < cycle.first < last:
             raise LissomError(
                 _(
-                    "Frames {first} to {last} cannot repeat, since they contain a cycle, {cycle}; "
-                    "delete that first, or choose other keys."
+                    "Frames {first} to {last} cannot repeat, because they overlap a cycle, "
+                    "{cycle}. Delete that cycle first, or choose other keys."
                 ).format(first=first, last=last, cycle=cycle.description)
             )
     after = [frame for frame in layer.key_frames if frame > last]
@@ -161,8 +161,8 @@ def end_of_cycle(layer: Layer, first: int, last: int) -> int | None:
     if whole == last and not ends:
         raise LissomError(
             _(
-                "There is no room for frames {first} to {last} to repeat before frame {limit}; "
-                "move the keys there further back first."
+                "Frames {first} to {last} have no room to repeat before frame {limit}; move the "
+                "keys there to later frames first."
             ).format(first=first, last=last, limit=limit)
         )
     return whole if whole > last else max(ends)
@@ -247,9 +247,9 @@ def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Tr
     if not is_whole and starts and (track.is_scene_space or any(acts)):
         raise LissomError(
             _(
-                "The track of {handle!r} acts in a part of {cycle} only, so that its repeats "
-                "cannot be keys of one track; let it act from frame {first} to {last}, or begin "
-                "and end at the handle's place in the pose."
+                "The track of {handle!r} covers only a part of {cycle}, so its repeats cannot "
+                "become keys of one track. Extend it from frame {first} to {last}, or let it "
+                "start and end at the handle's position in the pose."
             ).format(
                 handle=layer.handle(track.handles[0]).name,
                 cycle=cycle.description,

@@ -95,7 +95,7 @@ def lock_handles(layer: Layer, identities: Collection[int], *, locked: bool) -> 
     return with_handles(layer, identities, locked=locked)
 
 
-@layer_command(_("Free or keep still"))
+@layer_command(_("Toggle auto-pin"))
 def unpin_handles(layer: Layer, identities: Collection[int], *, free: bool) -> Layer:
     """Turn auto-pin off or on for handles."""
     return with_handles(layer, identities, is_unpinned=free)

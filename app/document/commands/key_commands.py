@@ -71,7 +71,9 @@ def delete_keys(layer: Layer, frames: Collection[int]) -> Layer:
     """Delete the keys at some frames; one key must remain. Cycles without keys are deleted."""
     keys = retime.without_keys(layer.keys, frames)
     if not keys:
-        raise LissomError(_("An animation has at least one key; pose the last one instead."))
+        raise LissomError(
+            _("An animation needs at least one key. Change the pose of the last key instead.")
+        )
     kept = {key.frame for key in keys}
     gone = {cycle for cycle in layer.cycles if not any(map(cycle.contains, kept))}
     gone &= {cycle for cycle in layer.cycles if any(map(cycle.contains, frames))}

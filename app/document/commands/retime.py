@@ -32,12 +32,12 @@ class AtFrame(Protocol):
 
 
 Timed = TypeVar("Timed", bound=AtFrame)
-KEYS_COLLIDE = N_("Two keys would be at frame {frame}; move or delete the one there first.")
+KEYS_COLLIDE = N_("Two keys would be at frame {frame}; move or delete the key there first.")
 KEYS_MEET = N_(
     "The {keys} at frames {one} and {other} would both be at frame {frame}. Delete one "
     "of them first, or shorten the time less."
 )
-BAD_TIME_FACTOR = N_("Time can be scaled by more than 0 and up to 1000, not by {factor:g}.")
+BAD_TIME_FACTOR = N_("Time can be scaled by a factor above 0 and up to 1000, not by {factor:g}.")
 
 
 @dataclass(frozen=True, slots=True)

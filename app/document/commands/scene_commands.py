@@ -80,7 +80,7 @@ def set_export(document: Document, export: ExportSettings) -> Document:
     return document if export == document.export else replace(document, export=export)
 
 
-@command(_("Set pairs of names"))
+@command(_("Set name pairs"))
 def set_mirror_names(document: Document, pairs: SidePairs) -> Document:
     """Set the words or names for the two sides of layers and handles."""
     return document if pairs == document.pairs else replace(document, pairs=pairs)
@@ -165,13 +165,13 @@ def _with_markers(document: Document, markers: Iterable[Marker]) -> Document:
         if one.frame == other.frame:
             raise LissomError(
                 _(
-                    "Two markers would be at frame {frame}; move or delete the one there first."
+                    "Two markers would be at frame {frame}; move or delete the marker there first."
                 ).format(frame=one.frame)
             )
     return replace(document, markers=tuple(ordered))
 
 
-@command(_("Give a motion"))
+@command(_("Apply motion preset"))
 def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Document:
     """Replace a layer by one with a motion preset; a document without motion becomes its loop."""
     is_new = not _moves(document)

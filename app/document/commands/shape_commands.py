@@ -47,7 +47,7 @@ def cut_with_brush(layer: Layer, stroke: Stroke) -> Layer:
     return replace(layer, cut_out=replace(layer.cut_out, strokes=strokes), is_stale=True)
 
 
-@layer_command(_("Cut by the knife"))
+@layer_command(_("Cut with knife"))
 def cut_with_line(layer: Layer, slit: CutLine) -> Layer:
     """Separate touching parts along a line; the domain stays stale until it is rebuilt."""
     slits = (*layer.cut_out.cut_lines, slit)

@@ -34,9 +34,11 @@ def paint_stiffness(
 ) -> Layer:
     """Paint stiffness along a stroke by `brushed_stiffness`."""
     require_stiffness_amount(amount)
-    require(radius > 0, N_("The radius of a brush is above 0, not {radius:g}."), radius=radius)
+    require(radius > 0, N_("The radius of a brush must be above 0, not {radius:g}."), radius=radius)
     require(
-        0 <= softness <= 1, N_("A brush is soft from 0 to 1, not {softness:g}."), softness=softness
+        0 <= softness <= 1,
+        N_("The softness of a brush must be from 0 to 1, not {softness:g}."),
+        softness=softness,
     )
     stiffness, reached = brushed_stiffness(
         layer, places, radius=radius, amount=amount, softness=softness
@@ -57,7 +59,7 @@ def add_bone(layer: Layer, ends: tuple[int, int], amount: float = DEFAULT_BONE_S
     names = [layer.handle(identity).name for identity in ends]
     if any(other.is_between(ends) for other in layer.bones):
         raise LissomError(
-            _("There is a bone from {first!r} to {second!r} already.").format(
+            _("A bone from {first!r} to {second!r} already exists.").format(
                 first=names[0], second=names[1]
             )
         )

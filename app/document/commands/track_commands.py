@@ -180,7 +180,7 @@ def plant_track(
     velocities = velocities or [None] * len(places)
     if not len(places) == len(velocities) == len(track.keys):
         raise LissomError(
-            _("The track has {count} keys, not {given}.").format(
+            _("The track has {count} keys, but there are {given} positions for them.").format(
                 count=len(track.keys), given=len(places)
             )
         )

@@ -54,15 +54,15 @@ class Attachment:
         require_point(self.offset, _("The offset of a joint"))
         require(
             math.isfinite(self.rest_rotation),
-            N_("A turn must be finite, not {rest_rotation}."),
+            N_("The rotation of a joint must be finite, not {rest_rotation}."),
             rest_rotation=self.rest_rotation,
         )
         require_frame(self.frame, _("A joint"))
         require(
             self.kept_since is None or 0 <= self.kept_since <= self.frame,
             N_(
-                "The place that a joint keeps from frame {frame} on is of that frame or an earlier "
-                "one, not of frame {kept_since}."
+                "A joint from frame {frame} on must keep a position of that frame or earlier, "
+                "not of frame {kept_since}."
             ),
             frame=self.frame,
             kept_since=self.kept_since,
@@ -83,7 +83,7 @@ def require_attachments(joints: tuple[Attachment, ...]) -> None:
     for before, after in pairwise(joints):
         require(
             before.frame < after.frame,
-            N_("The attachments at frames {before} and {after} are mixed up."),
+            N_("The attachment keys at frames {before} and {after} are out of order."),
             before=before.frame,
             after=after.frame,
         )

@@ -36,12 +36,12 @@ class Group:
         require_path(self.name)
         require(
             0 <= self.opacity <= 1,
-            N_("Opacity is between 0 and 1, not {opacity:g}."),
+            N_("Opacity must be from 0 to 1, not {opacity:g}."),
             opacity=self.opacity,
         )
         require(
             self.blend in GROUP_BLENDS,
-            N_("A group's blend is one of {blends}, not {blend!r}."),
+            N_("The blend of a group must be one of {blends}, not {blend!r}."),
             blends=", ".join(GROUP_BLENDS),
             blend=self.blend,
         )
@@ -52,12 +52,15 @@ def require_path(path: str) -> None:
     names = path.split("/")
     require(
         all(name and name == name.strip() for name in names),
-        N_("A group needs a name, and groups in groups names divided by slashes, unlike {path!r}."),
+        N_(
+            "{path!r} is not a path of a group. Give each group a name, and separate nested "
+            "groups with slashes."
+        ),
         path=path,
     )
     require(
         len(names) <= MAX_GROUP_DEPTH,
-        N_("Groups lie at most {most} deep in each other."),
+        N_("Groups can be nested at most {most} deep."),
         most=MAX_GROUP_DEPTH,
     )
 

@@ -29,7 +29,7 @@ class CameraKey(BaseKey):
         require_point(self.centre, _("The camera's centre"))
         require(
             1 / MAX_ZOOM <= self.zoom <= MAX_ZOOM,
-            N_("A zoom is above 0, from {smallest:g} to {largest:g}, not {zoom:g}."),
+            N_("The zoom must be from {smallest:g} to {largest:g}, not {zoom:g}."),
             smallest=1 / MAX_ZOOM,
             largest=MAX_ZOOM,
             zoom=self.zoom,
@@ -61,7 +61,7 @@ class OpacityKey(BaseKey):
         BaseKey.__post_init__(self)
         require(
             0 <= self.opacity <= 1,
-            N_("Opacity is between 0 and 1, not {opacity:g}."),
+            N_("Opacity must be from 0 to 1, not {opacity:g}."),
             opacity=self.opacity,
         )
 
@@ -75,7 +75,7 @@ class DrawOrderKey:
     in_front: bool = True
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, _("A place in the draw order"))
+        require_frame(self.frame, _("A draw order key"))
 
 
 def require_ascending_keys(
@@ -85,7 +85,7 @@ def require_ascending_keys(
     for before, after in pairwise(key.frame for key in keys):
         if before >= after:
             raise LissomError(
-                _("{what} has a key at frame {after} after that at frame {before}.").format(
+                _("{what} has keys at frames {before} and {after} that are out of order.").format(
                     what=_(what).format(layer=layer), after=after, before=before
                 )
             )
@@ -94,7 +94,7 @@ def require_ascending_keys(
 def _require_rotation(turn: float) -> None:
     require(
         abs(turn) <= MAX_TRACK_ROTATION,
-        N_("A turn is at most {largest:g} whole turns, not {turn:g}."),
+        N_("A rotation can be at most {largest:g} whole turns, not {turn:g}."),
         largest=MAX_TRACK_ROTATION / tau,
         turn=turn / tau,
     )

@@ -26,7 +26,7 @@ def require_ascending_visibility_keys(switches: tuple[VisibilityKey, ...]) -> No
     for before, after in pairwise(switches):
         require(
             before.frame < after.frame,
-            N_("The visibility keys at frames {before} and {after} are mixed up."),
+            N_("The visibility keys at frames {before} and {after} are out of order."),
             before=before.frame,
             after=after.frame,
         )
@@ -57,24 +57,26 @@ class SwitchGroup:
         require(bool(self.name.strip()), N_("A switch needs a name."))
         require(
             len(self.layers) > 1,
-            N_("The switch {name!r} needs two layers or more."),
+            N_("The switch {name!r} needs at least two layers."),
             name=self.name,
         )
-        require_distinct(self.layers, N_("A switch has the layer {value!r} twice."))
+        require_distinct(self.layers, N_("A switch lists the layer {value!r} twice; list it once."))
         known = set(self.layers)
         for turn in self.keys:
             require_frame(turn.frame, _("A switch key"))
             if turn.layer not in known:
                 raise LissomError(
                     _(
-                        "At frame {frame} the switch {name!r} shows a layer that is not in it."
+                        "At frame {frame} the switch {name!r} shows a layer that is not in the "
+                        "switch."
                     ).format(name=self.name, frame=turn.frame)
                 )
         for before, after in pairwise(self.keys):
             if before.frame >= after.frame:
                 raise LissomError(
                     _(
-                        "The switch keys of {name!r} at frames {before} and {after} are mixed up."
+                        "The switch keys of {name!r} at frames {before} and {after} are out of "
+                        "order."
                     ).format(name=self.name, before=before.frame, after=after.frame)
                 )
 

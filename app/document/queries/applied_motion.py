@@ -38,10 +38,12 @@ def motion_notices(document: Document) -> tuple[str, ...]:
         if unread:
             notices.append(
                 ngettext(
-                    "{layer!r} has a motion that this version cannot show, and the file keeps: "
+                    "{layer!r} has a motion that this version cannot show; the file keeps it: "
                     "{reason}",
-                    "{layer!r} has {count} motions that this version cannot show, and the file "
-                    "keeps: {reason}",
+                    (
+                        "{layer!r} has {count} motions that this version cannot show; the file "
+                        "keeps them: {reason}"
+                    ),
                     len(unread),
                 ).format(layer=layer.name, count=len(unread), reason=unread[0].reason)
             )

@@ -39,8 +39,8 @@ class AppliedMotion:
         require(
             0 <= self.first <= self.start < self.last <= LAST_FRAME,
             N_(
-                "A motion goes from a frame to a later one, from 0 to {largest:,}, not from "
-                "{first} by {start} to {last}."
+                "A motion must run from a frame to a later frame, from 0 to {largest:,}. This "
+                "motion blends in from frame {first} to {start}, and ends at frame {last}."
             ),
             largest=LAST_FRAME,
             first=self.first,
@@ -53,12 +53,12 @@ class AppliedMotion:
             kind.require_joints(self.joints)
         require(
             self.facing in (1, -1),
-            N_("A drawing looks to the right, 1, or left, -1: {facing}."),
+            N_("A drawing must face right (1) or left (-1), not {facing}."),
             facing=self.facing,
         )
         require(
             1 <= self.repeat_count <= MAX_REPEATS,
-            N_("A motion is there once to {most:,} times, not {count:,} times."),
+            N_("A motion can play 1 to {most:,} times, not {count:,} times."),
             most=MAX_REPEATS,
             count=self.repeat_count,
         )
@@ -89,8 +89,8 @@ def require_motions(motions: Sequence[AppliedMotion], handles: Collection[int]) 
         require(
             before.last <= after.first,
             N_(
-                "A motion from frame {first} on begins before the one from frame "
-                "{before_first} on has ended."
+                "The motion from frame {first} on starts before the motion from frame "
+                "{before_first} on ends."
             ),
             first=after.first,
             before_first=before.first,
@@ -99,7 +99,9 @@ def require_motions(motions: Sequence[AppliedMotion], handles: Collection[int]) 
         for joint, identity in motion.joints.items():
             require(
                 identity in handles,
-                N_("The joint {joint!r} of a motion is the handle {identity}, which is not there."),
+                N_(
+                    "The joint {joint!r} of a motion is at handle {identity}, which does not exist."
+                ),
                 joint=joint,
                 identity=identity,
             )

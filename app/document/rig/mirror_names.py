@@ -20,8 +20,8 @@ SIDES: SidePairs = (("L", "R"), ("left", "right"))
 MAX_PAIRS = 1_000  # each name is compared with all pairs
 PAIRS: SidePairs = (*SIDES, ("near", "far"))
 NO_PAIR = N_(
-    "“{words}” is no pair: write two words, or two whole names, with a slash between, "
-    "as in near/far, and commas between pairs."
+    "“{words}” is not a pair. Write two words or whole names with a slash between, as in "
+    "near/far, and commas between pairs."
 )
 
 
@@ -77,15 +77,15 @@ def require_pairs(pairs: SidePairs) -> None:
     """Refuse empty words and words that occur twice."""
     require(
         len(pairs) <= MAX_PAIRS,
-        N_("There are at most {most:,} pairs, not {count:,}."),
+        N_("There can be at most {most:,} pairs, not {count:,}."),
         most=MAX_PAIRS,
         count=len(pairs),
     )
     words = [word.casefold() for pair in pairs for word in pair]
     require(
-        all(word.strip() for word in words), N_("A pair is of two words, such as near and far.")
+        all(word.strip() for word in words), N_("A pair must have two words, such as near and far.")
     )
-    require_distinct(words, N_("“{value}” is twice among the pairs; it has one partner only."))
+    require_distinct(words, N_("“{value}” is in two pairs; it can have only one partner."))
 
 
 def parse_pairs(text: str) -> SidePairs:

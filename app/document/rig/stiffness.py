@@ -26,7 +26,7 @@ class Bone:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(self.ends[0] != self.ends[1], N_("A bone leads from one handle to another one."))
+        require(self.ends[0] != self.ends[1], N_("A bone must connect two different handles."))
         require_stiffness_amount(self.stiffness)
 
     def is_between(self, ends: Sequence[int]) -> bool:
@@ -38,7 +38,7 @@ def require_stiffness_amount(amount: float) -> None:
     """Raise a `LissomError` unless the stiffness is in the allowed range."""
     require(
         SOFTEST * (1 - STIFFNESS_TOLERANCE) <= amount <= STIFFEST,
-        N_("A stiffness is from 1/30 to {largest:g}, not {amount:g}; 1 is the usual one."),
+        N_("Stiffness must be from 1/30 to {largest:g}, not {amount:g}; 1 is the default."),
         largest=STIFFEST,
         amount=amount,
     )

@@ -25,17 +25,17 @@ class Cycle:
 
     def __post_init__(self) -> None:
         for frame in filter(None, (self.first, self.last, self.until)):
-            require_frame(frame, _("An end of a cycle"))
+            require_frame(frame, _("The end of a cycle"))
         require(
             self.first < self.last,
-            N_("A cycle ends after the frame {first}, at which it begins, not at {last}."),
+            N_("A cycle must end after its first frame, {first}, not at frame {last}."),
             first=self.first,
             last=self.last,
         )
         require(
             self.until is None or self.until >= self.last,
             N_(
-                "Frames {first} to {last} cannot repeat until frame {until}, which is before "
+                "Frames {first} to {last} cannot repeat until frame {until}, which is not after "
                 "their end."
             ),
             first=self.first,
@@ -97,7 +97,7 @@ def require_no_overlap(cycles: Sequence[Cycle]) -> None:
     """Raise a `LissomError` unless each cycle's repeats end before the next cycle begins."""
     require(
         len(cycles) <= MAX_CYCLES,
-        N_("A layer has at most {most:,} cycles, not {count:,}."),
+        N_("A layer can have at most {most:,} cycles, not {count:,}."),
         most=MAX_CYCLES,
         count=len(cycles),
     )
@@ -105,8 +105,8 @@ def require_no_overlap(cycles: Sequence[Cycle]) -> None:
         require(
             before.until is not None and before.until <= after.first,
             N_(
-                "The repeats of {cycle} and of {next_cycle} overlap; end the "
-                "former at frame {first} at the latest."
+                "The repeats of {cycle} and {next_cycle} overlap. End the repeats of {cycle} at "
+                "frame {first} or earlier."
             ),
             cycle=before.description,
             next_cycle=after.description,
@@ -124,13 +124,13 @@ def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
     if after and (cycle.until is None or after[0] < cycle.until):
         raise LissomError(
             _(
-                "The key at frame {after} is where {cycle} repeat; pose it in "
-                "{cycle}, let the repeats end there, or make them into keys first."
+                "The key at frame {after} lies where {cycle} repeat. Pose it in {cycle}, let "
+                "the repeats end there, or bake the repeats first."
             ).format(after=after[0], cycle=cycle.description)
         )
     require(
         bool(own) or not (has_before and after),
-        N_("There is no key in {cycle} that could repeat; insert one there first."),
+        N_("No key in {cycle} could repeat; insert a key there first."),
         cycle=cycle.description,
     )
     require(
@@ -144,8 +144,8 @@ def require_repeatable_cycle(cycle: Cycle, keys: Sequence[int]) -> None:
     if all((until - frame) % cycle.period for frame in own):
         raise LissomError(
             _(
-                "The repeats of {cycle} end at frame {until}, between two keys, so that no "
-                "motion leads to the key at frame {after}; let them end at frame {nearest_end} "
+                "The repeats of {cycle} end at frame {until}, between two keys, so no motion "
+                "leads to the key at frame {after}. End the repeats at frame {nearest_end} "
                 "instead."
             ).format(
                 until=until,

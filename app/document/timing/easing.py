@@ -31,8 +31,8 @@ class Easing:
         if not (len(self.curve) == 4 and all(0.0 <= value <= 1.0 for value in self.curve)):
             raise LissomError(
                 _(
-                    "An easing curve is four numbers from 0 to 1, not {curve}: outside them "
-                    "the in-betweens could leave their bounds."
+                    "An easing curve must be four numbers from 0 to 1, not {curve}. With other "
+                    "numbers the in-betweens could exceed the limits."
                 ).format(curve=shortened(self.curve))
             )
         # After the check, because an integer may be too large for a float.
@@ -92,8 +92,8 @@ class Easing:
             if value not in PRESETS:
                 raise LissomError(
                     _(
-                        "There is no easing {value}; take one of {presets}, or four numbers "
-                        "from 0 to 1."
+                        "There is no easing {value}; choose one of {presets}, or give four "
+                        "numbers from 0 to 1."
                     ).format(value=shortened(value), presets=", ".join(PRESETS))
                 )
             return PRESETS[value]
@@ -101,7 +101,7 @@ class Easing:
             isinstance(number, (int, float)) and not isinstance(number, bool) for number in value
         ):
             raise LissomError(
-                _("An easing is a name or four numbers from 0 to 1, not {value}.").format(
+                _("An easing must be a name or four numbers from 0 to 1, not {value}.").format(
                     value=shortened(value)
                 )
             )

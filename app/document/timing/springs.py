@@ -33,36 +33,39 @@ class Spring:
         require(
             0 < self.frequency <= MAX_SPRING_FREQUENCY,
             N_(
-                "The frequency of a spring is above 0 and at most {largest:,.0f} "
-                "Hz, not {frequency:g}."
+                "The frequency of a spring must be above 0 and at most {largest:,.0f} Hz, not "
+                "{frequency:g}."
             ),
             largest=MAX_SPRING_FREQUENCY,
             frequency=self.frequency,
         )
         require(
             0 <= self.damping <= MAX_DAMPING,
-            N_("The damping of a spring is from 0 to {largest:g}, not {damping:g}."),
+            N_("The damping of a spring must be from 0 to {largest:g}, not {damping:g}."),
             largest=MAX_DAMPING,
             damping=self.damping,
         )
         require(
             0 <= self.lag <= MAX_LAG,
-            N_("The lag of a spring is from 0 to {largest:,.0f} frames, not {lag:g}."),
+            N_("The lag of a spring must be from 0 to {largest:,.0f} frames, not {lag:g}."),
             largest=MAX_LAG,
             lag=self.lag,
         )
         require(
             0 <= self.strength <= MAX_STRENGTH,
-            N_("The strength of a spring is from 0 to {largest:g}, not {strength:g}."),
+            N_("The strength of a spring must be from 0 to {largest:g}, not {strength:g}."),
             largest=MAX_STRENGTH,
             strength=self.strength,
         )
         require(
             0 <= self.stretch <= 1,
-            N_("The stretch of a spring is between 0 and 1, not {stretch:g}."),
+            N_("The stretch of a spring must be from 0 to 1, not {stretch:g}."),
             stretch=self.stretch,
         )
-        require(self.root != self.handle, N_("A spring swings about another handle than its own."))
+        require(
+            self.root != self.handle,
+            N_("The root of a spring must be another handle than the spring's own."),
+        )
 
 
 # Frequency and damping by name. "tail" and "ear" are measured on the samples, the others are chosen

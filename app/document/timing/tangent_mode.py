@@ -23,6 +23,9 @@ def require_tangent_mode(passing: str) -> None:
     """Refuse unknown tangent modes, and HOLD, which is stored as an easing."""
     require(
         passing in (TangentMode.SMOOTH, TangentMode.CORNER, TangentMode.STOP),
-        N_("The tangent of a key is through, corner or stop, not {tangent!r}; hold is an easing."),
+        N_(
+            "The tangent of a key must be through, corner or stop, not {tangent!r}; hold is an "
+            "easing."
+        ),
         tangent=str(passing),
     )

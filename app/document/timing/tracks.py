@@ -36,17 +36,17 @@ class TrackKey(BaseKey):
 
     def __post_init__(self) -> None:
         BaseKey.__post_init__(self)
-        require_point(self.place, _("A track's key"))
+        require_point(self.place, _("A key of a track"))
         require(
             abs(self.turn) <= MAX_TRACK_ROTATION,
-            N_("A track turns by at most {largest:g} whole turns, not by {turn:g}."),
+            N_("A track can rotate by at most {largest:g} whole turns, not {turn:g}."),
             largest=MAX_TRACK_ROTATION / math.tau,
             turn=self.turn / math.tau,
         )
         require(
             self.velocity is None or abs(self.velocity) <= MAX_COORDINATE,
             N_(
-                "The velocity of a track's key is at most {largest:,.0f} pixels a frame, "
+                "The velocity of a track's key can be at most {largest:,.0f} pixels a frame, "
                 "not {velocity}."
             ),
             largest=MAX_COORDINATE,
@@ -82,26 +82,32 @@ class Track:
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require(len(self.handles) > 0, N_("A track is of at least one handle."))
-        require_distinct(self.handles, N_("A track has the handle {value!r} twice."))
-        require(len(self.keys) > 0, N_("A track has at least one key; remove the track instead."))
+        require(len(self.handles) > 0, N_("A track needs at least one handle."))
+        require_distinct(
+            self.handles, N_("A track lists the handle {value!r} twice; list it once.")
+        )
+        require(len(self.keys) > 0, N_("A track needs at least one key. Delete the track instead."))
         for before, after in pairwise(key.frame for key in self.keys):
-            require(after != before, N_("A track has two keys at frame {before}."), before=before)
+            require(
+                after != before,
+                N_("A track has two keys at frame {before}; keep one of them."),
+                before=before,
+            )
             require(
                 after > before,
-                N_("A track's keys at frames {before} and {after} are mixed up."),
+                N_("The track's keys at frames {before} and {after} are out of order."),
                 before=before,
                 after=after,
             )
         require(
             0 <= self.delay <= LAST_FRAME,
-            N_("The delay of a track is from 0 to {largest:,} frames, not {delay:,}."),
+            N_("The delay of a track must be from 0 to {largest:,} frames, not {delay:,}."),
             largest=LAST_FRAME,
             delay=self.delay,
         )
         require(
             0 <= self.reach <= 1,
-            N_("The reach of a track is between 0 and 1, not {reach:g}."),
+            N_("The reach of a track must be from 0 to 1, not {reach:g}."),
             reach=self.reach,
         )
 

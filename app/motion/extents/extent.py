@@ -107,7 +107,7 @@ def motion_bounding_box(
         found = np.column_stack([-lower.real, -lower.imag, upper.real, upper.imag])
         if not np.isfinite(found).all():
             raise LissomError(
-                _("frame {frame} cannot be drawn: its points are not all finite").format(
+                _("frame {frame} cannot be drawn: some of its points are not finite").format(
                     frame=frame
                 )
             )

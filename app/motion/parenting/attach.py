@@ -154,7 +154,7 @@ def _source(joints: ParentTransforms, layer: Layer, place: complex, frame: float
         area = abs(fz) ** 2 - abs(fzbar) ** 2
         source += (fz.conjugate() * away - fzbar * away.conjugate()) / area
     raise LissomError(
-        _("There is nothing of {layer!r} at ({x:.0f}, {y:.0f}); put its anchor on it.").format(
-            layer=layer.name, x=place.real, y=place.imag
-        )
+        _(
+            "{layer!r} has no drawing at ({x:.0f}, {y:.0f}); move the anchor onto the drawing."
+        ).format(layer=layer.name, x=place.real, y=place.imag)
     )

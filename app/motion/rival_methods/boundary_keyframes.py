@@ -65,10 +65,10 @@ def harmonic_coordinate_maps(
     require_around(cage, outline)
     wanted = np.array([_checked_targets(each, i, outline) for i, each in enumerate(targets)])
     if not wanted.size or np.abs(wanted).max() > SIZES[1]:
-        raise EngineError("There must be keyframes, and none may go infinitely far.")
+        raise EngineError("Give at least one keyframe, with finite positions only.")
     size = max(map(diameter, wanted))
     if size < SIZES[0]:
-        raise EngineError("The boundary must go to more than one point in some keyframe.")
+        raise EngineError("In every keyframe the boundary must map to more than one point.")
     best: tuple[float, Complexes, Complexes] | None = None
     pieces = 1
     while best is None or (best[0] > GOOD * size and pieces * len(cage) <= MOST_CAGE_VERTICES):
@@ -103,7 +103,7 @@ def discrete_harmonic(domain: TriangulatedDomain, positions: npt.ArrayLike) -> C
     found = as_points(positions, "positions").copy()
     if len(found) != len(domain.points):
         raise EngineError(
-            "{count} vertices need as many positions, not {given}.",
+            "{count} vertices need {count} positions, not {given}.",
             count=len(domain.points),
             given=len(found),
         )
@@ -119,7 +119,7 @@ def _checked_targets(values: npt.ArrayLike, number: int, outline: Complexes) -> 
     targets = as_points(values, f"The boundary of keyframe {number}")
     if len(targets) != len(outline):
         raise EngineError(
-            "The boundary of keyframe {number} has {count} places, but the outline "
+            "The boundary of keyframe {number} has {count} positions, but the outline has "
             "{vertices} vertices.",
             number=number,
             count=len(targets),

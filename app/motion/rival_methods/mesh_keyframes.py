@@ -14,8 +14,8 @@ from engine.interpolation import TWO_KEYFRAMES
 from engine.paths import root_sheets
 
 WINDS = (
-    "Keyframe {number} winds around a hole: on the way around it, past ({x:.6g}, {y:.6g}), it "
-    "turns by {turns:.0f} whole turns more than the domain. Pose it so that it does not."
+    "Keyframe {number} winds around a hole: past ({x:.6g}, {y:.6g}) it makes {turns:.0f} whole "
+    "turns more than the domain. Pose it again without these turns."
 )
 
 
@@ -172,7 +172,7 @@ def _checked(domain: TriangulatedDomain, values: npt.ArrayLike, number: int) -> 
     positions = as_points(values, f"The positions of keyframe {number}")
     if len(positions) != len(domain.points):
         raise EngineError(
-            "Keyframe {number} has {count} points, but the triangles are of {points}; all "
+            "Keyframe {number} has {count} points, but the triangles need {points}; all "
             "keyframes must have the same triangles.",
             number=number,
             count=len(positions),
@@ -189,9 +189,9 @@ def _require_unfolded(
     if sigma_b[worst] <= 0:
         at = domain.points[domain.corners[worst]].mean()
         raise EngineError(
-            "Keyframe {number} folds: triangle {triangle}, at ({x:.6g}, {y:.6g}) of the "
-            "domain, is turned over ({count} of {all} are). Pose it again without folds; "
-            "of a harmonic map, take smaller triangles.",
+            "Keyframe {number} folds: triangle {triangle}, at ({x:.6g}, {y:.6g}) of the domain, "
+            "is flipped ({count} of {all} are). Pose it again without folds. For a harmonic "
+            "map, use smaller triangles.",
             number=number,
             triangle=worst,
             x=at.real,
@@ -205,8 +205,8 @@ def _require_unfolded(
     double = np.flatnonzero(~domain.border & (np.abs(around - 2 * np.pi) > 1.0))
     if len(double):
         raise EngineError(
-            "Keyframe {number} folds: the triangles around point {point} lie over each "
-            "other. Pose it again without folds.",
+            "Keyframe {number} folds: the triangles around point {point} overlap. Pose it again "
+            "without folds.",
             number=number,
             point=double[0],
         )

@@ -121,7 +121,8 @@ def prepare_baseline(
         maps = _maps_over_one_cage(baseline, around)
         if border is None:
             raise EngineError(
-                "The method {baseline} needs the domain's outline.", baseline=baseline
+                "The method {baseline} needs the outline of the domain; give the outline.",
+                baseline=baseline,
             )
         boundary = Boundary.sample(Domain(border, maps[0].cage, maps[0].holes))
         if baseline is Baseline.HANDLES:
@@ -161,8 +162,8 @@ def _by_handles(
     places = as_points(() if points is None else points, "handles")
     if not len(places):
         raise EngineError(
-            "Handles that are led from key to key are needed, and none is given; name points of "
-            "the domain as handles."
+            "The method 'handles' needs handles that lead from key to key. Name points of the "
+            "domain as handles."
         )
     deformer = Deformer(boundary=boundary, handles=Handles.place(boundary, places), bounds=bounds)
     return [
@@ -200,8 +201,8 @@ def _maps_over_one_cage(
     maps = [each for each in keyframes if isinstance(each, HarmonicMap)]
     if len(maps) < len(keyframes):
         raise EngineError(
-            "The method {baseline} is for keyframes that are harmonic maps; positions of a "
-            "mesh do not do. Choose another method.",
+            "The method {baseline} needs keyframes that are harmonic maps, not positions of a "
+            "mesh; choose another method.",
             baseline=baseline,
         )
     require_keyframes(maps)
@@ -214,5 +215,7 @@ def _known_baseline(baseline: Baseline | str) -> Baseline:
     except ValueError:
         names = ", ".join(Baseline)
         raise EngineError(
-            "There is no method {baseline!r}; there are {names}.", baseline=baseline, names=names
+            "There is no method {baseline!r}; choose one of {names}.",
+            baseline=baseline,
+            names=names,
         ) from None

@@ -199,7 +199,7 @@ def _as_corners(triangles: npt.ArrayLike, count: int) -> Indices:
             shape=corners.shape,
         )
     if not len(corners):
-        raise EngineError("A mesh needs at least one triangle; there is none.")
+        raise EngineError("The mesh has no triangles; give at least one.")
     if corners.min() < 0 or corners.max() >= count:
         raise EngineError(
             MESH_POINTS, smallest=corners.min(), largest=corners.max(), last=count - 1
@@ -223,8 +223,8 @@ def _oriented(points: Complexes, corners: Indices) -> Indices:
     if clockwise.any():
         rarer = clockwise if 2 * clockwise.sum() <= len(corners) else ~clockwise
         raise EngineError(
-            "Triangle {triangle} of the domain is turned over against the others: the "
-            "domain folds there. Give a mesh whose triangles all run the same way round.",
+            "Triangle {triangle} of the domain is flipped, so the domain folds there. Give a "
+            "mesh whose triangles all have the same orientation.",
             triangle=np.flatnonzero(rarer)[0],
         )
     return corners
@@ -237,8 +237,8 @@ def _adjacency(corners: Indices) -> tuple[Indices, Indices, Indices]:
     if shared.max() > 2:
         first, second = edges[shared.argmax()]
         raise EngineError(
-            "The edge from point {first} to point {second} is in {count} triangles; an "
-            "edge of a plane mesh is in one or two.",
+            "The edge from point {first} to point {second} belongs to {count} triangles; an "
+            "edge of a plane mesh belongs to one or two.",
             first=first,
             second=second,
             count=shared.max(),
@@ -250,14 +250,14 @@ def _require_whole(corners: Indices, pairs: Indices, count: int) -> None:
     """Raise an `EngineError` for points without triangles, and for triangles in several pieces."""
     unused = np.flatnonzero(np.bincount(corners.ravel(), minlength=count) == 0)
     if len(unused):
-        raise EngineError("Point {point} is in no triangle; leave it out.", point=unused[0])
+        raise EngineError("Point {point} belongs to no triangle; leave it out.", point=unused[0])
     graph = csr_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(corners),) * 2)
     pieces, number = connected_components(graph, directed=False)
     if pieces > 1:
         apart = np.flatnonzero(number != number[0])[0]
         raise EngineError(
-            "Triangle {triangle} is not joined to triangle 0 by common edges; give a mesh "
-            "of one piece.",
+            "Triangle {triangle} is not connected to triangle 0 by shared edges; give a mesh of "
+            "one piece.",
             triangle=apart,
         )
 
@@ -280,6 +280,8 @@ def _nearest(points: Complexes, anchor: npt.ArrayLike) -> int:
     place = as_points(np.ravel(anchor), "anchor")
     if len(place) != 1:
         raise EngineError(
-            "One anchor is needed, not {count}; leave it out to have one found.", count=len(place)
+            "The mesh needs exactly one anchor, not {count}. Leave the anchor out, and Lissom "
+            "chooses one.",
+            count=len(place),
         )
     return int(np.abs(points - place[0]).argmin())

@@ -18,9 +18,9 @@ HORN_TURN, HORN_GROWTH = 2.4, 0.7  # of the bar in Figure 7, over its length
 def make_figure_5(studio: FigureContext) -> PaperFigure:
     """Draw Figure 5: a letter S becomes a U."""
     caption = _(
-        "S to U. Pictures and geometric distortion of our variants, ARAP and FFMP: k and τ of the "
-        "100 points of highest distortion, each relative to its keyframe. Ours stay below the red "
-        "line; the others' in-betweens exceed it."
+        "S to U. Pictures and geometric distortion of our variants, ARAP and FFMP: k and τ of "
+        "the 100 points of highest distortion, each relative to its keyframe. Our variants stay "
+        "below the red line; the in-betweens of the other methods exceed it."
     )
     methods = (ARAP, FFMP, NU, SCALED_ETA, METRIC)
     return _compare(studio, letter_s(studio.triangles), methods, _("S to U"), caption)
@@ -39,9 +39,9 @@ def make_figure_6(studio: FigureContext) -> PaperFigure:
 def make_figure_7(studio: FigureContext) -> PaperFigure:
     """Draw Figure 7: a bar bent to a horn, with a keyframe known only on its boundary."""
     caption = _(
-        "Square bar. Only the places of the outline's vertices are given in both keyframes; "
-        "harmonic coordinates make maps of them (Weber and Gotsman 2010, Section 10). Pictures and "
-        "geometric distortion as in Figure 5."
+        "Square bar. Both keyframes give only the positions of the outline's vertices. Harmonic "
+        "coordinates make maps of these positions (Weber and Gotsman 2010, Section 10). "
+        "Pictures and geometric distortion as in Figure 5."
     )
     shape = beam(studio.triangles)
     outline = shape.domain.outline

@@ -12,9 +12,9 @@ MEASURED = 3  # times: the middle, and both keyframes
 METHODS = (LINEAR, HANDLES, ARAP, NU, METRIC)
 CAPTION = _(
     "Interpolation of the giraffe, from the source (left) to the target (right), at t = 0.5. "
-    "Linear interpolation of positions shrinks the neck. Handles that go straight lead the "
-    "deformer where nobody would pull it. Metric keeps the direction of its stretch, ARAP and ν do "
-    "not."
+    "Linear interpolation of positions shrinks the neck. Handles on straight paths lead the "
+    "deformer to poses that nobody would choose. Metric keeps the direction of the neck's "
+    "stretch; ARAP and ν do not."
 )
 
 

@@ -10,9 +10,9 @@ from app.texts import _
 TIMES = (0.0, 0.25, 0.5, 0.75, 1.0)
 TIMES_MEASURED = 21
 CAPTION = _(
-    "A collection of in-betweens by the metric variant: between the keyframes at the left and at "
-    "the right nothing is distorted further than in them. The ring has a hole, which the paper "
-    "does not treat."
+    "A collection of in-betweens by the metric variant. Between the keyframes at the left and "
+    "the right, nothing is distorted more than in the keyframes. The ring has a hole, a case "
+    "that the paper does not treat."
 )
 
 

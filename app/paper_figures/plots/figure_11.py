@@ -21,10 +21,10 @@ SIZES = (500, 2_000, 8_000)
 SWIRL, WAVE = 1.1, 0.05  # radians in the middle; share of the height
 TURN, SHEAR = 1.5, 0.15
 CAPTION = _(
-    "The scaled η variant on meshes: two keyframes that are not harmonic, blended triangle by "
-    "triangle, and made a map again by a Poisson step. The table has what that step changes of the "
-    "Jacobians at t = 0.5, relative to them: between discrete harmonic maps (cotangent weights) of "
-    "a bar it goes to zero as the triangles become smaller."
+    "The scaled η variant on meshes. Two keyframes that are not harmonic are blended triangle "
+    "by triangle, and a Poisson step makes the blend a map again. The table shows the relative "
+    "change of the Jacobians by this step at t = 0.5. Between discrete harmonic maps (cotangent "
+    "weights) of a bar, the change goes to zero as the triangles become smaller."
 )
 
 

@@ -19,10 +19,10 @@ ENOUGH = 0.02  # minimum seconds of a measurement
 MOST = 200  # frames of a measurement
 SERIES = _("metric, as a series")
 CAPTION = _(
-    "Time of one frame on one core of this machine's processor, against the number of vertices: "
-    "everything that does not depend on the time of the frame is prepared before. As a series, "
-    "what the metric variant does in an interval is written in few functions of time beforehand; "
-    "that is how Lissom plays it."
+    "Time of one frame on one core of this machine's processor, against the number of vertices. "
+    "Everything that does not depend on the time of the frame is prepared before. For a series, "
+    "the motion of the metric variant in a segment is first written in few functions of time; "
+    "Lissom plays in-betweens in this way."
 )
 
 

@@ -33,10 +33,12 @@ REMEDIES: Final[dict[Backend, str]] = {
     "egl": _("install EGL: {command}").format(
         command="sudo apt install libegl1 libgl1 libgl1-mesa-dri"
     ),
-    "osmesa": _("install OSMesa, where Mesa still has it: {command}").format(
+    "osmesa": _("install OSMesa, if your Mesa still has it: {command}").format(
         command="sudo apt install libosmesa6"
     ),
-    "native": _("install a graphics driver with OpenGL 3.3, and run it where there is a display"),
+    "native": _(
+        "install a graphics driver with OpenGL 3.3, and run Lissom where there is a display"
+    ),
 }
 
 
@@ -91,8 +93,8 @@ def window_context() -> moderngl.Context:
     except Exception as error:  # moderngl's loaders raise nothing more specific
         raise LissomError(
             _(
-                "the window has no OpenGL to draw with: {error} ({remedy}); the command line works "
-                "without a window"
+                "the window has no OpenGL to draw with: {error} ({remedy}). The command line "
+                "works without a window"
             ).format(error=error, remedy=REMEDIES["native"])
         ) from error
 
@@ -234,7 +236,7 @@ class _OSMesa:
             library.OSMesaGetProcAddress.restype = pointer
             library.OSMesaGetProcAddress.argtypes = [ctypes.c_char_p]
             return library
-        raise LissomError(_("{library} not loaded").format(library=self._NAMES[0]))
+        raise LissomError(_("{library} could not be loaded").format(library=self._NAMES[0]))
 
     def load_opengl_function(self, name: str) -> int:
         """Return the address of an OpenGL function, or 0."""

@@ -80,7 +80,7 @@ class PositionBuffer(VertexSource):
             raise LissomError(text.format(needed=self._shape, shape=positions.shape))
         # Any infinite or undefined entry makes the sum so; far cheaper than testing each entry.
         if not np.isfinite(positions.sum()):
-            raise LissomError(_("the frame has vertices that are not finite; it cannot be drawn"))
+            raise LissomError(_("the frame cannot be drawn: some of its vertices are not finite"))
         self._buffer.write(np.ascontiguousarray(positions, dtype=np.float32).data)
 
 
@@ -169,7 +169,7 @@ class PosedMesh:
             return
         most = len(self._mesh.triangles)
         if len(triangles) > most:
-            text = _("the mesh has {most} triangles to be painted, not {count}")
+            text = _("the mesh can have at most {most} visible triangles, not {count}")
             raise LissomError(text.format(most=most, count=len(triangles)))
         self._order.write(_indices(triangles))
         self._triangles = triangles

@@ -46,8 +46,8 @@ class GpuPicture:
         if max(width, height) > limit:
             raise LissomError(
                 _(
-                    "the picture has {width} × {height} pixels, but the graphics of this machine "
-                    "hold {limit} × {limit} at most; scale it down first"
+                    "the picture has {width} × {height} pixels, but this machine's graphics "
+                    "allow at most {limit} × {limit}; scale it down first"
                 ).format(width=width, height=height, limit=limit)
             )
         self.size = (width, height)

@@ -43,9 +43,9 @@ class SeriesBuffer(VertexSource):
     ) -> None:
         if rows > max_series_rows(context):
             raise LissomError(
-                _("this machine's graphics take {most} rows of a series, not {rows}").format(
-                    most=max_series_rows(context), rows=rows
-                )
+                _(
+                    "this machine's graphics allow at most {most} rows of a series, not {rows}"
+                ).format(most=max_series_rows(context), rows=rows)
             )
         pairs = (rows + 1) // 2
         buffer = context.buffer(reserve=16 * pairs * count, dynamic=True)

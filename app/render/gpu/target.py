@@ -35,8 +35,8 @@ class RenderTarget:
         if max(size) > limit:
             raise LissomError(
                 _(
-                    "a frame of {width} × {height} pixels is too large for the graphics of this "
-                    "machine, which hold {limit} × {limit} at most; choose a smaller size"
+                    "a frame of {width} × {height} pixels is too large for this machine's "
+                    "graphics, which allow at most {limit} × {limit}; choose a smaller size"
                 ).format(width=size[0], height=size[1], limit=limit)
             )
         self.size = size

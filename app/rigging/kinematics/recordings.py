@@ -24,8 +24,8 @@ REACH = 3  # intervals on either side of a dropped key that change much
 # Most frames of a recording, as memory grows with them, and its last possible frame.
 MOST_FRAMES, LATEST = 1_000_000, 1e9
 TOO_LONG = (
-    "A recording spans at most {most:,} frames, not those from {first:g} to {last:g}; give it in "
-    "parts."
+    "A recording can span at most {most:,} frames, but this recording runs from frame {first:g} "
+    "to {last:g}. Record it in parts."
 )
 TOLERANCE = "The tolerance of a recording, in pixels,"
 
@@ -83,15 +83,15 @@ def fit_keys(
     where = as_points(places, "Recorded places", most=FARTHEST)
     if when.shape != where.shape or not len(where):
         raise EngineError(
-            "A recording has a time for each place and at least one, not {times} times and "
-            "{count} places.",
+            "A recording needs one time for each position, and at least one position; it has "
+            "{times} times and {count} positions.",
             times=when.shape,
             count=len(where),
         )
     if not np.isfinite(when).all():
         raise EngineError("The times of a recording must be finite.")
     if (np.diff(when) < 0).any():
-        raise EngineError("The times of a recording must not go back.")
+        raise EngineError("The times of a recording must not decrease.")
     if np.abs(when).max() > LATEST or when[-1] - when[0] > MOST_FRAMES:
         raise EngineError(TOO_LONG, most=MOST_FRAMES, first=when[0], last=when[-1])
     as_number(tolerance, TOLERANCE, least=0)

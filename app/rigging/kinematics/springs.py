@@ -74,7 +74,7 @@ class SpringResponse:
         """
         asked = np.asarray(times, dtype=np.float64)
         if not np.isfinite(asked).all():
-            raise EngineError("A spring cannot be asked for at a time that is not finite.")
+            raise EngineError("The time of a spring must be finite.")
         time, last = asked - self.lag, len(self.states) - 1
         time = time % (last + 1) if self.loop else np.clip(time, 0.0, last)
         frames = np.minimum(time.astype(np.intp), last)
@@ -148,8 +148,8 @@ def simulate_spring(
     and no jump drives it for `FADE_FRAMES`: in these frames it fades by a cubic, and is exactly 0
     until q's velocity changes again. The cost, some microseconds a frame, is paid once.
     """
-    q = as_points(places, "The places that drive a spring", at_least=1, most=FARTHEST)
-    fps = as_number(fps, "The frames a second of a spring", above=0)
+    q = as_points(places, "The positions that drive a spring", at_least=1, most=FARTHEST)
+    fps = as_number(fps, "The frames per second of a spring", above=0)
     frequency = as_number(frequency, "The frequency of a spring, in Hz,", above=0)
     damping = as_number(damping, "The damping of a spring", least=0)
     lag = as_number(lag, "The lag of a spring", least=0)

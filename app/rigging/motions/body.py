@@ -11,9 +11,9 @@ from app.rigging.motions.kinds import BodyKind
 from engine.arrays import as_points
 from engine.errors import EngineError
 
-JOINTS_MEET = "The joints {one} and {other} are at one place; move them apart."
+JOINTS_MEET = "The joints {one} and {other} are at the same point; move them apart."
 JOINTS_MISSING = "{what} needs {joints} of {kind!r}."
-NO_BOX = "The box of a body leads from {low} to {high}, and has no width or no height."
+NO_BOX = "The box of a body has no width or no height: it runs from {low} to {high}."
 SIDES = {"L": "R", "R": "L"}
 
 

@@ -9,7 +9,7 @@ def find_motion(name: str) -> Motion:
     """Return the motion with this name; raise an `EngineError` if there is none."""
     if name not in MOTIONS:
         raise EngineError(
-            "There is no motion {name!r}; the motions are {motions}.",
+            "There is no motion preset {name!r}; choose one of {motions}.",
             name=name,
             motions=", ".join(MOTIONS),
         )

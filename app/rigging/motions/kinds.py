@@ -77,7 +77,7 @@ class BodyKind:
                         "{kind!r} moves as a whole; it has no joints.", kind=self.name
                     )
                 raise EngineError(
-                    "{kind!r} has no joint {joint!r}; its joints are {joints}.",
+                    "{kind!r} has no joint {joint!r}; choose one of {joints}.",
                     kind=self.name,
                     joint=joint,
                     joints=", ".join(self.parents),
@@ -113,7 +113,7 @@ CHAIN = BodyKind(
     name="chain",
     label=_("A chain"),
     hint=_(
-        "A snake, a fish, a tail, a scarf: from the end that leads, or is held, to the other one"
+        "A snake, a fish, a tail, a scarf: from the end that leads, or is held, to the other end"
     ),
     parents=_LINKS,
     usual=("joint.1", "joint.2", "joint.3", "joint.4", "joint.5", "joint.6", "joint.7"),
@@ -121,7 +121,7 @@ CHAIN = BodyKind(
 ANYTHING = BodyKind(
     name="anything",
     label=_("Anything else"),
-    hint=_("A ghost, a tree, a teapot: it moves as a whole, without joints"),
+    hint=_("A ghost, a tree, a teapot: the body moves as a whole, without joints"),
     parents=MappingProxyType({}),
     usual=(),
 )
@@ -140,6 +140,8 @@ def find_kind(name: str) -> BodyKind:
     """Return the kind with this name; raise an `EngineError` if there is none."""
     if name not in KINDS:
         raise EngineError(
-            "There is no kind {name!r}; the kinds are {kinds}.", name=name, kinds=", ".join(KINDS)
+            "There is no kind of body {name!r}; choose one of {kinds}.",
+            name=name,
+            kinds=", ".join(KINDS),
         )
     return KINDS[name]

@@ -48,7 +48,8 @@ class Parameters:
                 )
         if not 0 <= self.start < 1:
             raise EngineError(
-                "start is a share of the cycle, from 0 to below 1, not {start:g}.", start=self.start
+                "start must be a share of the cycle, from 0 to below 1, not {start:g}.",
+                start=self.start,
             )
 
 
@@ -117,7 +118,7 @@ class Motion:
         """Return the template for bodies of a kind; raise an `EngineError` if there is none."""
         if kind not in self.templates:
             raise EngineError(
-                "{motion!r} is not a motion of {kind!r}; it fits these kinds: {kinds}.",
+                "{motion!r} is not a motion for {kind!r}; it fits {kinds}.",
                 motion=self.name,
                 kinds=", ".join(self.templates),
                 kind=kind,
@@ -143,10 +144,12 @@ class Motion:
             travel by, or a share is not finite.
         """
         for share in shares:
-            as_number(share, "A share of a motion's cycle")
+            as_number(share, "The start of a motion's cycle")
         template = self.template_for(body.kind.name)
         if parameters.travel and not template.can_travel:
-            raise EngineError("{motion!r} has no steps; leave out travel.", motion=self.name)
+            raise EngineError(
+                "{motion!r} has no steps, so it cannot travel; leave travel out.", motion=self.name
+            )
         body = body.mirrored() if parameters.mirrored else body
         body.require_joints(template.needed, f"{self.name!r}")
         if template.either and not any(name in body.joints for name in template.either):

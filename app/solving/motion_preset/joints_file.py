@@ -33,7 +33,12 @@ def find_joints(layer: Layer, motion: Motion, given: JointsFile) -> LayerJoints:
     loops, kind = layer.domain.loops, given.kind
     if kind is None:
         if given.joints:
-            raise LissomError(_("the file of joints does not name their kind; add kind, or --kind"))
+            raise LissomError(
+                _(
+                    'the file of joints does not name the kind of body; add "kind" to it, or give '
+                    "--kind"
+                )
+            )
         kind = guess_kind(loops).name
         if kind not in motion.kinds and WHOLE in motion.kinds:
             kind = WHOLE
@@ -42,7 +47,9 @@ def find_joints(layer: Layer, motion: Motion, given: JointsFile) -> LayerJoints:
         joints = suggest_joints(loops, find_kind(kind))
         if not joints:
             raise LissomError(
-                _("no joints of {kind!r} are found in the drawing; give --joints").format(kind=kind)
+                _("Lissom found no joints for {kind!r} in the drawing; give --joints").format(
+                    kind=kind
+                )
             )
     return LayerJoints(kind, joints)
 
@@ -78,6 +85,6 @@ def _parsed(content: object) -> JointsFile:
     feet = [at.imag for name, at in joints.items() if name.startswith("foot")]
     if feet and "head" in joints and min(feet) > joints["head"].imag:
         raise LissomError(
-            _("the feet are above the head; places are pixels from the lower left corner, y up")
+            _("the feet are above the head; give pixels from the lower left corner, with y up")
         )
     return JointsFile(kind=kind, joints=joints)

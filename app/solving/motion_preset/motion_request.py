@@ -98,9 +98,10 @@ def _on_drawing(layer: Layer, joints: Mapping[str, complex]) -> dict[str, comple
     for (name, place), is_on_it in zip(joints.items(), covered, strict=True):
         if not is_on_it:
             raise LissomError(
-                _("the joint {name!r} at ({x:g}, {y:g}) is not on the drawing").format(
-                    name=name, x=place.real, y=place.imag
-                )
+                _(
+                    "the joint {name!r} at ({x:g}, {y:g}) is not on the drawing; move it onto "
+                    "the drawing"
+                ).format(name=name, x=place.real, y=place.imag)
             )
     nearest = layer.domain.nearest(points).tolist()
     return dict(zip(joints, nearest, strict=True))

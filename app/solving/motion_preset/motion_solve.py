@@ -75,7 +75,7 @@ class MotionSolve:
     def status_text(self) -> str:
         """Description of the next step."""
         if self.is_solved:
-            return _("Looking for a reachable size")
+            return _("Finding a reachable size")
         return _("Solving pose {number} of {count}").format(
             number=len(self.poses) + 1, count=len(self.key_poses)
         )
@@ -101,11 +101,11 @@ class MotionSolve:
             joints = _("{names} and {count:,} more").format(names=joints, count=more)
         size = self.reachable_size
         if size is None:
-            return (_("Some joints fall short of the motion: {joints}").format(joints=joints),)
+            return (_("Some joints miss their targets: {joints}").format(joints=joints),)
         return (
             _(
-                "Some joints fall short of the motion: {joints}; at size {size:.2f} all are "
-                "within reach"
+                "Some joints miss their targets: {joints}. At size {size:.2f} every joint "
+                "reaches its target"
             ).format(joints=joints, size=size),
         )
 
@@ -148,9 +148,7 @@ def start_motion_solve(document: Document, identity: int, order: MotionRequest) 
     before = document.layer(identity)
     if before.still:
         raise LissomError(
-            _("{layer!r} stands still: there is no shape on it to be moved.").format(
-                layer=before.name
-            )
+            _("{layer!r} cannot move, because it contains no shape.").format(layer=before.name)
         )
     body = find_rest_body(before, order)
     document, joints = with_handles_at_joints(document, identity, body, order)

@@ -58,7 +58,7 @@ def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, Tangen
         return ease, TangentMode(word)
     if "ease" in key and ease != HOLD:
         raise LissomError(
-            _("{where} holds its pose, so that it has nothing to ease; leave out ease").format(
+            _("{where} holds its pose, so its ease has no effect; leave out ease").format(
                 where=where
             )
         )
@@ -77,7 +77,7 @@ def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
     if name not in handles:
         raise LissomError(
             _(
-                "{where} names the handle {name!r}, which is not among the handles: {handles}"
+                "{where} names the handle {name!r}, which does not exist; the handles are {handles}"
             ).format(where=where, name=name, handles=join_names([*handles]))
         )
 

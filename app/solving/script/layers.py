@@ -80,9 +80,9 @@ def _joint(content: object, where: str) -> ScriptAttachment:
         for name in ("at", "turn"):
             if name in joint:
                 raise LissomError(
-                    _(
-                        "{where} detaches the layer, so that it has no {name}; leave that out"
-                    ).format(where=where, name=name)
+                    _("{where} detaches the layer and cannot have {name}; leave it out").format(
+                        where=where, name=name
+                    )
                 )
     to = None if joint["to"] is None else as_text(joint["to"], f"{where}.to")
     at = None if to is None or (keeps and "at" not in joint) else joint["at"]
@@ -112,18 +112,22 @@ def parse_switch_groups(
     choices = [_choice(entry, f"choices[{index}]") for index, entry in enumerate(entries)]
     for name, count in Counter(choice.name for choice in choices).items():
         if count > 1:
-            raise LissomError(_("two switches are called {name!r}").format(name=name))
+            raise LissomError(
+                _("two switches have the name {name!r}; rename one of them").format(name=name)
+            )
     layers = Counter(layer for choice in choices for layer in choice.layers)
     for layer, count in layers.items():
         if count > 1:
             raise LissomError(
-                _("the layer {layer!r} is in two switches; leave it out of one").format(layer=layer)
+                _("the layer {layer!r} is in two switches; leave it out of one of them").format(
+                    layer=layer
+                )
             )
         if layer in switched:
             raise LissomError(
                 _(
-                    "the layer {layer!r} is in a switch, which alone decides its visibility; leave "
-                    "out its visible"
+                    "the layer {layer!r} is in a switch, which alone decides its visibility; "
+                    'leave out "visible"'
                 ).format(layer=layer)
             )
     return tuple(choices)
@@ -135,11 +139,13 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
         as_text(layer, f"{where}.layers") for layer in as_list(fields["layers"], f"{where}.layers")
     )
     if len(layers) < 2:
-        raise LissomError(_("{where}.layers must be two layers or more").format(where=where))
+        raise LissomError(_("{where}.layers must list at least two layers").format(where=where))
     for layer, count in Counter(layers).items():
         if count > 1:
             raise LissomError(
-                _("{where}.layers has {layer!r} twice").format(where=where, layer=layer)
+                _("{where}.layers lists {layer!r} twice; list it once").format(
+                    where=where, layer=layer
+                )
             )
     turns = []
     for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", _("a layer")):
@@ -154,7 +160,7 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
     check_frame_order([frame for frame, _layer in turns], f"{where}.keys")
     name = as_text(fields["name"], f"{where}.name").strip()
     if not name:
-        raise LissomError(_("{where}.name is empty, and a switch needs a name").format(where=where))
+        raise LissomError(_("{where}.name is empty; give the switch a name").format(where=where))
     return ScriptSwitchGroup(name=name, layers=layers, turns=tuple(turns))
 
 
@@ -232,7 +238,9 @@ def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]
 
 def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
     keys = []
-    for at, frame, place in _from_frames(content, where, _("where the layer lies, or null")):
+    for at, frame, place in _from_frames(
+        content, where, _('"in_front_of" or "behind" with a layer, or null')
+    ):
         if place is None:
             keys.append(ScriptDrawOrder(frame=frame, beside=None))
             continue
@@ -240,7 +248,7 @@ def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]
         (side, *others) = read or {"": ""}
         if others or side not in SIDES:
             raise LissomError(
-                _("{where} must have in_front_of or behind, with a layer, not {content}").format(
+                _('{where} must have "in_front_of" or "behind" with a layer, not {content}').format(
                     where=at, content=repr_for_error(place)
                 )
             )

@@ -56,7 +56,9 @@ def _bone(content: object, where: str, handles: Sequence[str]) -> Bone:
         check_handle_name(name, handles, where)
     if names[0] == names[1]:
         raise LissomError(
-            _("{where} leads from {name!r} to itself").format(where=where, name=names[0])
+            _("{where} connects {name!r} to itself; name two different handles").format(
+                where=where, name=names[0]
+            )
         )
     first, second = map(list(handles).index, names)
     return Bone(ends=(first, second), stiffness=_amount(bone["amount"], where))

@@ -172,7 +172,9 @@ def parse_pose_script(content: object) -> PoseScript:
     lacking = [name for name in ("choices", "attach", "visible", "order") if name in read]
     if lacking and "layers" not in read:
         raise LissomError(
-            _('{field} needs "layers", which say what each layer does').format(field=lacking[0])
+            _('{field} needs "layers": a list that says what each layer does').format(
+                field=lacking[0]
+            )
         )
     script = read_fields(content, _("the script"), (*SCENE_FIELDS, *own))
     schema = script["schema"]
@@ -187,7 +189,11 @@ def parse_pose_script(content: object) -> PoseScript:
     names = [layer.layer for layer in layers]
     for name in names:
         if names.count(name) > 1:
-            raise LissomError(_("two layers are of the layer {name!r}").format(name=name))
+            raise LissomError(
+                _("two layers have the name {name!r}; rename one of them, or leave one out").format(
+                    name=name
+                )
+            )
     if not layers:
         raise LissomError(_("layers must be a list of at least one layer"))
     parsed = PoseScript(

@@ -34,11 +34,10 @@ CYCLE_FIELDS = ("from", "to", "until")
 # Field of a track key's position, by the space of the track.
 PLACES = {"pose": "offset", "picture": "at"}
 NEEDLESS_VELOCITY = N_(
-    "{where} has a velocity, which is of keys that are passed through; give it "
-    '"passing": "through", or leave the velocity out'
+    '{where} has a velocity, which needs "passing": "through"; add that, or leave out the velocity'
 )
 NO_PRESET = N_("{where} needs a preset, one of {presets}, or a frequency and a damping")
-HANDLE_OR_HANDLES = N_("{where} must have either a handle or handles, which move together")
+HANDLE_OR_HANDLES = N_('{where} must have either "handle", or "handles" that move together')
 NO_BASIS = N_("{where}.with must be pose or picture, not {content}")
 
 
@@ -89,16 +88,16 @@ def check_loop_periods(
         if track.delay > period:
             raise LissomError(
                 _(
-                    "{where}tracks[{index}].delay is {delay} frames, longer than the loop, "
-                    "which has {period}"
+                    "{where}tracks[{index}].delay is {delay} frames, longer than the loop of "
+                    "{period}; shorten it"
                 ).format(where=where, index=index, delay=track.delay, period=period)
             )
     for index, spring in enumerate(springs):
         if not spring.damping:
             raise LissomError(
                 _(
-                    "{where}springs[{index}].damping must be above 0 in a loop: without "
-                    "damping it never comes round"
+                    "{where}springs[{index}].damping must be above 0 in a loop; without damping "
+                    "the swing never repeats"
                 ).format(where=where, index=index)
             )
 
@@ -141,7 +140,7 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
     if other in key:
         raise LissomError(
             _(
-                "{where} has {other!r}, but the keys of a track with {basis!r} have {place!r}"
+                "{where} has {other!r}, but the keys of a track with {basis!r} need {place!r}"
             ).format(
                 where=where,
                 other=other,
@@ -195,7 +194,9 @@ def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple
     for index, name in enumerate(names):
         if name in names[:index]:
             raise LissomError(
-                _("{where}.handles names {name!r} twice").format(where=where, name=name)
+                _("{where}.handles lists {name!r} twice; list it once").format(
+                    where=where, name=name
+                )
             )
     return tuple(
         _number(name, f"{where}.handles[{index}]", handles) for index, name in enumerate(names)
@@ -218,7 +219,8 @@ def _require_one_each(
             if number in seen:
                 raise LissomError(
                     _(
-                        "{where}[{other}] and {where}[{index}] are both of the handle {handle!r}"
+                        "{where}[{other}] and {where}[{index}] both have the handle {handle!r}; "
+                        "leave one out"
                     ).format(where=where, other=seen[number], index=index, handle=handles[number])
                 )
             seen[number] = index

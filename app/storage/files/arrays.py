@@ -61,7 +61,7 @@ def _members(
     missing = [name for name in required if name not in members]
     if missing:
         raise LissomError(
-            _("{path} lacks the array {name!r}; it holds {names}").format(
+            _("{path} has no array {name!r}; it has {names}").format(
                 path=path, name=missing[0], names=", ".join(sorted(members)[:50])
             )
         )
@@ -69,7 +69,7 @@ def _members(
     unpacked = sum(member.file_size for member in wanted.values())
     if unpacked > size + MOST_UNPACKED:
         raise LissomError(
-            _("{path} would unpack to {unpacked:,} bytes, more than any case").format(
+            _("{path} would unpack to {unpacked:,} bytes, too many for its arrays").format(
                 path=path, unpacked=unpacked
             )
         )
@@ -83,7 +83,7 @@ def _read_array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> npt.NDArra
         if dtype.kind in TEXT:
             name = member.filename.removesuffix(".npy")
             raise LissomError(
-                _("the array {name!r} holds text; it must hold numbers").format(name=name)
+                _("the array {name!r} contains text; it must contain numbers").format(name=name)
             )
         if dtype.kind not in NUMERIC or any(side < 0 for side in shape):
             raise ValueError(f"{member.filename} is no numeric array")

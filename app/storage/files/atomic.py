@@ -46,10 +46,13 @@ class DiskFullError(LissomError):
             room = shutil.disk_usage(os.path.realpath(path.parent)).free
             # Only if the disk is full, and not the person's quota.
             if cause.errno == errno.ENOSPC:
-                size = _("{size}, and {free} are free there").format(size=size, free=_size(room))
+                size = _("{size}, but only {free} are free there").format(
+                    size=size, free=_size(room)
+                )
         super().__init__(
             _(
-                "cannot write {path}: {reason}: it takes {size}; make room or choose another folder"
+                "cannot write {path}: {reason}. The file needs {size}; free some space, or "
+                "choose another folder"
             ).format(path=path, reason=cause.strerror, size=size)
         )
 
@@ -260,6 +263,7 @@ def _refusal(path: Path, error: OSError, parts: Sequence[Path]) -> LissomError:
         return DiskFullError(path, error, written)
     if error.errno in NOT_ALLOWED:
         reason = _(
-            "{reason}: its folder {folder} may not be written to; choose another one"
+            "{reason}: you have no permission to write to its folder {folder}; choose another "
+            "folder"
         ).format(reason=reason, folder=path.parent)
     return LissomError(_("cannot write {path}: {reason}").format(path=path, reason=reason))

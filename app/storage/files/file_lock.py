@@ -76,7 +76,7 @@ class FileLock:
             os.close(descriptor)
             if not is_ours:
                 raise FileLockedError(_parse_holder(content))
-        raise OSError(_("the lock file is removed again and again"))
+        raise OSError(_("another program keeps removing the lock file"))
 
 
 def _name_holder() -> str:

@@ -16,7 +16,7 @@ STREAMS = (0, 1, 2)  # descriptors
 NO_FOLDER = N_("the folder {folder} does not exist")
 SAME_FILE = N_("cannot write {path}: it is the same file as {other}; name another one")
 NO_PLACE = N_("cannot make the folder {folder}: {reason}")
-IS_FILE = N_("{file} is there and is no folder; choose another name")
+IS_FILE = N_("{file} already exists and is not a folder; choose another name")
 IS_FOLDER = N_("it is a folder; name a file")
 
 
@@ -39,7 +39,9 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
     taken: dict[Identity, str] = {}
     for source in sources:
         with suppress(OSError, ValueError):
-            taken[_identity(source)] = _("{path}, from which it is made").format(path=source)
+            taken[_identity(source)] = _("{path}, the file that it is made from").format(
+                path=source
+            )
     for out in outs:
         try:
             _check_place(out)
@@ -51,7 +53,7 @@ def check_writable(*outs: Path, sources: Iterable[Path] = ()) -> None:
             ) from error
         if own in taken:
             raise LissomError(_(SAME_FILE).format(path=out, other=taken[own]))
-        taken[own] = _("{path}, which is written as well").format(path=out)
+        taken[own] = _("{path}, another file that this command writes").format(path=out)
 
 
 def make_folder(folder: Path) -> None:
@@ -91,15 +93,15 @@ def _check_place(path: Path) -> None:
         raise LissomError(
             _(
                 "cannot write {path}: it is a device, a pipe, a socket or standard output, "
-                "which would be replaced; name a plain file"
+                "which Lissom does not replace; name an ordinary file"
             ).format(path=path)
         )
     if not os.access(target, os.W_OK):
         # In a writable folder the system would allow replacing a read-only file.
         raise LissomError(
             _(
-                "cannot write {path}: it may only be read; choose another name, or allow to "
-                "write it"
+                "cannot write {path}: the file is read-only; choose another name, or allow "
+                "writing to the file"
             ).format(path=path)
         )
 

@@ -35,7 +35,9 @@ DAMAGED_ZIP = (
     OverflowError,
 )
 FOLDER_READ = N_("cannot read {path}: it is a folder")
-NOT_ORDINARY = N_("cannot read {path}: it is not an ordinary file; copy it into one")
+NOT_ORDINARY = N_(
+    "cannot read {path}: it is not an ordinary file; copy its content into an ordinary file"
+)
 
 
 class OpenFile(NamedTuple):
@@ -112,7 +114,7 @@ def read_file(path: Path, *, largest: int = LARGEST_FILE) -> bytes:
             _("cannot read {path}: {reason}").format(path=path, reason=error)
         ) from error
     raise LissomError(
-        _(
-            "cannot read {path}: it has {size:,} bytes, more than the {largest:,} that Lissom reads"
-        ).format(path=path, size=size, largest=largest)
+        _("cannot read {path}: it has {size:,} bytes, and Lissom reads at most {largest:,}").format(
+            path=path, size=size, largest=largest
+        )
     )

@@ -5,7 +5,7 @@ import json
 from app.errors import LissomError
 from app.texts import N_, _
 
-NOT_FINITE = N_("a number in it is not finite, which JSON cannot say")
+NOT_FINITE = N_("it contains a number that is not finite, which JSON does not allow")
 
 
 def strict_json(content: object, *, indent: int | None = None) -> str:

@@ -46,7 +46,7 @@ def to_srgb(image: Image.Image, profile: bytes | None) -> tuple[Image.Image, str
         source = ImageCms.ImageCmsProfile(io.BytesIO(profile))
         mode, fitting = MODES.get(source.profile.xcolor_space.strip(), ("", set()))
         if image.mode not in fitting:
-            return image, _("ignored its colour profile, which is of another kind of picture")
+            return image, _("its colour profile is for another kind of picture and was ignored")
         transform = ImageCms.buildTransform(
             source,
             ImageCms.createProfile("sRGB"),
@@ -56,14 +56,14 @@ def to_srgb(image: Image.Image, profile: bytes | None) -> tuple[Image.Image, str
             flags=ImageCms.Flags.BLACKPOINTCOMPENSATION,
         )
     except (OSError, ImageCms.PyCMSError):
-        return image, _("ignored its colour profile, which is damaged")
+        return image, _("its colour profile is damaged and was ignored")
     if mode != "CMYK" and _changes_nothing(transform, mode, only_greys=image.mode in GREYS):
         return image, ""
     fit = image if image.mode == mode else image.convert("RGBA").convert(mode)
     converted = transform.apply(fit)
     if image.has_transparency_data:
         converted.putalpha(image.convert("RGBA").getchannel("A"))
-    return converted, _("converted its colours from {profile} to sRGB").format(
+    return converted, _("its colours were converted from {profile} to sRGB").format(
         profile=_name(source)
     )
 

@@ -31,7 +31,7 @@ def check_name_length(name: str) -> None:
     if len(name) > LONGEST_NAME:
         raise LissomError(
             _(
-                "the name {name!r} has {count:,} characters; Lissom takes up to "
-                "{longest:,}: shorten it"
+                "the name {name!r} has {count:,} characters; Lissom reads at most "
+                "{longest:,}. Shorten the name"
             ).format(name=shortened(name), count=len(name), longest=LONGEST_NAME)
         )

@@ -20,11 +20,11 @@ from engine.arrays import readonly
 
 MOST_LAYERS = 200
 MOST_GROUPS = 10_000
-EMPTY = N_("left out, since it is empty")
+EMPTY = N_("left out, because it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
 # pixel takes memory, also on the graphics card.
 CUT_OFF = 0.8
-GROUPS_DEEP = N_("its groups lie more than {most} deep in each other")
+GROUPS_DEEP = N_("its groups are nested more than {most} deep; move some groups out")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -98,7 +98,7 @@ class GroupPaths:
         if len(self._found) == MOST_GROUPS:
             raise LissomError(
                 _(
-                    "it has more than {most:,} groups, which Lissom does not take: merge some"
+                    "it has too many groups; Lissom reads at most {most:,}. Merge some of them"
                 ).format(most=MOST_GROUPS)
             )
         # A slash separates groups.
@@ -137,7 +137,7 @@ def build_layered_picture(
     """
     kept = _drawn_layers(found, groups, collector)
     if not kept:
-        raise LissomError(_("it has no layer on which anything is drawn"))
+        raise LissomError(_("all of its layers are empty; draw on at least one"))
     # Layers may share a picture.
     distinct = list({id(layer.picture): layer for layer in kept}.values())
     made = run_parallel(_trimmed, distinct, (layer.picture.size for layer in distinct))
@@ -192,9 +192,9 @@ def _drawn_layers(
         )
         if not is_clipped:
             clipped_by = (
-                _("left out, since it is clipped by the empty group {name}")
+                _("left out, because the empty group {name} clips it")
                 if path
-                else _("left out, since it is clipped by the empty layer {name}")
+                else _("left out, because the empty layer {name} clips it")
             )
             name = path.rpartition("/")[2] if path else run[0].name
             empty = "" if drawn else clipped_by.format(name=name)
@@ -257,7 +257,7 @@ def check_layer_count(count: int) -> None:
     """Refuse too many layers before any of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
-            _("it has {count:,} layers; Lissom takes up to {most}: merge some of them").format(
+            _("it has {count:,} layers; Lissom reads at most {most}. Merge some of them").format(
                 count=count, most=MOST_LAYERS
             )
         )

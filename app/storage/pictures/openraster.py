@@ -32,7 +32,7 @@ LARGEST_XML = 4 * 1024 * 1024
 # Limit of the pictures' total size beyond twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
-DAMAGED_STACK = N_("its stack.xml is damaged, or in a rare encoding; UTF-8 is usual")
+DAMAGED_STACK = N_("its stack.xml is damaged, or has a rare encoding; save it as UTF-8")
 MODES: dict[str, BlendMode] = {
     "": "normal",
     "svg:src-over": "normal",
@@ -68,7 +68,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     size = (_whole(image, "w"), _whole(image, "h"))
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
-        raise LissomError(_("its stack.xml holds no stack of layers"))
+        raise LissomError(_("its stack.xml contains no stack of layers"))
     collector, groups = NoticeCollector(), GroupPaths()
     # The file lists the stack from the front.
     elements = list(_layers(stack, _Place(), groups, collector))[::-1]
@@ -86,7 +86,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     distinct = list(dict.fromkeys(sources))
     packed = sum(member.compress_size for member in archive.infolist())
     if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
-        raise LissomError(_("its pictures would unpack to more than any drawing"))
+        raise LissomError(_("its pictures would unpack to too many bytes for a drawing"))
     members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
     check_memory([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
@@ -166,7 +166,7 @@ def _layers(
             yield from _layers(element, inner, groups, collector)
         else:
             collector.add_warning(
-                name or element.tag, _("left out, since Lissom takes drawn layers only")
+                name or element.tag, _("left out, because Lissom reads only drawn layers")
             )
 
 
@@ -210,7 +210,7 @@ class _Builder(ET.TreeBuilder):
 
     def doctype(self, *_names: str | None) -> None:
         """Refuse a document type: its entities could grow without limit."""
-        raise LissomError(_("its stack.xml has a document type, which no layer stack has"))
+        raise LissomError(_("its stack.xml has a document type, which a layer stack must not have"))
 
 
 def _parse(content: bytes) -> ET.Element:

@@ -21,8 +21,8 @@ PIXEL = 4  # bytes
 # `USUAL` bytes.
 SHARE, USUAL = 0.25, 8_000_000_000
 MEMORY_OF_PICTURES = N_(
-    "decoded it takes {needed:,.0f} MB of memory, and pictures may take {budget:,.0f} "
-    'MB; scale it down, or change "memory" in {preferences}'
+    "decoded, the picture needs {needed:,.0f} MB of memory, and pictures may use {budget:,.0f} "
+    'MB. Scale it down, or raise "memory" in {preferences}'
 )
 
 

@@ -118,8 +118,8 @@ def _require_few_records(data: bytes) -> None:
     if count > MOST_RECORDS:
         raise LissomError(
             _(
-                "it has {count:,} layers and ends of groups; Lissom takes up to "
-                "{most:,}: merge some of them"
+                "it has {count:,} layers and group ends; Lissom reads at most {most:,}. Merge "
+                "some layers"
             ).format(count=count, most=MOST_RECORDS)
         )
 
@@ -187,7 +187,7 @@ def _drawn_layers(
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
                 masks = (*masks, MaskedGroup(layer, canvas))
                 collector.add_note(
-                    name, _("its mask is cut into the layers of the group, as they are drawn")
+                    name, _("the mask of the group is applied to each of its layers")
                 )
             inner = _Place(group=groups.add(place.group, group), masks=masks)
             drawn = list(_drawn_layers(layer, inner, groups, collector))
@@ -195,13 +195,13 @@ def _drawn_layers(
         elif layer.kind in DRAWN:
             _warn_left_out(layer, name, collector)
             if layer.kind == "type":
-                collector.add_note(name, _("text, drawn as a picture"))
+                collector.add_note(name, _("drawn as a picture; its text cannot be edited"))
             yield replace(place, masks=masks), layer, is_clipped
         else:
             left_out = (
-                _("left out, since it is a fill layer")
+                _("left out, because it is a fill layer")
                 if layer.kind.endswith("fill")
-                else _("left out, since it is an adjustment layer")
+                else _("left out, because it is an adjustment layer")
             )
             collector.add_warning(name, left_out)
             clips = clips and _is_clipping(layer)
@@ -220,17 +220,15 @@ def _warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
             name, _("drawn without effects ({effects})").format(effects=", ".join(effects))
         )
     if layer.kind == "artboard":
-        collector.add_warning(
-            name, _("an artboard, of which neither the background nor the edges are drawn")
-        )
+        collector.add_warning(name, _("an artboard; its background and edges are not drawn"))
     ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
     pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
     if any(each not in ALL_LEVELS for pair in pairs for each in pair):
-        collector.add_warning(name, _("drawn at all brightnesses, whatever its “Blend If” says"))
-    if layer.tagged_blocks.get_data(KNOCKOUT):
         collector.add_warning(
-            name, _("drawn over the layers behind, which it knocks out in the file")
+            name, _("drawn at all brightnesses; its “Blend If” setting is ignored")
         )
+    if layer.tagged_blocks.get_data(KNOCKOUT):
+        collector.add_warning(name, _("drawn over the layers behind; its knockout is ignored"))
 
 
 def _is_clipping(layer: Any) -> bool:
@@ -265,7 +263,7 @@ def _require_channels(layer: Any, drawing: Any) -> None:
     colours = COLOURS.get(drawing.color_mode.name, 0)
     if layer.width and layer.height and not set(range(colours)) <= set(found):
         raise LissomError(
-            _("the layer {layer!r} lacks a channel of its colours").format(
+            _("the layer {layer!r} has no data for one of its colour channels").format(
                 layer=shortened(layer.name)
             )
         )
@@ -281,4 +279,4 @@ def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0
         lengths = np.frombuffer(channel.data[: size * rows], f">u{size}")
         left = len(channel.data) - size * rows - int(lengths.sum())
         if len(lengths) < rows or not 0 <= left <= padding:
-            raise LissomError(_("the rows of one of its channels are not as long as it says"))
+            raise LissomError(_("one of its channels is damaged: its rows have the wrong length"))

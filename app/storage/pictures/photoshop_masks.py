@@ -46,7 +46,7 @@ def masked_pixels(
         mask = _seen_through(each.group.mask, corner, pixels.size)
         if _shines_through(each, corner, pixels, mask) and not each.has_warned:
             each.has_warned = True
-            what = _("half seen through its mask, so that its layers shine through each other")
+            what = _("its mask makes it half transparent, so its layers shine through each other")
             collector.add_warning(each.group.name.strip() or "layer", what)
         _cut(pixels, mask)
     return pixels

@@ -177,7 +177,7 @@ def _decoded(data: bytes) -> Picture:
     suffix = FORMATS[file.format or ""]
     frames = getattr(file, "n_frames", 1)
     if frames > 1:
-        notices.append(_("used the first of {frames} frames").format(frames=frames))
+        notices.append(_("only the first of its {frames} frames was used").format(frames=frames))
     is_deep = _is_deep(file)
     rgba = _load(file)
     image: Image.Image = file
@@ -187,9 +187,9 @@ def _decoded(data: bytes) -> Picture:
         notices.append(notice)
     if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
         image = Image.fromarray(_scale_deep_grey(np.asarray(image), is_float=image.mode == "F"))
-        notices.append(_("reduced its deep greys to 8 bits"))
+        notices.append(_("its deep greys were reduced to 8 bits"))
     elif is_deep:
-        notices.append(_("reduced its deep colours to 8 bits per channel"))
+        notices.append(_("its deep colours were reduced to 8 bits per channel"))
     image, notice = to_srgb(image, profile)
     if notice:
         notices.append(notice)
@@ -212,9 +212,9 @@ def apply_orientation(image: Image.Image) -> tuple[Image.Image, str]:
     try:
         if image.getexif().get(EXIF_ORIENTATION, 1) not in range(2, 9):
             return image, ""
-        return ImageOps.exif_transpose(image), _("turned upright as the camera noted")
+        return ImageOps.exif_transpose(image), _("rotated upright, as its camera data says")
     except DECODER_ERRORS:
-        return image, _("ignored the camera's notes, which are damaged")
+        return image, _("its camera data is damaged and was ignored")
 
 
 def _pixels(image: Image.Image) -> Bytes:

@@ -25,9 +25,9 @@ PACKED = (".json", ".npy")
 DATE = (1980, 1, 1, 0, 0, 0)
 NPY_MAGIC = b"\x93NUMPY\x01\x00"
 LARGEST_NPY_HEADER = 1024
-NOT_ARRAY = N_("its {name} is not an array {dtype} (n{shape})")
+NOT_ARRAY = N_("its {name} is not an array of type {dtype} and shape (n{shape})")
 MEMBER_CUT_SHORT = N_("its {name} is cut short")
-MEMBER_TOO_LARGE = N_("its {name} is too large: {size:,} bytes, more than {most:,}")
+MEMBER_TOO_LARGE = N_("its {name} is too large: {size:,} bytes; at most {most:,} are allowed")
 NOTHING_WRITTEN: Mapping[str, bytes] = MappingProxyType({})
 
 
@@ -81,7 +81,7 @@ class Archive:
         members = file.infolist()
         if len(members) > MOST_MEMBERS:
             raise LissomError(
-                _("it has {count:,} members, more than the {most:,} of any project").format(
+                _("it has {count:,} members; a project has at most {most:,}").format(
                     count=len(members), most=MOST_MEMBERS
                 )
             )
@@ -92,13 +92,13 @@ class Archive:
             re.sub("^figures/", "layers/", member.filename): member for member in members
         }
         if len(self._members) < len(members):
-            raise LissomError(_("it has two members of one name"))
+            raise LissomError(_("it has two members of the same name"))
         if sum(member.compress_size for member in members) > size:
             raise LissomError(_("it is damaged: its members overlap"))
         unpacked = sum(member.file_size for member in members)
         if unpacked > size + MOST_UNPACKED:
             raise LissomError(
-                _("it would unpack to {unpacked:,} bytes, more than any project").format(
+                _("it would unpack to {unpacked:,} bytes, too many for a project").format(
                     unpacked=unpacked
                 )
             )

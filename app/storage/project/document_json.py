@@ -498,7 +498,7 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
         targets, f = dict(given), members.map(domain, kind, index)
         if len(targets) < len(given):
             raise LissomError(
-                _("one of its {kind} has two targets for one handle").format(kind=kind)
+                _("one of its {kind} has two targets for the same handle").format(kind=kind)
             )
         return Pose.of(f, targets, proven(f))
 

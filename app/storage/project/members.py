@@ -87,9 +87,8 @@ class LayerMembers:
         if size not in {(width, height), (height, width)}:
             raise LissomError(
                 _(
-                    "its picture has {width} × {height} pixels, not {saved_width} × "
-                    "{saved_height} as "
-                    "it says"
+                    "its picture has {width} × {height} pixels, but the project says "
+                    "{saved_width} × {saved_height}"
                 ).format(width=width, height=height, saved_width=size[0], saved_height=size[1])
             )
         return picture
@@ -134,9 +133,7 @@ class LayerMembers:
         points = self._points(f"{kind}.npy", MOST_STROKE_POINTS)
         if min(counts) < 1 or sum(counts) != len(points):
             raise LissomError(
-                _("the {kind} of a cut-out do not have as many points as there are").format(
-                    kind=kind
-                )
+                _("the number of points in the {kind} of a cut-out is wrong").format(kind=kind)
             )
         return np.split(points, np.cumsum(counts)[:-1])
 

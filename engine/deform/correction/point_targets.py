@@ -7,7 +7,7 @@ import numpy as np
 from engine.arrays import Complexes, Floats, as_points
 from engine.errors import EngineError
 
-BAD_TARGETS = "The {name} of targets for {count} points cannot be {values}."
+BAD_TARGETS = "The {name} of targets cannot be {values} for {count} points."
 
 
 class PointTargets(NamedTuple):

@@ -39,8 +39,8 @@ CALM = 1e-4  # step in h: where the iteration ends with a barrier
 GAINS, GAINS_AT_WALLS = 0.99, 0.999  # of the merit: the largest remainder after a part of a step
 LEVER = 0.25  # of the diameter: the distance at which a rotation is as firm as a point
 UNFINISHED = (
-    "The correction did not come to rest in {steps} steps: a point is still {miss:.3g} from its "
-    "target. Give targets nearer to the base, or take the correction as it is (throw=False)."
+    "The correction did not converge in {steps} steps: a point is still {miss:.3g} from its "
+    "target. Give targets nearer to the base, or accept the correction as it is (throw=False)."
 )
 FIRMEST = 1.5  # times the largest pull: the merit's weight of each target error
 

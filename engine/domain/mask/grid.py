@@ -15,7 +15,7 @@ from engine.errors import EngineError
 LONGEST = 1024  # cells along the subject's longer side: larger subjects are reduced to blocks
 ENLARGED = 640  # cells to which small subjects are enlarged, at most
 MOST_ENLARGED = 16  # cells per pixel
-EMPTY_MASK = "The mask has no pixel of a subject; give one with a drawing."
+EMPTY_MASK = "The mask selects no pixels; give a mask that selects a drawing."
 PADDING = 0.06  # of the diagonal: free space around the subject
 
 

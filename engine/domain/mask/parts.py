@@ -19,8 +19,8 @@ CLOUD_GAP = 0.04  # of the diagonal: widest half gap that is closed between many
 BRIDGE_WIDTHS = (0.012, 0.05)  # of the diagonal
 WITH_CORNERS = ((1, 1, 1), (1, 1, 1), (1, 1, 1))  # neighbours that are connected to a pixel
 FRAGMENTED = (
-    "The subject is too fragmented: {count:,} parts, of which {dropped:.0%} of the area are "
-    "specks; give a picture with at most {most} parts."
+    "The subject has too many parts: {count:,}, with specks on {dropped:.0%} of the area. Give "
+    "a picture with at most {most} parts."
 )
 
 

@@ -23,8 +23,8 @@ USUAL, THICKEST, BEYOND = 0.4, 1.35, 1.8
 # Measured: with 1 an arm rotates at its shoulder by less than half as far.
 JOINT, LONGEST_JOINT = 1.6, 0.42
 BONE_STAYS = (
-    "A bone must stay on the drawing, and this one leaves it or crosses a hole; put a handle "
-    "between its ends, and a bone to either side of that."
+    "The bone leaves the drawing or crosses a hole. Add a handle between its ends, and a bone "
+    "on each side of that handle."
 )
 
 
@@ -52,7 +52,7 @@ def limb_weights(
     length = abs(end - start)
     area = shapely_region(loops[0], loops[1:]).buffer(ON_OUTLINE * diameter(loops[0]))
     if not length > 0:
-        raise EngineError("A bone leads from one point to another one.")
+        raise EngineError("A bone must connect two different points.")
     bone = shapely.LineString([(start.real, start.imag), (end.real, end.imag)])
     if not area.covers(bone):
         raise EngineError(BONE_STAYS)

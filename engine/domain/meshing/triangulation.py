@@ -77,8 +77,8 @@ def triangulate(outline: Complexes, count: int, *, holes: Sequence[Complexes] = 
     shortest = min(float(np.abs(edge_vectors(loop)).min()) for loop in loops)
     if shortest < SHORTEST_EDGE * diameter(outline):
         raise EngineError(
-            "The outline has an edge of length {shortest:.3g}, which is too short for its "
-            "size of {size:.3g}; leave out one of its ends.",
+            "The outline of size {size:.3g} has an edge of length {shortest:.3g}, which is too "
+            "short. Leave out one end of the edge.",
             shortest=shortest,
             size=diameter(outline),
         )

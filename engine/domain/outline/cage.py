@@ -17,7 +17,7 @@ SLOPE = 0.5  # largest change of the offset per length of an edge
 SHRINKING = 0.8
 MOST_ROUNDS = 60
 CLOSE_OUTLINE = (
-    "The outline comes too close to itself for a cage around its {count} vertices; choose a "
+    "The outline comes too close to itself for a cage around its {count} vertices. Choose a "
     "coarser detail, or widen the gap in the picture."
 )
 

@@ -24,8 +24,8 @@ SPECK = 2e-4  # of the subject's area: smaller pieces that lines cut off are dro
 THIN = 1.5  # slit widths: narrower strips beside a line are dropped
 LEAST_STRIP, MOST_STRIP = 0.25, 4.0  # squares of slit widths: smallest strip, most drawn area
 CUTS_OFF = (
-    "The knife cuts off a part of the drawing, {cut_off:.1%} of it, and a figure is one piece; end "
-    "the line inside, or move the part to a layer of its own."
+    "The knife cuts off {cut_off:.1%} of the drawing, but a layer must be one piece. End the "
+    "line inside the drawing, or move the part to its own layer."
 )
 
 
@@ -104,7 +104,7 @@ def _simplified(line: Complexes, width: float) -> Complexes:
     """Return a line with few vertices, without the tremor of the hand."""
     way = shapely.simplify(shapely.LineString(as_xy(line)), TREMOR * width)
     if way.length < 4 * width:
-        raise EngineError("The knife's line is too short to part anything; draw a longer one.")
+        raise EngineError("The knife's line is too short to separate anything; draw a longer line.")
     xy = shapely.get_coordinates(way)
     return np.asarray(xy[:, 0] + 1j * xy[:, 1])
 
@@ -149,8 +149,8 @@ def _require_touching(whole: shapely.Polygon, slits: Sequence[shapely.Geometry])
     for piece in shapely.get_parts(shapely.union_all(slits)):
         if shapely.contains_properly(whole, piece):
             raise EngineError(
-                "The knife's line begins and ends inside the drawing; begin it outside, in a hole, "
-                "or at another line."
+                "The knife's line begins and ends inside the drawing. Begin it outside, in a "
+                "hole, or at another line."
             )
 
 
@@ -171,8 +171,8 @@ def _without_strips(
     strips = parts[shapely.area(parts) > LEAST_STRIP * width**2]
     if sum(_drawn_area(strip, mask) for strip in strips) > MOST_STRIP * width**2:
         raise EngineError(
-            "The knife's line runs along an edge or another line and leaves a strip that is too "
-            "thin; draw it farther away."
+            "The knife's line runs along an edge or another line and leaves too thin a strip; "
+            "draw it farther away."
         )
     rest = shapely.difference(piece, shapely.buffer(shapely.union_all(strips), 1e-3 * width))
     return _largest(rest)

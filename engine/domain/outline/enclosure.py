@@ -179,7 +179,7 @@ def _cut_loops(
             "other lines."
         ) from error
     if sum(map(len, loops)) > LARGEST_OUTLINE:
-        raise EngineError("There are too many of the knife's lines; draw fewer or shorter ones.")
+        raise EngineError("The knife has too many lines; draw fewer or shorter lines.")
     return loops[0], cage, found, np.concatenate(closed)
 
 
@@ -250,8 +250,8 @@ def _best_fit(field: DistanceField, margin: float, diagonal: float) -> _Fit:
     while min((len(fit.outline) for fit in fits), default=np.inf) > LARGEST_OUTLINE:
         if closing > WIDEST_GAP * diagonal:
             raise EngineError(
-                "The subject is too intricate for an outline; choose another detail, or close its "
-                "finest gaps in the picture."
+                "The subject is too intricate for an outline. Choose another detail, or close "
+                "the finest gaps in the picture."
             )
         fit = _fit(_draft(field, margin, diagonal, widening=widening, closing=closing), corners)
         fits += [] if fit is None else [fit]

@@ -38,10 +38,12 @@ def describe_filled_holes(
         (
             crowded,
             count_message(
-                "{count:,} hole filled, {share:.2%} of the subject, since too many open holes "
+                "{count:,} hole filled, {share:.2%} of the subject, because too many open holes "
                 "make posing slow",
-                "{count:,} holes filled, the largest {share:.2%} of the subject, since too many "
-                "open holes make posing slow",
+                (
+                    "{count:,} holes filled, the largest {share:.2%} of the subject, because too "
+                    "many open holes make posing slow"
+                ),
                 len(crowded),
                 share=piece.largest_share(crowded),
             ),
@@ -60,21 +62,21 @@ def describe_curve(curve: MarginCurve, widening: float, area: int) -> tuple[Mess
     if fused >= LEAST_JOINED:
         notices.append(
             Message(
-                "limbs too close together for outlines of their own are fused and move as one, "
-                "along {share:.0%} of the edge",
+                "limbs too close together were fused and move as one, along {share:.0%} of the "
+                "edge",
                 {"share": fused},
             )
         )
     if widening > 1:
         notices.append(
             Message(
-                "margin widened {factor:.1f} times for an outline of few vertices",
+                "the margin was widened {factor:.1f} times for an outline of few vertices",
                 {"factor": widening},
             )
         )
     share = curve.enclosed / area
     if share >= LEAST_ENCLOSED:
         notices.append(
-            Message("the outline closes over gaps of {share:.1%} of the subject", {"share": share})
+            Message("the outline bridges gaps of {share:.1%} of the subject", {"share": share})
         )
     return tuple(notices)

@@ -221,11 +221,13 @@ def _matching(interval: KeyframeSegment) -> Extension:
     """Raise for a transform of another domain, which would give wrong in-betweens silently."""
     transform, sites = interval.transform, interval.sampled_domain
     if transform is None:
-        raise EngineError("The metric variant needs a Hilbert transform of the outline.")
+        raise EngineError(
+            "The metric variant needs the Hilbert transform of the outline; give the transform."
+        )
     sites.require_boundary(transform.loops)
     if not np.array_equal(transform.points, sites.paths.nodes):
         raise EngineError(
-            "The Hilbert transform is prepared for other points; prepare it for the nodes of the "
-            "sites' paths."
+            "The Hilbert transform is prepared for other points. Prepare it for the nodes of "
+            "the sites' paths."
         )
     return transform

@@ -13,7 +13,8 @@ from engine.interpolation.series.residual import Residual, combine_arrays
 from engine.interpolation.time_weights.weights import TimeWeights
 
 KEYFRAMES_OF_SEGMENT = (
-    "A segment with these time weights has {wanted} keyframes, not {count} with {sheets} sheets."
+    "These time weights need {wanted} keyframes for a segment, but there are {count} keyframes "
+    "with {sheets} sheets."
 )
 
 

@@ -13,8 +13,8 @@ from engine.maps import HarmonicMap, LocalBounds, certify, distortion
 from engine.paths import IntegrationPaths, continue_logarithm
 
 FOLDS = (
-    "Keyframe {number} folds: at ({x:.6g}, {y:.6g}) its smaller stretch sigma_b is {sigma_b:.3g}, "
-    "and must be clearly above 0. Pose it again within bounds."
+    "Keyframe {number} folds: at ({x:.6g}, {y:.6g}) its smaller stretch sigma_b is "
+    "{sigma_b:.3g}, and must be clearly above 0. Pose it again within the limits."
 )
 
 
@@ -80,7 +80,7 @@ def sample_keyframes(
         If a map folds anywhere in the domain, or if a fold cannot be excluded.
     """
     if not maps:
-        raise EngineError("There is no keyframe to sample; give one at least.")
+        raise EngineError("There is no keyframe to sample; give at least one.")
     paths = sites.paths
     for i, f in enumerate(maps):
         _require_unfolded(f, sites, i)
@@ -145,10 +145,10 @@ def _require_unfolded(f: HarmonicMap, sites: SampledDomain, number: int) -> None
     for hole, turns in enumerate(_turns(fz, sites), start=1):
         if turns:
             raise EngineError(
-                "Keyframe {number} turns the drawing inside out around hole {hole} of {count}: "
-                "along its edge f_z winds {turns} times around 0, and must not wind. No motion "
-                "without folds leads there. Pose it again from the drawing at rest, by small "
-                "steps.",
+                "Keyframe {number} turns the drawing inside out around hole {hole} of {count}. "
+                "Along the hole's edge f_z winds {turns} times around 0, and must not wind. No "
+                "motion without folds leads to this keyframe. Pose it again from the drawing at "
+                "rest, by small steps.",
                 number=number,
                 hole=hole,
                 count=len(sites.loops.starts),
@@ -158,8 +158,8 @@ def _require_unfolded(f: HarmonicMap, sites: SampledDomain, number: int) -> None
     nodes = sites.paths.nodes
     z = nodes[np.abs(f.derivatives(nodes)[0]).argmin()]
     raise EngineError(
-        "Keyframe {number} folds inside: f_z winds {winding} times around 0 along the "
-        "outline and vanishes near ({x:.6g}, {y:.6g}). Pose it again within bounds.",
+        "Keyframe {number} folds inside: f_z winds {winding} times around 0 along the outline "
+        "and vanishes near ({x:.6g}, {y:.6g}). Pose it again within the limits.",
         number=number,
         winding=certificate.winding,
         x=z.real,

@@ -64,7 +64,7 @@ def prove(inbetweens: Inbetweens, time: float | None = None) -> Proof:
     Corrected in-betweens need a sampled domain with the boundary samples
     (`SampledDomain.sample_nodes`).
     """
-    require_kind(inbetweens, Inbetweens, "what is proven")
+    require_kind(inbetweens, Inbetweens, "the in-betweens to prove")
     keyframes = inbetweens.keyframe_blend.keyframes
     pieces = Subdivision.of([key.map.coefficients for key in keyframes], inbetweens.boundary)
     with np.errstate(over="ignore", invalid="ignore"):

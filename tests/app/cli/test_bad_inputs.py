@@ -75,9 +75,9 @@ def test_what_is_packed_in_rare_ways_is_refused(tmp_path, capsys, packing):
         ({**MAPS, "outline": SQUARE + 1e12, "cage": CAGE + 1e12}, says(FEW_DIGITS)),
         ({**MAPS, "cage": CAGE[[0, 1, 1, 2]]}, says(CAGE_REPEATS)),
         ({**MAPS, "triangles": np.empty((0, 3), int)}, "no triangles"),
-        ({**BY_BOUNDARY, "boundary": np.empty((0, 4))}, "must be of shape"),
+        ({**BY_BOUNDARY, "boundary": np.empty((0, 4))}, "must have the shape"),
         ({**BY_BOUNDARY, "boundary": np.zeros((2, 4))}, "more than one point"),
-        ({**BY_BOUNDARY, "boundary": np.full((2, 4), 1e308) * SQUARE}, "infinitely far"),
+        ({**BY_BOUNDARY, "boundary": np.full((2, 4), 1e308) * SQUARE}, "finite positions only"),
         *(
             (
                 {
@@ -232,7 +232,7 @@ def _no_thread(_):
 def test_a_name_that_is_only_an_ending_is_refused(tmp_path, capsys, name):
     (tmp_path / "there").mkdir()
     project = sample_project(tmp_path)
-    assert "only the ending of a name" in refusal(
+    assert "only the ending of a file name" in refusal(
         capsys, "export", project, "--out", tmp_path / name
     )
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.lissom", "there"]

@@ -91,7 +91,7 @@ def test_frames_that_fold_are_named(giraffe, capsys):
     status, said = certified(capsys, "--variant", "linear", project=giraffe)
     assert status == 1
     assert "MAY FOLD" in said
-    assert "All in all: OVER." in said
+    assert "Overall: OVER." in said
     assert "may fold       frames 12, 13, 14, 15, 16, 17, 18\n" in said
     _, said = certified(capsys, "--variant", "linear", "--json", project=giraffe)
     first, second = json.loads(said)["intervals"]
@@ -214,7 +214,7 @@ def test_an_interval_has_one_verdict(made, verdict, monkeypatch, capsys):
     for name, by, sign in zip(("k", "sigma_a", "sigma_b"), own["error"], (1, 1, -1), strict=True):
         if made.proof.k < 1:
             assert own[name] + sign * by == pytest.approx(own["proven"][name])
-    assert "All in all: " in certified(capsys)[1]
+    assert "Overall: " in certified(capsys)[1]
 
 
 def test_what_is_measured_is_the_maximum_between_the_steps_too():

@@ -134,7 +134,7 @@ DOUBLE = np.array([0.0, 0.0])
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"handles": None}, "lacks the array 'handles'"),
+        ({"handles": None}, "has no array 'handles'"),
         ({"handles": STAR_POINTS + 5}, says(OUTSIDE_OUTLINE)),
         ({"handles": STAR_POINTS + 1e-3 + 5, "cage": CAGE[::-1]}, says(OUTSIDE_OUTLINE)),
         ({"cage": subdivided(CAGE, 0.01)}, says(MOST_CAGE, most=400)),
@@ -144,10 +144,10 @@ DOUBLE = np.array([0.0, 0.0])
         ({"cage": CAGE + 9}, says(CAGE_ORDER)),
         ({"outline": CAGE, "cage": OUTLINE}, "strictly inside|cage"),
         ({"k_max": 1.0}, says(IMPOSSIBLE_BOUND, name="k")),
-        ({"sigma_a_max": 0.9}, "bound on sigma_a"),
-        ({"sigma_b_min": 1.0}, "bound on sigma_b"),
+        ({"sigma_a_max": 0.9}, "limit of sigma_a"),
+        ({"sigma_b_min": 1.0}, "limit of sigma_b"),
         ({"k_max": np.array([0.5, 0.6])}, "k_max must be one number"),
-        ({"k_max": "high"}, "'k_max' holds text"),
+        ({"k_max": "high"}, "'k_max' contains text"),
         ({"phi": CAGE}, "both phi and psi"),
         ({"phi": CAGE, "psi": 0.95 * CAGE}, says(UNCERTIFIED_START)),
         ({"phi": CAGE[:4], "psi": CAGE[:4]}, says(COEFFICIENT_COUNT)),

@@ -123,9 +123,9 @@ def test_a_background_is_reported_by_its_colour(photo, tmp_path, capsys):
     for words, expected, said in (
         ([], [True, True, True], "kept as a whole rectangle"),
         (["--background", "none"], [True, True, True], ""),
-        (["--background", "#f0f"], [True, True, True], "no background of the colour #ff00ff"),
+        (["--background", "#f0f"], [True, True, True], "no background of colour #ff00ff"),
         (["--background", "#28a046"], [True, False, True], "background removed"),
-        (["--background", "#ff00ff"], [True, True, True], "no background of the colour #ff00ff"),
+        (["--background", "#ff00ff"], [True, True, True], "no background of colour #ff00ff"),
         (["--background", "#28a046", "--tolerance", "145"], [True, False, False], "removed"),
     ):
         outline = built(photo, tmp_path, *words)
@@ -142,8 +142,8 @@ def test_a_mask_says_what_is_kept(photo, tmp_path, capsys):
     assert_allclose(outline.real.min(), 20, rtol=0, atol=1.5)
     assert_allclose(outline.imag.max(), 90, rtol=0, atol=1.5)
     for bad, reason in (
-        (mask[1:], "160 × 119 pixels and the picture 160 × 120"),
-        (0 * mask, "keeps nothing"),
+        (mask[1:], "160 × 119 pixels, but the picture has 160 × 120"),
+        (0 * mask, "removes the whole picture"),
     ):
         Image.fromarray(bad).save(path)
         words = ["domain", photo, "--out", tmp_path / "e.npz", "--mask", path]
@@ -246,11 +246,11 @@ def test_a_layer_is_where_its_canvas_has_it(layered, tmp_path, capsys):
 def test_which_layer_is_asked_for_where_there_are_several(layered, drawing, tmp_path, capsys):
     out = tmp_path / "d.npz"
     error = error_of(["domain", layered, "--out", out], capsys)
-    assert error.endswith("has 2 layers; name one by --layer, from the front: 'arm', 'wall'")
+    assert error.endswith("has 2 layers; name one with --layer, from the front: 'arm', 'wall'")
     error = error_of(["domain", layered, "--layer", "leg", "--out", out], capsys)
     assert error.endswith("no layer 'leg'; its layers are, from the front: 'arm', 'wall'")
     error = error_of(["domain", drawing, "--layer", "arm", "--out", out], capsys)
-    assert error.endswith("has no layers; leave --layer out")
+    assert error.endswith("has no layers; leave out --layer")
     assert not out.exists()
     alone = tmp_path / "alone.ora"
     alone.write_bytes(openraster((90, 70), '<layer name="blob" src="data/0.png"/>', [blob(90, 70)]))
@@ -273,10 +273,10 @@ def test_a_knife_parts_along_a_line_in_pixels_from_the_upper_left_corner(tmp_pat
     moved = np.abs(domain["closed"] - domain["outline"])
     assert 0 < moved.max() < 0.0025 * np.hypot(260, 160)
     for line, message in (
-        ("100,300,100,0", "cuts off a part"),
+        ("100,300,100,0", "The knife cuts off"),
         ("250,300,250,0", "does not touch"),
-        ("100,300,100", "at least two places"),
-        ("100,300,100,nan", "at least two places"),
-        ("100,300", "at least two places"),
+        ("100,300,100", "at least two points"),
+        ("100,300,100,nan", "at least two points"),
+        ("100,300", "at least two points"),
     ):
         assert message in error_of([*words, "--knife", line], capsys)

@@ -175,7 +175,7 @@ def test_keyframes_by_the_boundary_are_refused_around_holes(write, tmp_path, cap
         "hole_centres": np.zeros(1, dtype=complex),
     }
     said = error_of(capsys, [write(arrays)], tmp_path / "out.npz", "metric")
-    assert "for domains without holes" in said
+    assert "works only without holes" in said
 
 
 FLIPPED = MESH.triangles.copy()
@@ -190,7 +190,7 @@ TWICE = np.concatenate([MESH.triangles, MESH.triangles[:1], MESH.triangles[:1]])
     [
         ("arap", maps_of(STRETCHED), {"triangles": None}, "arap needs the array 'triangles'"),
         ("handles", maps_of(STRETCHED), {"handles": None}, "needs the array 'handles'"),
-        ("handles", maps_of(STRETCHED), {"handles": np.empty(0)}, "none is given"),
+        ("handles", maps_of(STRETCHED), {"handles": np.empty(0)}, "lead from key to key"),
         (
             "handles",
             maps_of(STRETCHED),
@@ -198,20 +198,20 @@ TWICE = np.concatenate([MESH.triangles, MESH.triangles[:1], MESH.triangles[:1]])
             says(OUTSIDE_OUTLINE, name="handle", number="", x=9, y=0),
         ),
         ("conformal", maps_of(STRETCHED), {}, "Keyframe 1 is not holomorphic: .* k is 0"),
-        ("conformal", POSES, {}, "for keyframes that are harmonic maps"),
-        ("metric", POSES, {}, "these are poses of a mesh; choose one of arap, ffmp, sig13, mesh"),
-        ("arap", POSES, {"positions": FOLDED}, "Keyframe 1 folds: triangle .* is turned over"),
+        ("conformal", POSES, {}, "needs keyframes that are harmonic maps"),
+        ("metric", POSES, {}, "not poses of a mesh; choose one of arap, ffmp, sig13, mesh"),
+        ("arap", POSES, {"positions": FOLDED}, "Keyframe 1 folds: triangle .* is flipped"),
         ("arap", POSES, {"positions": POSES["positions"][:, :-1]}, says(MESH_POINTS, smallest=0)),
-        ("arap", POSES, {"positions": POSES["positions"][0]}, "must be of shape"),
+        ("arap", POSES, {"positions": POSES["positions"][0]}, "must have the shape"),
         ("arap", POSES, {"positions": POSES["positions"][:1]}, says(TWO_KEYFRAMES, count=1)),
         ("arap", POSES, {"points": MESH.vertices[:-1]}, says(MESH_POINTS, smallest=0)),
-        ("arap", POSES, {"points": np.append(MESH.vertices, 5)}, "is in no triangle"),
-        ("arap", POSES, {"triangles": FLIPPED}, "Triangle 3 of the domain is turned over"),
-        ("arap", POSES, {"triangles": TWICE}, "is in . triangles; an edge of a plane mesh"),
+        ("arap", POSES, {"points": np.append(MESH.vertices, 5)}, "belongs to no triangle"),
+        ("arap", POSES, {"triangles": FLIPPED}, "Triangle 3 of the domain is flipped"),
+        ("arap", POSES, {"triangles": TWICE}, "belongs to . triangles; an edge of a plane mesh"),
         ("arap", POSES, {"triangles": MESH.triangles[:, :2]}, r"of shape \(t, 3\)"),
         ("arap", POSES, {"triangles": MESH.triangles + 0.5}, "integers"),
         ("arap", POSES, {"triangles": None}, "'triangles'"),
-        ("arap", POSES, {"anchor": np.array([0.1, 0.2])}, "One anchor is needed, not 2"),
+        ("arap", POSES, {"anchor": np.array([0.1, 0.2])}, "exactly one anchor, not 2"),
         ("arap", POSES, {"turns": np.array([1, 1])}, says(TURN_COUNT, keyframes=2, count=1)),
         ("arap", {"boundary": np.zeros((2, 4))}, {}, "'outline'"),
     ],
@@ -238,8 +238,8 @@ def test_a_mesh_with_a_hole_is_refused_by_the_method_that_cannot_flatten_it(
     [
         ("arap", ["--through"], "cannot pass through keyframes"),
         ("arap", ["--bounds", "0.5,2,0.5"], "keeps no limits"),
-        ("ffmp", ["--principal"], "--principal is for arap and mesh-eta"),
-        ("metric", ["--principal"], "--principal is for arap and mesh-eta"),
+        ("ffmp", ["--principal"], "--principal applies only to arap and mesh-eta"),
+        ("metric", ["--principal"], "--principal applies only to arap and mesh-eta"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(write, tmp_path, capsys, *, variant, option, message):
@@ -250,12 +250,12 @@ def test_options_that_do_not_fit_are_refused(write, tmp_path, capsys, *, variant
 @pytest.mark.parametrize(
     ("texts", "message"),
     [
-        (["v 0 0\nv 1 0\nv 0 1\nf 1 2 3"], "is one pose"),
+        (["v 0 0\nv 1 0\nv 0 1\nf 1 2 3"], "is only one keyframe"),
         (["v 0 0\nv 1 0\nv 0 1\nf 1 2 3", "v 0 0\nv 1 0\nv 0 1\nf 1 3 2"], "has other triangles"),
         (["v 0 0\nv 1 x\nf 1 2 3", ""], "line 2 is 'v 1 x'"),
         (["v 0 0\nv 1 0\nv 0 1\nf 1 2 0", ""], "line 4"),
         (["v 0 0\nv 1 0\nv 0 1\nf -4 2 3", ""], "line 4"),
-        (["v 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3", ""], "is not plane"),
+        (["v 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3", ""], "is not flat"),
         (["", ""], "has no vertices"),
         (["v 0 0\n", ""], "has no faces"),
     ],

@@ -85,7 +85,7 @@ def test_layers_are_merged(folder, capsys):
     out = folder / "layers.lissom"
     words = ["--motion", "breathe", "--out", str(out), *FEW]
     assert main(["move", str(folder / "layers.ora"), *words]) == 0
-    assert "the 2 layers of layers.ora are merged" in capsys.readouterr().err
+    assert "the 2 layers of layers.ora were merged" in capsys.readouterr().err
     assert len(load_project(out).layers) == 1
 
 
@@ -99,13 +99,13 @@ def test_motions_are_listed_with_their_kinds(capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--motion", "dance"], "There is no motion 'dance'; the motions are walk"),
-        (["--motion", "trot", "--kind", "chain"], "'trot' is not a motion of 'chain'"),
-        (["--motion", "wag", "--kind", "worm"], "There is no kind 'worm'"),
+        (["--motion", "dance"], "There is no motion preset 'dance'; choose one of walk"),
+        (["--motion", "trot", "--kind", "chain"], "'trot' is not a motion for 'chain'"),
+        (["--motion", "wag", "--kind", "worm"], "There is no kind of body 'worm'"),
         (["--motion", "walk", "--size", "9"], "size must be from 0.05 to 2, not 9"),
         (
             ["--motion", "wag", "--travel", "--kind", "chain"],
-            "'wag' has no steps; leave out travel",
+            "'wag' has no steps, so it cannot travel",
         ),
         (["--motion", "walk", "--kind", "biped-side"], "--kind is 'biped-side', but"),
         ([], "--motion is missing"),

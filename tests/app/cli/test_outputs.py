@@ -112,7 +112,7 @@ def test_only_plain_files_are_written_over(here, capsys, kind):
     before = target.stat()
     for call in ("thumbnail", "deform", "interpolate", "domain", "picture of a pose"):
         words = [{"INPUT": "other", "OUT": target}.get(word, word) for word in CALLS[call]]
-        assert "name a plain file" in refusal(capsys, *words)
+        assert "name an ordinary file" in refusal(capsys, *words)
     assert os.path.samestat(target.stat(), before)
 
 

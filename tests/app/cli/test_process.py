@@ -166,7 +166,9 @@ def test_what_could_not_be_kept_is_not_said_to_be(monkeypatch, capfd):
 
     monkeypatch.setattr(autosaving, "autosave_now", refuse)
     window_process._keep(None)
-    assert capfd.readouterr().err.endswith("unsaved work could not be kept: the disk is full\n")
+    assert capfd.readouterr().err.endswith(
+        "unsaved work could not be backed up: the disk is full\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -239,7 +241,7 @@ def test_unsaved_work_is_kept_when_the_display_is_lost(tmp_path, monkeypatch, ca
     main(["window"])
     said = capfd.readouterr().err
     assert "the display is gone" in said
-    assert "your unsaved work was kept" in said
+    assert "your unsaved work was backed up" in said
     (kept,) = tmp_path.rglob("unsaved-*.lissom")
     assert load_recoverable_file(kept)[0].markers[0].name == "unsaved"
 

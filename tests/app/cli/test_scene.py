@@ -135,7 +135,7 @@ def test_certify_tells_of_each_layer(project, capsys):
     overview, *details = capsys.readouterr().out.split("\n\n")
     first, header, *lines, _ = overview.splitlines()
     assert first == (
-        "All in all: proven. All 3 layers are proven to keep their limits at every moment."
+        "Overall: proven. All 3 layers are proven to keep their limits at every moment."
     )
     assert header.split() == ["k", "sigma_a", "sigma_b"]
     assert [line.split()[0] for line in lines] == ["body", "arm", "patch"]
@@ -156,7 +156,7 @@ def test_certify_names_what_is_over_first(project, capsys, tmp_path):
     save_project(tmp_path / "over.lissom", document.with_layer(narrow))
     assert main(["certify", str(tmp_path / "over.lissom")]) == 1
     first, _, _, line, _, more = capsys.readouterr().out.splitlines()
-    assert first == "All in all: OVER. Layers that exceed their limits, or may fold: 1 of 3."
+    assert first == "Overall: OVER. Layers that exceed their limits, or may fold: 1 of 3."
     assert line.split()[0] == "arm"
     assert "OVER at key 8" in line
     assert "--details" in more
@@ -187,13 +187,13 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
     ("change", "words"),
     [
         ({"layer": "leg"}, "there is no layer 'leg'; choose from: wall, body, arm, patch"),
-        ({"layer": "wall"}, "'wall' stands still"),
+        ({"layer": "wall"}, "'wall' cannot be posed"),
         ({"attach": {"to": "leg", "at": [1, 2]}}, "there is no layer 'leg'"),
-        ({"attach": {"to": "body", "at": [1, 2]}}, "which is not on 'body'"),
+        ({"attach": {"to": "body", "at": [1, 2]}}, "'body' has no shape there"),
         ({"attach": {"to": "arm", "at": [180, 120]}}, says(PARENT_CIRCLE)),
         (
             {"attach": {"to": "body", "at": [70, 40]}},
-            r"layer 'arm': it is attached at \(70, 40\), which is on 'body' but not on itself",
+            r"layer 'arm': it is attached at \(70, 40\), where only 'body' has a shape",
         ),
         ({"attach": {"to": "body"}}, says(LACKS_FIELD, where="layers[0].attach", name="at")),
         ({"attach": {"at": [1, 2]}}, says(LACKS_FIELD, where="layers[0].attach", name="to")),
@@ -214,7 +214,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         ),
         (
             {"keys": [{"frame": 0, "front": {"foot": 1}}]},
-            r"layers\[0\]\.keys\[0\] names the handle 'foot', which is not among the handles: hand",
+            r"layers\[0\]\.keys\[0\] names the handle 'foot', which does not exist; the handles",
         ),
         (
             {"keys": [{"frame": 0, "front": {"hand": "high"}}]},
@@ -229,8 +229,8 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
         (
             {"tracks": [{"handle": "thumb", "keys": [{"frame": 0, "offset": [1, 2]}]}]},
             (
-                r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which is not "
-                r"among the handles: hand"
+                r"layers\[0\]\.tracks\[0\]\.handle names the handle 'thumb', which does not "
+                r"exist; the handles are hand"
             ),
         ),
         (
@@ -246,7 +246,7 @@ def test_export_draws_the_scene_or_one_layer_of_it(project):
             {"attach": [{"frame": -1, "to": None}]},
             r"layers\[0\]\.attach\[0\]\.frame must be a whole",
         ),
-        ({"attach": [{"to": None, "at": [1, 2]}]}, "detaches the layer, so that it has no at"),
+        ({"attach": [{"to": None, "at": [1, 2]}]}, "detaches the layer and cannot have at"),
         ({"attach": [{"to": "body"}]}, says(LACKS_FIELD, where="layers[0].attach[0]", name="at")),
         ({"attach": [{"frame": 4, "to": "leg", "keep": True}]}, "there is no layer 'leg'"),
         (
@@ -277,8 +277,8 @@ def test_refusal_names_layer_when_script_is_of_one_layer(drawing):
     script = {"schema": 1, "handles": {"foot": [80, 40]}, "keys": [{"frame": 0}]}
     notice = refused(drawing, script)
     assert "The handle 'foot' at (80, 40) lies outside" in notice
-    assert "on 'patch', the one in front" in notice
-    assert "also 'wall', 'body', 'arm'" in notice
+    assert "on the front layer 'patch'" in notice
+    assert "also has 'wall', 'body', 'arm'" in notice
     assert '"layers": [{"layer": "patch", ...}]' in notice
     # What is wrong with it on any layer says nothing of others.
     on_it = {**script, "handles": {"spot": {"at": [180, 120], "front": 3}}}
@@ -335,7 +335,7 @@ def test_what_changes_hands_does_not_jump(folder, capsys):
     arguments = [str(folder / "man.ora"), str(folder / "hands.json"), "--out", str(out)]
     assert main(["pose", *arguments, *FEW]) == 0
     notice = " ".join(capsys.readouterr().err.split())
-    assert "the parent of patch from frame 30 on is never seen: the animation ends" in notice
+    assert "the parent of patch from frame 30 on has no effect: the animation ends" in notice
     document = load_project(out)
     patch, body = (next(f for f in document.layers if f.name == n) for n in ("patch", "body"))
     assert [joint.frame for joint in patch.attachments] == [0, 3, 6, 30]
@@ -455,7 +455,7 @@ CHOICE = {
 
 def test_choice_shows_one_layer_when_the_drawing_hides_it(face, tmp_path, capsys):
     out = saved_face(face, tmp_path, choices=[CHOICE])
-    assert "never seen" not in capsys.readouterr().err
+    assert "never visible" not in capsys.readouterr().err
     document = load_project(out)
     for number, name in ((0, "closed"), (3, "closed"), (4, "ah"), (8, "oh"), (12, "closed")):
         assert [f.name for f in document.layers if is_visible(document, f, number)] == [
@@ -483,15 +483,15 @@ def test_choice_repeats_with_a_cycle_of_all_its_layers(opened):
     assert names == [*["closed", "ah", "oh", "closed"] * 2, "closed", "ah"]
     _, notice = posed_face(opened, layers=[head, *mouths[1:]], choices=[CHOICE])
     assert (
-        "its keys do not repeat, since frames 0 to 12 do not repeat in closed; give all its layers"
-        in notice
+        "its keys do not repeat, because frames 0 to 12 do not repeat in closed. Give all its "
+        "layers" in notice
     )
 
 
 def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
     out = saved_face(face, tmp_path, layers=[{**oh, "visible": [[0, False], [6, True]]}])
-    assert "never seen" not in capsys.readouterr().err
+    assert "never visible" not in capsys.readouterr().err
     frames = exported(out, "frames", "--frames", "5:6")
     assert mouths(frames) == [[250, 0, 0], [250, 250, 0]]
 
@@ -501,15 +501,12 @@ def test_script_shows_what_the_drawing_hides(face, tmp_path, capsys):
     [
         (
             {},
-            (
-                "oh is hidden in the drawing, so that it is never seen; show it with "
-                '"visible": [[0, true]]'
-            ),
+            ('oh is hidden in the drawing and never visible; show it with "visible": [[0, true]]'),
         ),
-        ({"visible": [[0, False]]}, "oh is never seen: its visible shows it at no frame"),
+        ({"visible": [[0, False]]}, 'oh is never visible: its "visible" shows it at no frame'),
         (
             {"visible": [[0, False], [40, True]]},
-            "oh is never seen: it is shown from frame 40 on, and the animation ends at frame 12",
+            "oh is never visible: it is shown from frame 40 on, but the animation ends at frame 12",
         ),
     ],
 )
@@ -522,7 +519,7 @@ def test_layer_is_named_when_its_choice_never_shows_it(opened):
     oh = {"layer": "oh", "handles": {}, "keys": [{"frame": 0}, {"frame": 12}]}
     never = {**CHOICE, "keys": [[0, "closed"], [4, "ah"]]}
     _, notice = posed_face(opened, layers=[oh], choices=[never])
-    assert "oh is never seen: the switch 'mouth' never shows it" in notice
+    assert "oh is never visible: the switch 'mouth' never shows it" in notice
 
 
 def test_script_shows_layers_of_hidden_groups_and_no_others(tmp_path):
@@ -541,7 +538,7 @@ def test_script_shows_layers_of_hidden_groups_and_no_others(tmp_path):
     def seen(**stage):
         script = {"schema": 1, "layers": [{"layer": "body", **still}], **stage}
         document, notices = pose_document(drawing, parse_pose_script(script), str)
-        assert "never seen" not in " ".join(notices)
+        assert "never visible" not in " ".join(notices)
         return [
             {f.name for f in document.layers if is_visible(document, f, number)}
             for number in (3, 9)
@@ -555,13 +552,13 @@ def test_script_shows_layers_of_hidden_groups_and_no_others(tmp_path):
 
 def test_script_that_names_no_layer_takes_the_front_visible_one(opened):
     script = {"schema": 1, "handles": {"chin": [45, 100]}, "keys": [{"frame": 0}]}
-    assert "its handles are on 'closed', the one in front" in refused(opened, script)
+    assert "its handles are on the front layer 'closed'" in refused(opened, script)
 
 
 def test_choice_is_named_when_its_key_is_after_the_end(opened):
     late = {**CHOICE, "keys": [[0, "closed"], [99, "ah"]]}
     _, notice = posed_face(opened, choices=[late])
-    assert "switch 'mouth': ah from frame 99 on is never seen: the animation ends" in notice
+    assert "switch 'mouth': ah from frame 99 on has no effect: the animation ends" in notice
 
 
 @pytest.mark.parametrize(
@@ -570,9 +567,12 @@ def test_choice_is_named_when_its_key_is_after_the_end(opened):
         ([{**CHOICE, "layers": ["closed", "eh"], "keys": []}], "'mouth': there is no layer 'eh'"),
         (
             [{**CHOICE, "layers": ["closed"], "keys": []}],
-            r"choices\[0\]\.layers must be two layers",
+            r"choices\[0\]\.layers must list at least two layers",
         ),
-        ([{**CHOICE, "layers": ["ah", "ah"], "keys": []}], r"choices\[0\]\.layers has 'ah' twice"),
+        (
+            [{**CHOICE, "layers": ["ah", "ah"], "keys": []}],
+            r"choices\[0\]\.layers lists 'ah' twice",
+        ),
         (
             [{**CHOICE, "keys": [[0, "head"]]}],
             r"choices\[0\]\.keys\[0\] shows 'head', which is not",
@@ -583,10 +583,10 @@ def test_choice_is_named_when_its_key_is_after_the_end(opened):
         ),
         ([{**CHOICE, "keys": [4]}], says(NOT_LIST, where="choices[0].keys[0]")),
         ([CHOICE, {**CHOICE, "name": "lips"}], "the layer 'closed' is in two switches"),
-        ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two switches are called"),
+        ([CHOICE, {**CHOICE, "layers": ["head", "eh"], "keys": []}], "two switches have the name"),
         ([{"layers": ["ah", "oh"]}], says(LACKS_FIELD, where="choices[0]", name="name")),
         ([{**CHOICE, "shown": 1}], "unknown field 'shown'; it may have name, layers, keys"),
-        ([{**CHOICE, "name": " "}], r"choices\[0\]\.name is empty, and a switch needs a name"),
+        ([{**CHOICE, "name": " "}], r"choices\[0\]\.name is empty; give the switch a name"),
         (
             [{**CHOICE, "keys": [[-4, "ah"]]}],
             says(NOT_A_FRAME, where="choices[0].keys[0]", name="frame"),
@@ -645,7 +645,7 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     capsys.readouterr()
     assert main(["export", str(out), "--out", str(folder / "staged.glb")]) == 0
     notice = capsys.readouterr().err
-    assert "do not change: the opacity of arm, the order of body, the camera" in notice
+    assert "does not animate the opacity of arm, the order of body, the camera" in notice
 
 
 def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
@@ -657,9 +657,7 @@ def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
     ):
         _, notices = pose_document(drawing, parse_pose_script({**SCRIPT, "layers": layers}), str)
         notice = " ".join(notices)
-        assert (
-            "arm is attached to body and moves with it: its own movement" in notice
-        ) == is_reported
+        assert ("arm is attached to body, so its own movement" in notice) == is_reported
 
 
 def test_what_fades_in_is_seen_in_a_model(folder):
@@ -673,7 +671,7 @@ def test_what_fades_in_is_seen_in_a_model(folder):
 
 def test_still_layer_is_refused_when_it_has_handles(drawing):
     wall = {**STAGED["layers"][2], "handles": {"h": [20, 20]}}
-    assert "no shape on it to be posed" in refused(drawing, {**STAGED, "layers": [wall]})
+    assert "because it contains no shape" in refused(drawing, {**STAGED, "layers": [wall]})
 
 
 def test_order_is_refused_beside_a_layer_that_is_not_there(drawing):

@@ -110,7 +110,7 @@ def test_a_picture_without_plain_background_is_kept_whole() -> None:
 def test_a_picture_of_nothing_but_background_is_kept_whole() -> None:
     subject = subject_mask(np.full((60, 90, 4), 255, dtype=np.uint8))
     assert subject.mask.all()
-    assert "would leave 0.0% of the picture" in subject.notices[0]
+    assert "only 0.0% of the picture would be left" in subject.notices[0]
 
 
 def test_the_tolerance_decides_what_belongs_to_the_background() -> None:
@@ -183,11 +183,11 @@ def test_a_mask_is_taken_at_its_word() -> None:
 
 def test_masks_and_colours_that_are_none_are_refused() -> None:
     rgba = pictures.blob(100)
-    with pytest.raises(EngineError, match="keeps nothing"):
+    with pytest.raises(EngineError, match="removes the whole picture"):
         subject_mask(rgba, CutOut(mask=Mask.of(~visible(rgba))))
-    with pytest.raises(EngineError, match="90 × 100 pixels and the picture 100 × 100"):
+    with pytest.raises(EngineError, match="90 × 100 pixels, but the picture has 100 × 100"):
         subject_mask(rgba, CutOut(mask=Mask.of(visible(rgba)[:, 10:])))
-    with pytest.raises(EngineError, match="levels of a background"):
+    with pytest.raises(EngineError, match="three levels from 0 to 255"):
         subject_mask(rgba, CutOut(background=(0, 300, 0)))
     with pytest.raises(EngineError, match="Nothing is left"):
         subject_mask(pictures.on_plain(rgba, WHITE), CutOut(background=WHITE, tolerance=255))

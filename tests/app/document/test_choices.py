@@ -123,9 +123,9 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
             "'ah' is in two switches, 'mouth' and 'eyes'",
         ),
         (choices.create_switch_group("mouth", (2, 3)), says(NO_LAYER, identity=3)),
-        (choices.create_switch_group("mouth", (2, 2)), "has the layer 2 twice"),
+        (choices.create_switch_group("mouth", (2, 2)), "lists the layer 2 twice"),
         (choices.create_switch_group(" ", (2, 1)), "needs a name"),
-        (choices.create_switch_group("eyes", (2,)), "two layers or more"),
+        (choices.create_switch_group("eyes", (2,)), "at least two layers"),
         (
             layer_commands.key_visibility(1, 5, visible=True),
             "has visibility keys and is in the switch",
@@ -142,7 +142,7 @@ def test_what_cannot_be_chosen_is_refused(mouths, make, words):
 
 
 def test_turns_are_in_order_and_of_the_choice():
-    with pytest.raises(LissomError, match="at frames 8 and 4 are mixed up"):
+    with pytest.raises(LissomError, match="at frames 8 and 4 are out of order"):
         SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 0), SwitchKey(4, 1)))
     with pytest.raises(LissomError, match="At frame 8 the switch 'mouth' shows a layer"):
         SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 2),))

@@ -89,7 +89,7 @@ def test_a_variant_may_be_given_by_its_name_in_files():
     for variant in VARIANTS:
         (layer,) = layers.set_variant(0, variant.value)(document).layers
         assert layer.variant is variant
-    with pytest.raises(LissomError, match=r"variant is one of metric, nu, .*not 'wobbly'"):
+    with pytest.raises(LissomError, match=r"variant must be one of metric, nu, .*not 'wobbly'"):
         layers.set_variant(0, "wobbly")(document)
 
 
@@ -328,7 +328,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (handles.add_handle(0, CENTRE, weight=0.0), "weight"),
         (
             handles.add_handle(0, DOCUMENT.layers[0].handles[0].position),
-            "Two handles have the place",
+            "Two handles are at the position",
         ),
         (handles.move_handle(0, 0, CENTRE - 2 * RADIUS), "outside the shape"),
         (handles.move_handle(0, 7, CENTRE), says(NO_HANDLE, identity=7)),
@@ -340,12 +340,15 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (handles.set_handle_weight(0, {0}, float("nan")), "weight"),
         (keys.replace_key_pose(0, 5, POSE), says(NO_KEY, frame=5)),
         (keys.replace_key_pose(0, 0, replace(POSE, targets={})), "one target for each handle"),
-        (keys.replace_key_pose(0, 0, OTHER_CAGE), "cage of 13 vertices, not of 12"),
+        (
+            keys.replace_key_pose(0, 0, OTHER_CAGE),
+            "cage of 13 vertices, but the layer's cage has 12",
+        ),
         (keys.insert_key(0, 10, POSE), KEYS_COLLIDE.format(frame=10)),
-        (keys.insert_key(0, -1, POSE), "key is at a frame from 0"),
-        (keys.insert_key(0, 1_000_000, POSE), "key is at a frame from 0"),
+        (keys.insert_key(0, -1, POSE), "key must be at a frame from 0"),
+        (keys.insert_key(0, 1_000_000, POSE), "key must be at a frame from 0"),
         (keys.move_keys(0, {0, 10}, 10), KEYS_COLLIDE.format(frame=20)),
-        (keys.move_keys(0, {0}, -1), "key is at a frame from 0"),
+        (keys.move_keys(0, {0}, -1), "key must be at a frame from 0"),
         (keys.move_keys(0, {3}, 1), says(NO_KEY, frame=3)),
         (keys.copy_keys(0, {0}, 0), KEYS_COLLIDE.format(frame=0)),
         (keys.copy_keys(0, {0}, 20), KEYS_COLLIDE.format(frame=20)),
@@ -366,7 +369,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (layers.set_variant(0, "arap"), "variant"),
         (layers.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
         (layers.set_anchor(0, complex("inf")), "anchor must be within"),
-        (settings.add_marker(-1), "marker is at a frame from 0"),
+        (settings.add_marker(-1), "marker must be at a frame from 0"),
         (settings.delete_marker(3), "no marker at frame 3"),
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
         (poses.save_pose(0, POSE, "  "), "needs a name"),
@@ -405,9 +408,9 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
             lambda: PictureFile(data=b"x", suffix=".png", size=(1, 70_000)),
             "The picture must have 1 to",
         ),
-        (lambda: FrameRange(5, 4), "not a range"),
-        (lambda: FrameRange(-1, 4), "not a range"),
-        (lambda: FrameRange(0, 1_000_000), "not a range"),
+        (lambda: FrameRange(5, 4), "not a valid range"),
+        (lambda: FrameRange(-1, 4), "not a valid range"),
+        (lambda: FrameRange(0, 1_000_000), "not a valid range"),
         (lambda: ExportSettings(format="bmp"), "export format"),
         (lambda: ExportSettings(size=(0, 5)), "The export must have 1 to .*, not 0 × 5"),
         (lambda: ExportSettings(background="red"), "background"),
@@ -417,7 +420,7 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: Meshing(detail="best"), "detail"),
         (lambda: Meshing(triangles=0), "triangles"),
         (lambda: Meshing(triangles=10**30), "triangles"),
-        (lambda: Handle(id=-1, name="x", position=0j), "A handle has an id from 0 to"),
+        (lambda: Handle(id=-1, name="x", position=0j), "A handle must have an id from 0 to"),
         (lambda: Handle(id=0, name="x", position=0j, weight=float("nan")), "weight"),
         (lambda: Handle(id=0, name="x", position=0j, weight=1e300), "weight"),
         (lambda: Target(position=complex(0, float("inf"))), "within 10,000,000 pixels"),
@@ -432,12 +435,12 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: replace(DOCUMENT.layers[0].keys[0], revolutions=-(10**30)), "whole turns"),
         (lambda: Target(position=0j, rotation=float("nan")), "rotation"),
         (lambda: altered(DOCUMENT, keys=()), "at least one key"),
-        (lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[::-1]), "mixed up"),
+        (lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[::-1]), "out of order"),
         (
             lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[:1] * 2),
             "Two keys are at frame 0",
         ),
-        (lambda: altered(DOCUMENT, next_handle=1), "is taken"),
+        (lambda: altered(DOCUMENT, next_handle=1), "already belongs to a handle"),
         (lambda: altered(DOCUMENT, frames=FrameRange(0, 19)), "outside the animation"),
         (
             lambda: altered(DOCUMENT, handles=DOCUMENT.layers[0].handles * 2),

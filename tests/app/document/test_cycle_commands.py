@@ -59,9 +59,9 @@ def test_a_stretch_repeats_and_its_last_key_is_its_first():
     assert again.layers[0].cycles == (Cycle(first=20, last=44, until=68),)
     with pytest.raises(LissomError, match=says(TWO_POSES_SHOWN, first=4, last=28)):
         cycle_commands.set_cycle(0, 4, 28)(document)
-    with pytest.raises(LissomError, match="no room for frames 4 to 15 to repeat before frame 20"):
+    with pytest.raises(LissomError, match="Frames 4 to 15 have no room to repeat before frame 20"):
         cycle_commands.end_of_cycle(layer, 4, 15)
-    with pytest.raises(LissomError, match="key at frame 110 is where frames 20 to 44 repeat"):
+    with pytest.raises(LissomError, match="key at frame 110 lies where frames 20 to 44 repeat"):
         cycle_commands.set_cycle(0, 20, 44)(document)
 
 
@@ -136,7 +136,7 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
         shown = [is_visible(each, each.layers[0], frame) for each in (document, keyed)]
         assert shown[0] == shown[1]
     key = track_commands.put_track_key(0, 0, 24, 1 + 0j)
-    with pytest.raises(LissomError, match="track of 'tail' acts in a part of frames 20 to 44 only"):
+    with pytest.raises(LissomError, match="track of 'tail' covers only a part of frames 20 to 44"):
         cycle_commands.bake_cycle(0, 20, 92)(key(document))
     ends = dict(zip((24, 30, 38), (20, 30, 44), strict=True))
     whole = replace(wag, keys=tuple(replace(key, frame=ends[key.frame]) for key in wag.keys))
@@ -155,7 +155,7 @@ def test_cycles_go_with_all_of_their_keys_in_time():
     # Moved alone, a key is another part of every repeat.
     alone = key_commands.move_keys(0, {28}, 3)(document).layers[0]
     assert alone.cycles == document.layers[0].cycles
-    with pytest.raises(LissomError, match="key at frame 46 is where frames 20 to 44 repeat"):
+    with pytest.raises(LissomError, match="key at frame 46 lies where frames 20 to 44 repeat"):
         key_commands.move_keys(0, {36}, 10)(document)
     slower = key_commands.scale_keys(0, {20, 28, 36}, 1.25)(document).layers[0]
     assert slower.cycles == (Cycle(first=20, last=50, until=80),)
@@ -221,5 +221,5 @@ def test_a_repeat_keeps_a_change_of_its_own_until_it_is_edited():
 def test_cycle_is_refused_in_words_over_another_cycle():
     document = with_keys(0, 10, 15, last=60)
     layer = cycle_commands.set_cycle(0, 10, 20, 40)(document).layers[0]
-    with pytest.raises(LissomError, match="they contain a cycle, frames 10 to 20"):
+    with pytest.raises(LissomError, match="they overlap a cycle, frames 10 to 20"):
         cycle_commands.end_of_cycle(layer, 0, 15)

@@ -123,9 +123,9 @@ def test_pairs_are_read_as_they_are_written(text):
     [
         ("near", says(NO_PAIR, words="near")),
         ("near/far/middle", says(NO_PAIR)),
-        ("near/far, far/away", "“far” is twice"),
-        ("near/near", "“near” is twice"),
-        ("/far", "of two words"),
+        ("near/far, far/away", "“far” is in two pairs"),
+        ("near/near", "“near” is in two pairs"),
+        ("/far", "must have two words"),
     ],
 )
 def test_what_is_no_pair_is_reported(text, words):

@@ -96,9 +96,9 @@ def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
     [
         (
             stiffness_commands.add_bone(0, (1, 0)),
-            "There is a bone from 'hand.R' to 'hand.L' already",
+            "A bone from 'hand.R' to 'hand.L' already exists",
         ),
-        (stiffness_commands.add_bone(0, (0, 0)), "from one handle to another one"),
+        (stiffness_commands.add_bone(0, (0, 0)), "connect two different handles"),
         (stiffness_commands.add_bone(0, (0, 9)), says(NO_HANDLE, identity=9)),
         (stiffness_commands.add_bone(0, (0, 2), 101.0), "from 1/30 to 100, not 101"),
         (stiffness_commands.add_bone(0, (0, 2), float("nan")), "from 1/30 to 100, not nan"),
@@ -107,7 +107,7 @@ def test_bones_come_and_go_with_their_handles_and_their_names_do_not_matter():
         (stiffness_commands.set_bone_stiffness(0, (0, 1), 0.0), "from 1/30 to 100, not 0"),
         (
             stiffness_commands.paint_stiffness(0, [CENTRE], radius=-1, amount=2.0),
-            "radius of a brush is above",
+            "radius of a brush must be above",
         ),
         (
             stiffness_commands.paint_stiffness(0, [CENTRE], radius=9, amount=0.01),
@@ -193,7 +193,7 @@ def test_a_layer_refuses_material_that_does_not_fit():
     (layer,) = boned().layers
     with pytest.raises(EngineError, match=says(STIFFNESS_SHAPE, count=12)):
         replace(layer, stiffness=np.ones(3))
-    with pytest.raises(LissomError, match="bone ends at the handle 7, which is not there"):
+    with pytest.raises(LissomError, match="bone ends at handle 7, which does not exist"):
         replace(layer, bones=(Bone(ends=(0, 7)),))
-    with pytest.raises(LissomError, match="Two bones are between handles"):
+    with pytest.raises(LissomError, match="Two bones connect handles"):
         replace(layer, bones=(*layer.bones, Bone(ends=(1, 0))))

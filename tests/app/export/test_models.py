@@ -334,13 +334,10 @@ def test_what_a_model_does_not_composite_is_reported(tmp_path):
     assert maker.meshes[0].opacity == 0.25
     notices = [notice for notice in maker.notices if "glTF" in notice]
     assert notices == [
-        f"{second.name}: not multiplied in the glTF model, but painted over the rest",
-        "limbs: not screened in the glTF model, but painted over the rest",
-        f"{second.name}: not clipped in the glTF model, but painted over the rest",
-        (
-            "limbs: faded layer by layer in the glTF model, so that the layers shine through "
-            "each other"
-        ),
+        f"the glTF model cannot multiply {second.name}; they are painted over the rest",
+        "the glTF model cannot screen limbs; they are painted over the rest",
+        f"the glTF model cannot clip {second.name}; they are painted over the rest",
+        ("in the glTF model the layers of limbs fade one by one, and shine through each other"),
     ]
     _, maker = exported(two_layers(), tmp_path / "plain.glb")
     assert not any("painted over" in notice for notice in maker.notices)
@@ -373,7 +370,7 @@ def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
     unseen = tuple(replace(layer, visibility_keys=off) for layer in document.layers)
     exported(replace(document, layers=(first, unseen[1])), out)
     assert [node.name for node in read(out).nodes] == ["layer"]
-    with pytest.raises(LissomError, match="no layer is seen"):
+    with pytest.raises(LissomError, match="no layer is visible"):
         exported(replace(document, layers=unseen), out)
 
 
@@ -415,7 +412,7 @@ def test_a_tolerance_of_ones_own_takes_as_many_shapes_as_it_needs(tmp_path, monk
     assert count > 2
     assert largest_distance(gltf, light, [0.123, 0.21]) <= 0.002
     (notice,) = maker.notices
-    assert f"walk has {count} shapes, and viewers of glTF need show only 2" in notice
+    assert f"walk has {count} shapes, but viewers of glTF need not show more than 2" in notice
     _, maker = exported(moving_document(), out, settings(tolerance=50.0))
     assert len(maker.meshes[0].motion.targets) <= 2
     assert maker.notices == ()
@@ -425,7 +422,7 @@ def test_where_eight_shapes_do_not_suffice_it_is_reported(tmp_path, monkeypatch)
     monkeypatch.setattr("app.export.morph_mesh.MOST_TARGETS", 1)
     _, maker = exported(moving_document(), tmp_path / "a.glb")
     (notice,) = maker.notices
-    assert "1 shapes come within" in notice
+    assert "has 1 shapes, within" in notice
     assert f"{maker.meshes[0].motion.error:.2g} pixels" in notice
 
 

@@ -156,8 +156,8 @@ def test_a_pose_that_is_not_finite_is_refused_before_anything_is_written(documen
         ("still.png", {}, says(NAMED_LIKE_FILE)),
         ("folder", {"format": "gif"}, "is a folder; name a file"),
         ("missing/a.gif", {"format": "gif"}, NO_FOLDER.format(folder=".*missing")),
-        ("a.png", {"format": "gif"}, "end in .gif"),
-        ("a.gif", {"format": "apng"}, "end in .apng, .png"),
+        ("a.png", {"format": "gif"}, "use the ending .gif"),
+        ("a.gif", {"format": "apng"}, "use the ending .apng, .png"),
         ("a.mp4", {"format": "mp4"}, "background colour"),
         ("frames", {"frames": FrameRange(0, 11)}, "0 to 10"),
         ("frames", {"frames": FrameRange(12, 13)}, "0 to 10"),
@@ -177,7 +177,7 @@ def test_impossible_rates_are_refused(document, tmp_path, fps):
 
 
 def test_rates_and_sizes_that_a_format_cannot_hold_are_refused(document, tmp_path):
-    with pytest.raises(LissomError, match="50 pictures a second"):
+    with pytest.raises(LissomError, match="50 frames a second"):
         plan_of(document, tmp_path / "a.gif", format="gif", fps=60.0)
     with pytest.raises(LissomError, match=r"16,383 pixels each way.*smaller size"):
         plan_of(document, tmp_path / "a.webp", format="webp", size=(16_384, 4))

@@ -124,14 +124,14 @@ def test_what_ends_right_after_its_stretch_stands_still_there():
 
 
 def test_it_is_reported_where_repeats_may_end_before_a_key():
-    with pytest.raises(LissomError, match="let them end at frame 20 instead"):
+    with pytest.raises(LissomError, match="End the repeats at frame 20 instead"):
         cycling(6, 7, 17, 20, cycle=Cycle(first=0, last=18, until=19))
-    with pytest.raises(LissomError, match="let them end at frame 24 instead"):
+    with pytest.raises(LissomError, match="End the repeats at frame 24 instead"):
         cycling(6, 7, 17, 30, cycle=Cycle(first=0, last=18, until=22))
 
 
 def test_in_a_loop_keys_elsewhere_lead_through_a_stretch_without_one():
-    with pytest.raises(LissomError, match="no key of 'layer' in frames 0 to 4 that could repeat"):
+    with pytest.raises(LissomError, match="No key of 'layer' in frames 0 to 4 could repeat"):
         cycling(35, 42, cycle=Cycle(first=0, last=4, until=20), loop=True)
 
 

@@ -150,7 +150,7 @@ def test_attached_layer_keeps_its_distance_beside_its_parent():
 
 def test_a_joint_must_be_on_the_attached_layer():
     document = layers.detach_layer(2, 1, 0)(chain())
-    with pytest.raises(LissomError, match=r"nothing of '2' at \(5000, 0\)"):
+    with pytest.raises(LissomError, match=r"'2' has no drawing at \(5000, 0\)"):
         attach_in_place(ParentTransforms(document), 2, 0, 0, place=5000 + 0j, turns=True)
 
 

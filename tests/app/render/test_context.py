@@ -25,7 +25,7 @@ def test_the_first_backend_is_egl_and_the_next_takes_over(monkeypatch):
     def create(backend):
         tried.append(backend)
         if backend == "egl":
-            raise LissomError("egl: libEGL.so.1 not loaded")
+            raise LissomError("egl: libEGL.so.1 could not be loaded")
         return "a context"
 
     monkeypatch.setattr(context_module, "AUTOMATIC", ("egl", "osmesa"))

@@ -154,7 +154,7 @@ def test_later_triangles_lie_on_top(easel):
     assert_array_equal(easel.frame(view, Scene(meshes=(pose,))), later)
     pose.paint_in_order(quads[:2])
     assert_array_equal(easel.frame(view, Scene(meshes=(pose,)))[10, 5], [255, 0, 0, 255])
-    with pytest.raises(LissomError, match="4 triangles to be painted, not 5"):
+    with pytest.raises(LissomError, match="at most 4 visible triangles, not 5"):
         pose.paint_in_order(quads[[0, 1, 2, 3, 0]])
 
 

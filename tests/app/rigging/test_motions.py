@@ -141,14 +141,14 @@ def test_legs_of_one_drawing_never_pass_through_each_other():
 @pytest.mark.parametrize(
     ("name", "kind", "joints", "parameters", "said"),
     [
-        ("slither", "biped-side", None, USUAL, "'slither' is not a motion of 'biped-side'"),
+        ("slither", "biped-side", None, USUAL, "'slither' is not a motion for 'biped-side'"),
         ("walk", "biped-side", {"hips": 0j, "head": 1j}, USUAL, "'walk' needs foot.L, foot.R"),
         (
             "nod",
             "biped-side",
             None,
             Parameters(travel=True),
-            "'nod' has no steps; leave out travel",
+            "'nod' has no steps, so it cannot travel",
         ),
     ],
 )

@@ -210,8 +210,8 @@ def test_of_places_at_one_time_the_last_one_counts():
     [
         ({"places": [0, np.nan, 2]}, "entry 1"),
         ({"times": [0, np.inf, 2]}, "times of a recording must be finite"),
-        ({"times": [0, 2, 1]}, "must not go back"),
-        ({"times": [0, 1]}, "a time for each place"),
+        ({"times": [0, 2, 1]}, "must not decrease"),
+        ({"times": [0, 1]}, "one time for each position"),
         ({"times": [], "places": []}, "at least one"),
         ({"tolerance": -1.0}, TOLERANCE),
         ({"tolerance": np.nan}, TOLERANCE),

@@ -318,7 +318,7 @@ def test_a_turned_arm_keeps_its_length_and_turns_so_far_at_most(arc):
         ({"damping": -0.1}, "damping .* -0.1"),
         ({"frequency": 0}, "frequency .* above 0, not 0"),
         ({"frequency": np.inf}, "not inf"),
-        ({"fps": np.nan}, "frames a second"),
+        ({"fps": np.nan}, "frames per second"),
         ({"lag": -1}, "lag .* -1"),
         ({"lag": np.inf}, "lag .* inf"),
         ({"strength": np.nan}, "strength"),
@@ -334,5 +334,5 @@ def test_what_no_spring_can_do_is_refused_in_words(changes, words):
 
 
 def test_a_time_that_is_no_time_is_refused():
-    with pytest.raises(EngineError, match="not finite"):
+    with pytest.raises(EngineError, match="must be finite"):
         simulate_spring(circle(24), 24, frequency=2, damping=0.2).at([1.0, np.nan])

@@ -168,7 +168,7 @@ def test_keys_of_a_script_do_not_hold_what_follows_and_say_so():
         )
     assert abs(second.pose.targets[MIDDLE].position - 120 - 40j) > 10
     (notice,) = notices
-    assert notice.startswith("frame 8: 'middle' has a spring and follows the body")
+    assert notice.startswith("frame 8: 'middle' has a spring, which ignores targets of keys")
     # Where it is carried to on the way back does not keep a loop from closing.
     assert last.pose is first.pose
 

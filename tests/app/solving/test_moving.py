@@ -139,7 +139,7 @@ def test_motion_out_of_reach_is_reported_with_a_size_in_reach(scenes):
     while not giving.is_over:
         giving = step_motion_solve(giving)
     (notice,) = giving.notices
-    assert "fall short" in notice
+    assert "miss their targets" in notice
     assert giving.reachable_size is not None
     assert 0 < giving.reachable_size < 2
     fits = replace(order, parameters=Parameters(size=giving.reachable_size))
@@ -153,7 +153,7 @@ def test_motion_out_of_reach_is_reported_with_a_size_in_reach(scenes):
 
 def test_what_cannot_be_given_is_refused(scenes):
     chain, identity = scenes["chain"], scenes["chain"].layers[0].id
-    with pytest.raises(EngineError, match="There is no motion 'dance'"):
+    with pytest.raises(EngineError, match="There is no motion preset 'dance'"):
         MotionRequest(motion="dance", kind="chain", joints={})
     with pytest.raises(LissomError, match=r"the joint 'joint.2' at \(5, 5\) is not on the drawing"):
         start_motion_solve(

@@ -237,19 +237,19 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (
             ["tracks", 0, "handle"],
             "tial",
-            r"tracks\[0\].handle names the handle 'tial', which is not among",
+            r"tracks\[0\].handle names the handle 'tial', which does not exist",
         ),
         (["tracks", 0, "handle"], 2, says(NOT_TEXT, where="tracks[0].handle")),
         (["tracks", 0, "handle"], None, says(HANDLE_OR_HANDLES, where="tracks[0]")),
         (["tracks", 0, "handles"], ["hoof"], says(HANDLE_OR_HANDLES, where="tracks[0]")),
-        (["tracks", 1, "handles"], [], r"tracks\[1\]: A track is of at least one handle"),
+        (["tracks", 1, "handles"], [], r"tracks\[1\]: A track needs at least one handle"),
         (["tracks", 1, "handles"], ["hoof", "ear"], r"handles\[1\] names the handle 'ear'"),
-        (["tracks", 1, "handles"], ["hoof", "hoof"], r"tracks\[1\].handles names 'hoof' twice"),
-        (["tracks", 1, "handles"], ["tail"], r"tracks\[0\] and tracks\[1\] are both .* 'tail'"),
+        (["tracks", 1, "handles"], ["hoof", "hoof"], r"tracks\[1\].handles lists 'hoof' twice"),
+        (["tracks", 1, "handles"], ["tail"], r"tracks\[0\] and tracks\[1\] both have .* 'tail'"),
         (["tracks", 0, "with"], "body", says(NO_BASIS, where="tracks[0]", content='"body"')),
         (["tracks", 0, "with"], ["pose"], says(NO_BASIS)),
         (["tracks", 0, "keys"], None, says(LACKS_FIELD, name="keys")),
-        (["tracks", 0, "keys"], [], r"tracks\[0\]: A track has at least one key"),
+        (["tracks", 0, "keys"], [], r"tracks\[0\]: A track needs at least one key"),
         (
             ["tracks", 0, "keys", 1, "frame"],
             0,
@@ -262,7 +262,11 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
         (["tracks", 0, "keys", 1, "offset"], None, says(LACKS_FIELD, name="offset")),
         (["tracks", 0, "keys", 1, "offset"], [1], says(NOT_POINT, where="keys[1].offset")),
         (["tracks", 0, "keys", 1, "offset"], [float("nan"), 0], says(NOT_FINITE)),
-        (["tracks", 0, "keys", 1, "offset"], [1e9, 0], r"keys\[1\]: A track's key must be within"),
+        (
+            ["tracks", 0, "keys", 1, "offset"],
+            [1e9, 0],
+            r"keys\[1\]: A key of a track must be within",
+        ),
         (["tracks", 0, "keys", 1, "at"], [1, 2], "has 'at', but the keys of a track with 'pose'"),
         (
             ["tracks", 1, "keys", 0, "offset"],
@@ -288,34 +292,42 @@ def test_handles_stay_where_keys_have_them_unless_a_script_says_otherwise():
             says(NEEDLESS_VELOCITY),
         ),
         (["tracks", 0, "keys", 1, "turn"], float("inf"), says(NOT_FINITE, where="keys[1].turn")),
-        (["tracks", 0, "keys", 1, "turn"], 7201, "by at most 20 whole turns, not by 20.0028"),
+        (["tracks", 0, "keys", 1, "turn"], 7201, "by at most 20 whole turns, not 20.0028"),
         (["tracks", 0, "keys", 1, "turn"], True, says(NOT_NUMBER, where="keys[1].turn")),
         (["tracks", 0, "keys", 1, "ease"], "bouncy", "no easing 'bouncy'"),
         (["tracks", 0, "keys", 1, "passing"], "over", "passing must be one of through"),
-        (["tracks", 0, "keys", 1, "passing"], "hold", "nothing to ease"),
+        (["tracks", 0, "keys", 1, "passing"], "hold", "its ease has no effect"),
         (["tracks", 0, "keys", 1, "pull"], 3, "unknown field 'pull'"),
-        (["tracks", 0, "delay"], -1, r"tracks\[0\]: The delay of a track is from 0"),
+        (["tracks", 0, "delay"], -1, r"tracks\[0\]: The delay of a track must be from 0"),
         (["tracks", 0, "delay"], 2.5, says(NOT_WHOLE, where="tracks[0].delay")),
         (["tracks", 0, "delay"], 31, r"tracks\[0\].delay is 31 frames, longer than the loop"),
-        (["tracks", 0, "reach"], 2, r"tracks\[0\]: The reach of a track is between 0 and 1"),
+        (["tracks", 0, "reach"], 2, r"tracks\[0\]: The reach of a track must be from 0 to 1"),
         (["tracks", 0, "reach"], float("nan"), says(NOT_FINITE, where="reach")),
         (["tracks", 0, "color"], 2, "unknown field 'color'"),
         (["springs", 0, "handle"], "ear", r"springs\[0\].handle names the handle 'ear'"),
-        (["springs", 0, "handle"], "tail", r"springs\[0\] and springs\[1\] are both .* 'tail'"),
+        (["springs", 0, "handle"], "tail", r"springs\[0\] and springs\[1\] both have .* 'tail'"),
         (["springs", 0, "handle"], None, says(LACKS_FIELD, name="handle")),
         (["springs", 0, "preset"], "leg", "preset must be one of tail, ear, .* not 'leg'"),
         (["springs", 0, "preset"], None, says(NO_PRESET, presets="tail, ear, hair, cloth, jelly")),
         (["springs", 2, "damping"], None, says(NO_PRESET)),
         (["springs", 2, "damping"], 0, r"springs\[2\].damping must be above 0 in a loop"),
-        (["springs", 2, "damping"], -0.1, r"springs\[2\]: The damping of a spring is from 0"),
-        (["springs", 2, "frequency"], 0, "frequency of a spring is above 0"),
+        (["springs", 2, "damping"], -0.1, r"springs\[2\]: The damping of a spring must be from 0"),
+        (["springs", 2, "frequency"], 0, "frequency of a spring must be above 0"),
         (["springs", 2, "frequency"], float("nan"), says(NOT_FINITE, where="frequency")),
-        (["springs", 2, "lag"], -1, "lag of a spring is from 0"),
+        (["springs", 2, "lag"], -1, "lag of a spring must be from 0"),
         (["springs", 2, "strength"], "much", says(NOT_NUMBER, where="strength")),
         (["springs", 2, "mass"], 1, "unknown field 'mass'"),
-        (["springs", 2, "stretch"], 2, r"springs\[2\]: The stretch of a spring is between 0 and 1"),
+        (
+            ["springs", 2, "stretch"],
+            2,
+            r"springs\[2\]: The stretch of a spring must be from 0 to 1",
+        ),
         (["springs", 2, "root"], "ear", r"springs\[2\].root names the handle 'ear'"),
-        (["springs", 2, "root"], "hoof", r"springs\[2\]: A spring swings about another handle"),
+        (
+            ["springs", 2, "root"],
+            "hoof",
+            r"springs\[2\]: The root of a spring must be another handle",
+        ),
     ],
 )
 def test_whatever_tracks_and_springs_cannot_be_is_refused(path, value, message):
@@ -374,7 +386,7 @@ def test_whatever_a_layer_cannot_say_is_refused(change, message):
 
 
 def test_layers_have_layers_of_their_own():
-    with pytest.raises(LissomError, match="two layers are of the layer 'arm'"):
+    with pytest.raises(LissomError, match="two layers have the name 'arm'"):
         parse_pose_script({**SCENE, "layers": [ARM, ARM]})
     with pytest.raises(LissomError, match="at least one layer"):
         parse_pose_script({**SCENE, "layers": []})
@@ -387,7 +399,7 @@ def test_layers_have_layers_of_their_own():
     [
         ("{", says(NOT_JSON, line=1)),
         ("[]", says(NOT_OBJECT, where="the script")),
-        ('{"schema": 1, "schema": 1}', "'schema' is given twice"),
+        ('{"schema": 1, "schema": 1}', "has the field 'schema' twice"),
         ("[" * 100_000, says(TOO_NESTED)),
     ],
 )
@@ -421,7 +433,9 @@ def test_a_key_on_request_pulls_with_bounded_force():
             assert (abs(layer.target_errors(key.pose)[1]) > 5) == far
     # A notice names the target error, and the target moves to where the handle is.
     assert len(notices) == 1
-    assert re.fullmatch(r"frame 8: 'end' is \d+\.\d px short .* by the limits", notices[0])
+    assert re.fullmatch(
+        r"frame 8: 'end' is \d+\.\d px from its target, .* by the limits", notices[0]
+    )
     wanted = pulled.keys[1].pose.targets[0].position
     assert wanted.real < 450
     assert pulled.target_errors(pulled.keys[1].pose)[0] < 1
@@ -507,7 +521,7 @@ def test_the_camera_and_movements_are_read():
             {"movement": {"keys": [{"frame": 3}, {"frame": 2}]}},
             says(OUT_OF_ORDER, where="movement.keys"),
         ),
-        ({"opacity": 2}, "Opacity is between 0 and 1"),
+        ({"opacity": 2}, "Opacity must be from 0 to 1"),
         ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, where="opacity")),
         ({"opacity": [[0]]}, r"opacity\[0\] must be a frame and a number"),
         ({"opacity": []}, "at least one key"),
@@ -545,27 +559,30 @@ def test_a_script_says_what_repeats():
     assert layer.key(48).pose is layer.key(0).pose
     keys[-1] = {"frame": 24, "targets": {"end": [210, 50]}}
     script = parse_pose_script({**ROUND, "keys": keys, "cycles": cycles[1:]})
-    with pytest.raises(LissomError, match="frame 24 is where frames 0 to 24 begin again, but it"):
+    with pytest.raises(LissomError, match="frame 24 lies where frames 0 to 24 repeat, but it"):
         pose_document(opened, script, lambda _: None)
 
 
 @pytest.mark.parametrize(
     ("cycles", "message"),
     [
-        ([{"from": 8, "to": 8}], r"cycles\[0\]: A cycle ends after the frame 8, .* not at 8"),
-        ([{"from": 8, "to": 0}], "begins, not at 0"),
-        ([{"from": 0, "to": 24, "until": 20}], "cannot repeat until frame 20, which is before"),
+        (
+            [{"from": 8, "to": 8}],
+            r"cycles\[0\]: A cycle must end after its first frame, 8, not at frame 8",
+        ),
+        ([{"from": 8, "to": 0}], "not at frame 0"),
+        ([{"from": 0, "to": 24, "until": 20}], "cannot repeat until frame 20, which is not after"),
         (
             [{"from": 8, "to": 24}, {"from": 0, "to": 8, "until": 16}],
-            "cycles: The repeats of frames 0 to 8 and of frames 8 to 24 overlap",
+            "cycles: The repeats of frames 0 to 8 and frames 8 to 24 overlap",
         ),
-        ([{"from": 0, "to": 24}, {"from": 30, "to": 40}], "overlap; end the former at frame 30"),
-        ([{"from": 0, "to": 12, "until": 24}], "key at frame 16 is where frames 0 to 12 repeat"),
-        ([{"from": 9, "to": 12, "until": 12}], "no key in frames 9 to 12 that could repeat"),
+        ([{"from": 0, "to": 24}, {"from": 30, "to": 40}], "at frame 30 or earlier"),
+        ([{"from": 0, "to": 12, "until": 24}], "key at frame 16 lies where frames 0 to 12 repeat"),
+        ([{"from": 9, "to": 12, "until": 12}], "No key in frames 9 to 12 could repeat"),
         ([{"from": 4, "to": 12, "until": 16}], "starts at frame 4. Set a key there"),
         (
             [{"from": 0, "to": 12, "until": 13}],
-            "end at frame 13, .* no motion leads to the key at frame 16; .* frame 12 instead",
+            "end at frame 13, .* no motion leads to the key at frame 16. .* frame 12 instead",
         ),
         ([{"from": 0}], says(NOT_A_FRAME, where="cycles[0]", name="to")),
         ([{"from": 0, "to": 24.5}], says(NOT_A_FRAME, where="cycles[0]", name="to")),

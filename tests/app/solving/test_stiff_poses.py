@@ -150,7 +150,9 @@ def test_script_stiffens_what_it_says():
     assert bent_in(layer, stiff, 110, 160) < 0.5 * bent_in(layer, soft, 110, 160)
     nowhere = {**SCRIPT, "stiff": [{"around": [240, 400], "radius": 6, "amount": 10}]}
     _, notices = pose_document(drawn(), parse_pose_script(nowhere), lambda _: None)
-    assert notices == ("no outline is within 6 px of (240, 400): nothing is stiff or soft there",)
+    assert notices == (
+        "no outline lies within 6 px of (240, 400), so nothing becomes stiff or soft there",
+    )
 
 
 @pytest.mark.parametrize(
@@ -186,7 +188,7 @@ def test_script_names_a_bone_that_leaves_the_drawing():
     with pytest.raises(LissomError, match="stiff from 'start' to 'end': A bone must stay"):
         pose_document(still_document(picture), parse_pose_script(script), lambda _: None)
     script["stiff"] = 2 * [{"from": "start", "to": "elbow", "amount": 3}]
-    with pytest.raises(LissomError, match="There is a bone from 'start' to 'elbow' already"):
+    with pytest.raises(LissomError, match="A bone from 'start' to 'elbow' already exists"):
         pose_document(drawn(), parse_pose_script(script), lambda _: None)
 
 

@@ -178,7 +178,7 @@ def test_arrays_larger_than_a_domain_can_be_are_not_read(tmp_path, members):
 @pytest.mark.parametrize("text", [b"[" + b"[]," * 1_500_000 + b"0]", b'{"x":[' + b"0," * 1_500_000])
 def test_json_of_many_values_is_not_decoded(tmp_path, members, text):
     path = pack(tmp_path / "a", members | {"project.json": text}, method=zipfile.ZIP_DEFLATED)
-    refused = pytest.raises(LissomError, match="more values than any project")
+    refused = pytest.raises(LissomError, match="too many values")
     with memory_below(16 * MEBIBYTE), refused:
         load_project(path)
 

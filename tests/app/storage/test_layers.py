@@ -47,7 +47,10 @@ def test_every_layer_is_a_layer_where_it_is_on_the_canvas(drawing):
 def test_a_layer_that_is_opaque_all_over_stands_still(drawing):
     opened = open_layered(drawing, MESHING)
     assert [layer.still for layer in opened.document.layers] == [True, False, False]
-    assert "sky: opaque all over, so that it stands still" in opened.document.import_log.notes
+    assert (
+        "sky: the picture is opaque everywhere, so there is no shape to pose"
+        in opened.document.import_log.notes
+    )
 
 
 def test_layers_share_the_triangles(drawing):

@@ -225,10 +225,10 @@ def two_layers():
 
 
 NOT_READ_BACK = (
-    (project_file, "MOST_VALUES", "holds more values than any project, which has 3"),
+    (project_file, "MOST_VALUES", "has too many values; a project has at most 3"),
     (project_file, "LARGEST_JSON", "project.json is too large"),
     (project_file, "DEEPEST", "nested deeper than 3 levels"),
-    (archive, "MOST_MEMBERS", "more than the 3 of any project"),
+    (archive, "MOST_MEMBERS", "a project has at most 3"),
 )
 
 
@@ -236,7 +236,7 @@ NOT_READ_BACK = (
 def test_save_is_refused_when_the_file_would_not_open(monkeypatch, saved, module, limit, refusal):
     before, tmp_path = saved.read_bytes(), saved.parent
     monkeypatch.setattr(module, limit, 3)
-    with pytest.raises(LissomError, match=f"could not open it again: .*{refusal}"):
+    with pytest.raises(LissomError, match=f"could not open the file again: .*{refusal}"):
         save_project(saved, clocked_document())
     assert saved.read_bytes() == before
     assert [*tmp_path.iterdir()] == [saved]
@@ -247,7 +247,7 @@ def test_autosave_keeps_earlier_work_when_newer_is_refused(monkeypatch, tmp_path
     own.write(disc_document(), SourceInfo("a", None))
     with monkeypatch.context() as patched:
         patched.setattr(project_file, "MOST_VALUES", 10)
-        with pytest.raises(LissomError, match="could not open it again"):
+        with pytest.raises(LissomError, match="could not open the file again"):
             own.write(clocked_document(), SourceInfo("b", None))
     (kept,) = tmp_path.glob("unsaved-*.lissom")
     document, origin = load_recoverable_file(kept)
@@ -291,15 +291,15 @@ KNOWN = {
 }
 BETWEEN = KNOWN | {"first": 8, "start": 8, "last": 10}
 UNKNOWN_MOTIONS = (
-    (BETWEEN | {"motion": "nosuch"}, "There is no motion 'nosuch'"),
-    (BETWEEN | {"kind": "biped-side"}, "'breathe' is not a motion of 'biped-side'"),
+    (BETWEEN | {"motion": "nosuch"}, "There is no motion preset 'nosuch'"),
+    (BETWEEN | {"kind": "biped-side"}, "'breathe' is not a motion for 'biped-side'"),
     (BETWEEN | {"motion": "wave", "kind": "biped-side"}, "has no joint 'top'"),
-    (BETWEEN | {"joints": {"top": 7}}, "is the handle 7, which is not there"),
-    (BETWEEN | {"first": -1}, "A motion goes from a frame to a later one"),
-    (BETWEEN | {"last": LAST_FRAME + 1}, "A motion goes from a frame to a later one"),
-    (BETWEEN | {"repeat_count": 10**30}, "A motion is there once to 1,000 times"),
-    (BETWEEN | {"parameters": {"speed": 1e300}}, "lacks the field 'size'"),
-    ({"later": [1, 2.5, None, "x"]}, "lacks the field 'motion'"),
+    (BETWEEN | {"joints": {"top": 7}}, "is at handle 7, which does not exist"),
+    (BETWEEN | {"first": -1}, "A motion must run from a frame to a later frame"),
+    (BETWEEN | {"last": LAST_FRAME + 1}, "A motion must run from a frame to a later frame"),
+    (BETWEEN | {"repeat_count": 10**30}, "A motion can play 1 to 1,000 times"),
+    (BETWEEN | {"parameters": {"speed": 1e300}}, "needs the field 'size'"),
+    ({"later": [1, 2.5, None, "x"]}, "needs the field 'motion'"),
     ("hop", "must be an object"),
 )
 
@@ -334,24 +334,30 @@ def test_motion_keeps_its_other_joints_when_a_handle_goes():
 
 
 REFUSED = (
-    (lambda c: c.update(fps=0.01), "speed is from 1/60 to 1,000 frames"),
-    (lambda c: c.update(fps=5e-324), "speed is from 1/60 to 1,000 frames"),
-    (lambda c: c.update(fps=1000.1), "speed is from 1/60 to 1,000 frames"),
+    (lambda c: c.update(fps=0.01), "speed must be from 1/60 to 1,000 frames"),
+    (lambda c: c.update(fps=5e-324), "speed must be from 1/60 to 1,000 frames"),
+    (lambda c: c.update(fps=1000.1), "speed must be from 1/60 to 1,000 frames"),
     (
         lambda c: c["layers"][0].update(visibility_keys=[[-1, True]]),
         "frame from 0 to 999,999, not at -1",
     ),
     (lambda c: c["layers"][0].update(visibility_keys=[[10**6, True]]), "frame from 0 to 999,999"),
     (lambda c: c["layers"][0].update(id=MAX_ID + 1), "lacks layers/2147483648"),
-    (lambda c: c["layers"][0].update(next_handle=2**31), "The next handle has an id from 0 to"),
-    (lambda c: c["layers"][0]["handles"][0].update(id=10**30), "A handle has an id from 0 to"),
+    (
+        lambda c: c["layers"][0].update(next_handle=2**31),
+        "The next handle must have an id from 0 to",
+    ),
+    (
+        lambda c: c["layers"][0]["handles"][0].update(id=10**30),
+        "A handle must have an id from 0 to",
+    ),
     (
         lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 1], "keys": [[10**6, 0]]}]),
         "frame from 0 to 999,999",
     ),
     (
         lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 0], "keys": []}]),
-        "A switch has the layer 0 twice",
+        "A switch lists the layer 0 twice",
     ),
     (
         lambda c: c["layers"][0].update(cycles=[{"first": -2, "last": 2, "until": None}]),
@@ -387,7 +393,7 @@ def test_changes_are_refused_when_they_repeat_too_often():
     repeating = document.with_layer(replace(layer, cycles=cycles))
     count = MAX_CHANGES - 3
     assert scene_commands.set_frames(FrameRange(0, 2 * count // 3))(repeating)
-    with pytest.raises(LissomError, match=f"more than {MAX_CHANGES:,}; let the repeats end"):
+    with pytest.raises(LissomError, match=f"more than {MAX_CHANGES:,}. End the repeats"):
         scene_commands.set_frames(FrameRange(0, LAST_FRAME))(repeating)
 
 

@@ -354,41 +354,41 @@ def test_springs_of_older_files_swing_as_freely_as_they_did(tmp_path):
         ),
         (["tracks"], {}, says(NOT_LIST, where="tracks")),
         (["tracks", 0], 7, says(NOT_OBJECT, where="tracks[0]")),
-        (["tracks", 0, "handles"], [], "track is of at least one handle"),
-        (["tracks", 0, "handles"], [4, 4], "track has the handle 4 twice"),
+        (["tracks", 0, "handles"], [], "track needs at least one handle"),
+        (["tracks", 0, "handles"], [4, 4], "track lists the handle 4 twice"),
         (["tracks", 0, "handles"], [7], says(NO_HANDLE, identity=7)),
         (["tracks", 0, "handles"], ["4"], says(NOT_WHOLE, where="handles[0]")),
         (["tracks", 0, "is_scene_space"], 1, says(NOT_TRUE_OR_FALSE, where="is_scene_space")),
-        (["tracks", 0, "keys"], [], "track has at least one key"),
+        (["tracks", 0, "keys"], [], "track needs at least one key"),
         (["tracks", 0, "keys", 1, "frame"], 2, "track has two keys at frame 2"),
-        (["tracks", 0, "keys", 1, "frame"], 1, "frames 2 and 1 are mixed up"),
+        (["tracks", 0, "keys", 1, "frame"], 1, "frames 2 and 1 are out of order"),
         (["tracks", 0, "keys", 3, "frame"], 61, "key at frame 61 lies outside"),
         (["tracks", 0, "keys", 0, "frame"], 0, "key at frame 0 lies outside"),
         (["tracks", 0, "keys", 1, "frame"], 2.5, says(NOT_WHOLE, where="frame")),
         (["tracks", 0, "keys", 1, "place"], [1], says(NOT_POINT, where="keys[1].place")),
-        (["tracks", 0, "keys", 1, "place"], [1e9, 0], "A track's key must be within"),
+        (["tracks", 0, "keys", 1, "place"], [1e9, 0], "A key of a track must be within"),
         (["tracks", 0, "keys", 1, "velocity"], 3, says(NOT_POINT, where="keys[1].velocity")),
         (["tracks", 0, "keys", 1, "velocity"], [1e9, 0], "10,000,000 pixels a frame"),
         (["tracks", 0, "keys", 1, "turn"], "left", says(NOT_NUMBER, where="turn")),
         (["tracks", 0, "keys", 1, "turn"], 10**400, "turn must be finite"),
-        (["tracks", 0, "keys", 1, "turn"], -130, "turns by at most 20 whole turns, not by -20.69"),
+        (["tracks", 0, "keys", 1, "turn"], -130, "rotate by at most 20 whole turns, not -20.69"),
         (["tracks", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
         (["tracks", 0, "keys", 1, "tangent_mode"], "hold", "hold is an easing"),
-        (["tracks", 0, "delay"], -1, "delay of a track is from 0"),
-        (["tracks", 0, "delay"], 10**30, "delay of a track is from 0"),
-        (["tracks", 0, "delay"], 60, "late by 60 frames, which is longer than the loop of 59"),
-        (["tracks", 0, "reach"], 1.1, "reach of a track is between 0 and 1"),
+        (["tracks", 0, "delay"], -1, "delay of a track must be from 0"),
+        (["tracks", 0, "delay"], 10**30, "delay of a track must be from 0"),
+        (["tracks", 0, "delay"], 60, "delayed by 60 frames, longer than the loop of 59"),
+        (["tracks", 0, "reach"], 1.1, "reach of a track must be from 0 to 1"),
         (["tracks", 0, "enabled"], None, says(NOT_TRUE_OR_FALSE, where="enabled")),
         (["tracks", 0, "keys_rotation"], 0.1, says(NOT_TRUE_OR_FALSE, where="keys_rotation")),
         (["springs", 0, "handle"], 7, says(NO_HANDLE, identity=7)),
-        (["springs", 0, "frequency"], 0, "frequency of a spring is above 0"),
-        (["springs", 0, "damping"], -1, "damping of a spring is from 0"),
-        (["springs", 0, "lag"], 1e9, "lag of a spring is from 0"),
-        (["springs", 0, "strength"], -0.1, "strength of a spring is from 0"),
+        (["springs", 0, "frequency"], 0, "frequency of a spring must be above 0"),
+        (["springs", 0, "damping"], -1, "damping of a spring must be from 0"),
+        (["springs", 0, "lag"], 1e9, "lag of a spring must be from 0"),
+        (["springs", 0, "strength"], -0.1, "strength of a spring must be from 0"),
         (["springs", 0, "damping"], "none", says(NOT_NUMBER, where="damping")),
-        (["springs", 0, "stretch"], 1.5, "stretch of a spring is between 0 and 1, not 1.5"),
-        (["springs", 0, "root"], 7, "spring swings about the handle 7, which is not there"),
-        (["springs", 0, "root"], 1, "about another handle than its own"),
+        (["springs", 0, "stretch"], 1.5, "stretch of a spring must be from 0 to 1, not 1.5"),
+        (["springs", 0, "root"], 7, "spring has the root handle 7, which does not exist"),
+        (["springs", 0, "root"], 1, "another handle than the spring's own"),
         (["springs", 0, "root"], "4", says(NOT_WHOLE, where="root")),
     ],
 )
@@ -405,11 +405,11 @@ def test_clocks_that_make_no_sense_are_named(tmp_path, way, value, message):
     [
         (["stiffness"], 1, says(NOT_TRUE_OR_FALSE, where="stiffness")),
         (["bones"], {}, says(NOT_LIST, where="bones")),
-        (["bones", 0, "ends"], [4, 7], "bone ends at the handle 7, which is not there"),
-        (["bones", 0, "ends"], [4, 4], "from one handle to another one"),
+        (["bones", 0, "ends"], [4, 7], "bone ends at handle 7, which does not exist"),
+        (["bones", 0, "ends"], [4, 4], "connect two different handles"),
         (["bones", 0, "ends"], [4], "ends must be two handles"),
-        (["bones", 0, "stiffness"], 101, "stiffness is from 1/30 to 100"),
-        (["bones", 0, "stiffness"], 0, "stiffness is from 1/30 to 100"),
+        (["bones", 0, "stiffness"], 101, "Stiffness must be from 1/30 to 100"),
+        (["bones", 0, "stiffness"], 0, "Stiffness must be from 1/30 to 100"),
         (["bones", 0, "stiffness"], "much", says(NOT_NUMBER, where="stiffness")),
         (["bones", 0, "is_shown"], 2, says(NOT_TRUE_OR_FALSE, where="is_shown")),
     ],
@@ -435,7 +435,7 @@ def test_two_bones_in_one_place_and_wild_stiffnesses_are_refused(tmp_path):
         (np.full(count, np.nan), "stiffness must be from 1/30"),
         (np.full(count, 1e3), "stiffness must be from 1/30"),
         (np.ones(count + 1), "cut short|too large|one number for each"),
-        (np.ones(count, np.float32), "is not an array float64"),
+        (np.ones(count, np.float32), "is not an array of type float64"),
     ):
         other = members | {name: array_member(wrong)}
         with pytest.raises(LissomError, match=message):
@@ -453,7 +453,7 @@ def test_what_repeats_comes_back_and_is_written_where_it_is_there(tmp_path):
     assert load_project(path).layers[0].cycles == cycles
     members = read_members(path)
     apart = with_json(members, "layers", 0, "cycles", 0, "until", value=41)
-    with pytest.raises(LissomError, match="repeats of frames 0 to 24 and of frames 40 to 48 overl"):
+    with pytest.raises(LissomError, match="repeats of frames 0 to 24 and frames 40 to 48 overl"):
         load_project(pack(tmp_path / "b", apart))
     save_project(path, disc_document())
     assert b'"cycles"' not in read_members(path)["project.json"]
@@ -466,7 +466,7 @@ def test_a_spring_without_damping_is_refused_in_a_loop(tmp_path):
     # It swings nowhere as long as it is switched off.
     assert load_project(pack(tmp_path / "b", undamped)).layers[0].springs[0].damping == 0
     swinging = with_json(undamped, "layers", 0, "springs", 0, "enabled", value=True)
-    with pytest.raises(LissomError, match="no damping, so that it never comes round in a loop"):
+    with pytest.raises(LissomError, match="no damping, so its swing never repeats in a loop"):
         load_project(pack(tmp_path / "b", swinging))
     once = with_json(swinging, "loop", value=False)
     assert load_project(pack(tmp_path / "b", once)).layers[0].springs[0].enabled
@@ -555,8 +555,8 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["markers"], {}, says(NOT_LIST, where="markers")),
         (["markers", 0, "name"], " ", "marker needs a name"),
         (["markers", 0, "frame"], 700, "Two markers are at frame 700"),
-        (["markers", 0, "frame"], 701, "mixed up"),
-        (["markers", 1, "frame"], 10**30, "marker is at a frame"),
+        (["markers", 0, "frame"], 701, "out of order"),
+        (["markers", 1, "frame"], 10**30, "marker must be at a frame"),
         (["layers", 0, "mirror"], 1e9, "axis of mirroring"),
         (["layers", 0, "library", 0, "name"], "über\n", "Two poses have the name"),
         (["layers", 0, "library", 0, "targets"], [], "one target for each handle"),
@@ -577,7 +577,11 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["layers", 0, "picture", "suffix"], ".jpg", "lacks layers/0/source.jpg"),
         (["layers", 0, "picture", "suffix"], "/../../x", "lacks layers/0/source"),
         (["layers", 0, "picture", "size"], [0, 5], "The picture must have 1 to"),
-        (["layers", 0, "picture", "size"], [200, 201], "200 × 200 pixels, not 200 × 201"),
+        (
+            ["layers", 0, "picture", "size"],
+            [200, 201],
+            "200 × 200 pixels, but the project says 200 × 201",
+        ),
         (["layers", 0, "picture", "size"], [10**30, 200], "The picture must have 1 to"),
         (["layers", 0, "id"], -1, "lacks layers/-1"),
         (["layers", 0, "handles"], {}, says(NOT_LIST, where="handles")),
@@ -585,16 +589,16 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["layers", 0, "handles", 0, "id"], 4, "Two handles have the id 4"),
         (["layers", 0, "handles", 0, "position"], [0, 0], "outside the shape"),
         (["layers", 0, "handles", 0, "weight"], 10**400, "finite"),
-        (["layers", 0, "next_handle"], 2, "is taken"),
+        (["layers", 0, "next_handle"], 2, "already belongs to a handle"),
         (["layers", 0, "keys"], [], "at least one key"),
         (["layers", 0, "keys", 1, "frame"], 3, "Two keys are at frame 3"),
-        (["layers", 0, "keys", 1, "frame"], 2, "mixed up"),
+        (["layers", 0, "keys", 1, "frame"], 2, "out of order"),
         (["layers", 0, "keys", 1, "revolutions"], 0.5, says(NOT_WHOLE, where="revolutions")),
         (["layers", 0, "keys", 1, "revolutions"], 10**30, "whole turns"),
         (["layers", 0, "keys", 1, "easing"], "bounce", "no easing 'bounce'"),
         (["layers", 0, "keys", 1, "easing"], [0, 0, 2, 0], "easing curve"),
         (["layers", 0, "keys", 1, "targets"], [], "one target for each handle"),
-        (["layers", 0, "keys", 1, "targets", 0, "handle"], 4, "two targets for one handle"),
+        (["layers", 0, "keys", 1, "targets", 0, "handle"], 4, "two targets for the same handle"),
         (
             ["layers", 0, "keys", 1, "targets", 0, "rotation"],
             "x",
@@ -602,15 +606,15 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         ),
         (["layers", 0, "keys", 1], 7, says(NOT_OBJECT, where="keys[1]")),
         (["layers", 0, "keys", 2, "depths"], [[4]], r"depths\[0\] must be a handle and a number"),
-        (["layers", 0, "keys", 2, "depths"], [[4, 7]], "from −1, behind, to 1, in front"),
-        (["layers", 0, "keys", 2, "depths"], [[9, 0.5]], "in front that is not there"),
-        (["layers", 0, "handles", 0, "depth"], 2, "from −1, behind, to 1, in front"),
+        (["layers", 0, "keys", 2, "depths"], [[4, 7]], r"from −1 \(behind\) to 1 \(in front\)"),
+        (["layers", 0, "keys", 2, "depths"], [[9, 0.5]], "front that does not exist"),
+        (["layers", 0, "handles", 0, "depth"], 2, r"from −1 \(behind\) to 1 \(in front\)"),
         (["layers", 0, "handles", 0, "extent"], 0, "extent of handle 'nose'"),
         (["layers", 0, "name"], " ", "needs a name"),
-        (["layers", 0, "name"], "parent", "Two layers are called 'parent'"),
+        (["layers", 0, "name"], "parent", "Two layers have the name 'parent'"),
         (["layers", 0, "corner"], [1e9, 0], "corner of 'Körper'"),
         (["layers", 0, "still"], True, "still picture"),
-        (["layers", 0, "opacity"], 1.5, "Opacity is between 0 and 1"),
+        (["layers", 0, "opacity"], 1.5, "Opacity must be from 0 to 1"),
         (
             ["layers", 0, "visibility_keys"],
             [[12, True], [12, False]],
@@ -620,7 +624,7 @@ def test_a_newer_schema_need_have_nothing_else_in_common(tmp_path):
         (["layers", 0, "attachment", "parent"], 7, says(NO_LAYER, identity=7)),
         (["layers", 0, "attachment", "parent"], 0, says(PARENT_CIRCLE)),
         (["layers", 0, "attachment", "parent_point"], [1e9, 0], "A joint must be within"),
-        (["layers", 0, "anchor"], None, "attached, but has no anchor"),
+        (["layers", 0, "anchor"], None, "attached but has no anchor"),
         (["size"], [0, 5], "The canvas must have 1 to"),
     ],
 )
@@ -685,13 +689,13 @@ def test_text_that_is_no_object_is_refused(tmp_path, members, text):
 @pytest.mark.parametrize(
     ("field", "message"),
     [
-        (b'"x": NaN', "holds NaN"),
-        (b'"x": -Infinity', "holds -Infinity"),
-        (b'"x": 1e999', "holds 1e999"),
+        (b'"x": NaN', "contains NaN"),
+        (b'"x": -Infinity', "contains -Infinity"),
+        (b'"x": 1e999', "contains 1e999"),
         (b'"x": ' + b"[" * 45 + b"]" * 45, "nested deeper than"),
         (b'"x": ' + b'{"x":' * 45 + b"1" + b"}" * 45, "nested deeper than"),
         (b'"x": 1' + b"0" * 5000, "not JSON"),
-        (b'"fps": 24', "'fps' is given twice"),
+        (b'"fps": 24', "has the field 'fps' twice"),
     ],
 )
 def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, message):
@@ -720,7 +724,7 @@ def test_what_could_not_be_written_again_is_refused(tmp_path, members, field, me
         ("layers/0/cage.npy", npy(np.ones(2, complex)), says(FEW_ENTRIES, at_least=3)),
         ("layers/0/cage.npy", npy(np.ones(11, complex)), says(CAGE_REPEATS)),
         ("layers/0/cage.npy", npy(np.full(12, complex("nan"))), says(NOT_FINITE, name="cage")),
-        ("layers/0/outline.npy", npy(np.ones(12, complex)), "outline repeats a vertex"),
+        ("layers/0/outline.npy", npy(np.ones(12, complex)), "outline has the same vertex twice"),
         ("layers/0/outline.npy", npy(np.array([0, 2, 2j, 1 + 2j, 0.5])), "crosses"),
         (
             "layers/0/vertices.npy",
@@ -815,12 +819,12 @@ def test_too_many_members_and_members_of_one_name_are_refused(tmp_path, members)
     table = data[start:end] * (65_536 // len(members) + 1)
     closing = struct.pack("<4s4H2LH", b"PK\5\6", 0, 0, 0xFFFF, 0xFFFF, len(table), start, 0)
     path.write_bytes(data[:start] + table + closing)
-    with pytest.raises(LissomError, match="members, more than the 65,535 of any"):
+    with pytest.raises(LissomError, match="members; a project has at most 65,535"):
         load_project(path)
     path = pack(tmp_path / "b", members)
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate"):
         archive.writestr("project.json", b"{}")
-    with pytest.raises(LissomError, match="two members of one name"):
+    with pytest.raises(LissomError, match="two members of the same name"):
         load_project(path)
 
 

@@ -57,7 +57,7 @@ def test_a_camera_whose_notes_are_damaged_spoils_no_picture(tmp_path, kind, note
     picture = decode_picture(path.read_bytes(), "it")
     assert shown.shape == picture.rgba.shape == (20, 30, 4)
     assert np.abs(shown[9, 9, :3].astype(int) - (200, 30, 90)).max() <= 4
-    assert picture.notices in {(), ("ignored the camera's notes, which are damaged",)}
+    assert picture.notices in {(), ("its camera data is damaged and was ignored",)}
 
 
 def test_what_has_no_picture_has_no_thumbnail(tmp_path):

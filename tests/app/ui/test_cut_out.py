@@ -251,7 +251,7 @@ def test_a_mask_of_another_size_is_refused(window, drawing, tmp_path):
     window.act(cut_out_editing.load_mask, tmp_path / "small.png")
     window.settle()
     assert drawing.document is before
-    assert any("same width and height" in toast.text for toast in window.session.toasts)
+    assert any("of the picture's size" in toast.text for toast in window.session.toasts)
 
 
 def test_impossible_cut_out_is_reported_and_undone(window, drawing):
@@ -429,7 +429,7 @@ def test_a_knife_parts_what_touches_and_nothing_is_seen_of_it_at_rest(window, bo
     stroke(window, *FROM_BELOW)
     (slit,) = boots.layer.cut_out.cut_lines
     assert slit.points[0] == pytest.approx(FROM_BELOW[0], abs=1)
-    assert boots.history.undo_label == "Cut by the knife"
+    assert boots.history.undo_label == "Cut with knife"
     rest(window)
     layer = boots.layer
     assert not layer.is_stale

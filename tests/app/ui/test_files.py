@@ -128,7 +128,7 @@ def test_a_layer_beyond_memory_is_refused(window, project, drop, monkeypatch):
     drop(RING)
     window.run(lambda robot: robot.item_click("//###dialog/New layer"))
     window.settle()
-    assert "decoded it takes" in texts(window)[-1]
+    assert "decoded, the picture needs" in texts(window)[-1]
     assert len(project.document.layers) == 1
 
 
@@ -263,7 +263,7 @@ def test_refused_autosave_is_reported_once(window, project, kept, monkeypatch):
             change(window, project)
             pass_time(window, SECONDS)
             window.settle()
-            notices = [text for text in texts(window) if "could not open it again" in text]
+            notices = [text for text in texts(window) if "could not open the file again" in text]
             assert len(notices) == has_notice
     assert kept() == 1
     pass_time(window, SECONDS)

@@ -991,7 +991,7 @@ def test_import_log_stays_in_the_panel(window, stranger):
     assert "One thing looks different here" in toast.text
     log = project.document.import_log
     assert log.warnings == ("shine, glow: drawn normally, not in the mode 'overlay'",)
-    assert "wall: opaque all over, so that it stands still" in log.notes
+    assert "wall: the picture is opaque everywhere, so there is no shape to pose" in log.notes
     window.show_tab("Handle")
     window.act(toast.action.apply)
     window.frames(3)

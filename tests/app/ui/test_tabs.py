@@ -368,14 +368,14 @@ def test_export_settings_are_entered_and_undone(window, project, tab):
 def test_what_single_formats_ask_is_entered(window, project, tab):
     def lay_out(robot):
         assert robot.item_exists("**/framing/###fit")
-        robot.item_click("**/trimmed/###All alike")
+        robot.item_click("**/trimmed/###Same size")
         robot.item_input_value("**/##padding", 999)
         robot.item_click("**/power_of_two/###Powers of two")
 
     def detail(robot):
         assert not robot.item_exists("**/framing/###fit")
         robot.item_input_value("**/##triangles", 900)
-        robot.item_click("**/tolerance/###Own")
+        robot.item_click("**/tolerance/###Custom")
         robot.item_input_value("**/##tolerance", 0.25)
 
     export_settings.set_export_settings(

@@ -413,7 +413,7 @@ def test_heavier_handles_win():
     [
         ([5.0], None, "handle at .* outside"),
         ([0.0, np.nan], None, "finite"),
-        ([0.0], [1, 2], "as many weights"),
+        ([0.0], [1, 2], "weights, not"),
         ([0.0], [0.0], says(WEIGHT_NOT_POSITIVE)),
         ([0.0], [np.nan], says(WEIGHT_NOT_POSITIVE)),
     ],

@@ -307,8 +307,8 @@ def test_a_pull_of_everything_moves_the_whole_shape(far):
         ((BoundedPull([1], np.nan),), says(FORCE_NOT_POSITIVE, pull=float("nan"))),
         ((BoundedPull([9]),), says(PULL_HANDLES, handles="[9]", count=6)),
         ((BoundedPull([-1]),), says(PULL_HANDLES, handles="[-1]", count=6)),
-        ((BoundedPull([]),), "pulls at nothing"),
-        ((BoundedPull([1, 2]), BoundedPull([2])), "Two hands pull at handle 2"),
+        ((BoundedPull([]),), "names no handle"),
+        ((BoundedPull([1, 2]), BoundedPull([2])), "Two pulls name handle 2"),
     ],
 )
 def test_hands_that_cannot_pull_are_refused(hands, reported):

@@ -57,7 +57,7 @@ def test_every_domain_that_is_built_is_one(picture):
         (domain(cage=0.5 * (OUTLINE - OUTLINE[3]) + OUTLINE[3]), says(CAGE_TOUCHES)),
         (domain(cage=CAGE * 50 + 500), says(CAGE_ORDER)),
         (domain(cage=200 * regular_polygon(501)), says(VERTEX_COUNT, name="cage", most=500)),
-        (domain(cage=OUTLINE + 1e-6 * (CAGE * 50 + 20 + 30j - OUTLINE)), "cage comes too near"),
+        (domain(cage=OUTLINE + 1e-6 * (CAGE * 50 + 20 + 30j - OUTLINE)), "cage comes too close"),
         (domain(cage=1e200 * CAGE), says(TOO_FAR, name="cage")),
         (domain(vertices=OUTLINE * 1e150), says(TOO_FAR, name="mesh")),
         (domain(triangles=[]), says(MESH_SIZE)),

@@ -194,7 +194,7 @@ def test_folds_are_found_wherever_they_are():
         ({"maps": [MAPS[0], HarmonicMap.identity(1.01 * CAGE)]}, says(OTHER_CAGE)),
         ({"maps": [CAGE, CAGE]}, says(OTHER_KIND, name="keyframe 0", given="ndarray")),
         ({"shape": bar()}, says(OTHER_BOUNDARY)),
-        ({"variant": "wobbly"}, "no variant 'wobbly'; there are metric, nu"),
+        ({"variant": "wobbly"}, "no variant 'wobbly'; choose one of metric, nu"),
         ({"anchor": [0.5, 0.6]}, says(ONE_ANCHOR, count=2)),
         ({"anchor": []}, says(ONE_ANCHOR, count=0)),
         ({"anchor": 2 + 2j}, "anchor at .* is outside"),
@@ -258,7 +258,7 @@ def test_what_a_variant_needs_is_asked_for():
     interval = KeyframeSegment(sites, KeyframeBlend.of(keys[:2], sheets[:2]), Bounds())
     for variant in Variant:
         if variant.needs_transform:
-            with pytest.raises(EngineError, match="needs a Hilbert transform"):
+            with pytest.raises(EngineError, match="needs the Hilbert transform"):
                 prepare_inbetweens(variant, interval)
         else:
             frame = prepare_inbetweens(variant, interval).frame(0.5)

@@ -114,7 +114,7 @@ def test_coefficients_must_belong_to_the_cages():
     rest = HarmonicMap.identity(shape.cage, shape.holes)
     with pytest.raises(EngineError, match=says(COEFFICIENT_COUNT, count=48 + 36)):
         replace(rest, phi=rest.phi[1:])
-    with pytest.raises(EngineError, match="a logarithm for each of the 1, not 0"):
+    with pytest.raises(EngineError, match="one logarithm for each of the 1 holes, not 0"):
         replace(rest, logs=np.empty(0))
     with pytest.raises(EngineError, match=says(NOT_FINITE, name="logs")):
         replace(rest, logs=np.array([np.nan]))

@@ -73,13 +73,15 @@ def rename_group(document: Document, path: str, name: str) -> Document:
     document.group(path)
     name = name.strip()
     if "/" in name:
-        raise LissomError(_("A group's name has no slash, unlike {name!r}.").format(name=name))
+        raise LissomError(
+            _("The name of a group must not contain a slash, unlike {name!r}.").format(name=name)
+        )
     to = f"{path.rpartition('/')[0]}/{name}".removeprefix("/")
     if to == path:
         return document
     if any(group.name == to for group in document.groups):
         raise LissomError(
-            _("There is a group {name!r} already; choose another name.").format(name=name)
+            _("A group named {name!r} already exists; choose another name.").format(name=name)
         )
     return _moved(document, document.layers, document.groups, {path: to})
 
@@ -161,7 +163,7 @@ def _apart(document: Document, path: str) -> tuple[list[Layer], list[Layer]]:
 def _put_group(document: Document, path: str, around: str, place: int) -> Document:
     """Return the document with a group inside another, at an index among the other layers."""
     if path in ancestor_paths(around):
-        raise LissomError(_("The group {path!r} cannot be put in itself.").format(path=path))
+        raise LissomError(_("The group {path!r} cannot be moved into itself.").format(path=path))
     run, others = _apart(document, path)
     layers = (*others[:place], *run, *others[place:])
     outer, *_rest, name = path.rpartition("/")

@@ -20,7 +20,7 @@ from app.document.queries.layers.visibility import change_frame
 from app.errors import ImportLog, LissomError
 from app.texts import N_, _
 
-LAST_LAYER = N_("A document has at least one layer; add another one first.")
+LAST_LAYER = N_("A document must have at least one layer. Add another layer first.")
 
 
 @command(_("Add layer"))
@@ -53,7 +53,7 @@ def replace_layer(document: Document, identity: int, layer: Layer) -> Document:
     return changed if changed.canvas == size else replace(changed, size=size)
 
 
-@command(_("Keep joints"))
+@command(_("Move joints onto shape"))
 def keep_attachments(document: Document, identity: int) -> Document:
     """Move joints that are not on the layer's shape to the nearest points of the shape."""
     domain = document.layer(identity).domain
@@ -111,7 +111,7 @@ def move_layer(document: Document, identity: int, index: int) -> Document:
     others = [other for other in document.layers if other is not layer]
     if not 0 <= index <= len(others):
         raise LissomError(
-            _("There are {count} layers; none can be number {index}.").format(
+            _("There are {count} layers, so a layer cannot be number {index}.").format(
                 count=len(others) + 1, index=index + 1
             )
         )
@@ -223,7 +223,7 @@ def attach_layer(document: Document, identity: int, anchor: complex, joint: Atta
     return _with(document, identity, anchor=anchor, attachments=tuple(joints))
 
 
-@layer_command(_("Attach as before"))
+@layer_command(_("Delete attachment key"))
 def delete_attachment_key(layer: Layer, frame: int) -> Layer:
     """Delete the attachment key at a frame; the attachment before it stays in effect."""
     joints = tuple(joint for joint in layer.attachments if joint.frame != frame)

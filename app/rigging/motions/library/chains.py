@@ -16,7 +16,7 @@ SLITHER = Motion(
 WAG = Motion(
     name="wag",
     label=_("Wag"),
-    hint=_("It is held at its first joint and swings, its tip last"),
+    hint=_("The chain is held at its first joint and swings, its tip last"),
     seconds=1.0,
     keys=12,
     templates={"chain": Wave(degrees=34, waves=0.35, first=0.15, held=True)},

@@ -9,7 +9,7 @@ from app.texts import _
 BREATHE = Motion(
     name="breathe",
     label=_("Breathe"),
-    hint=_("It swells and sinks, slowly"),
+    hint=_("The body swells and sinks, slowly"),
     seconds=3.0,
     keys=8,
     templates={
@@ -23,7 +23,7 @@ BREATHE = Motion(
 SWAY = Motion(
     name="sway",
     label=_("Sway"),
-    hint=_("It leans from side to side on its foot, as in the wind"),
+    hint=_("The body leans from side to side on its foot, as in the wind"),
     seconds=2.5,
     keys=12,
     templates={
@@ -36,7 +36,9 @@ SWAY = Motion(
 HOP = Motion(
     name="hop",
     label=_("Hop"),
-    hint=_("It leaves the ground and lands, with both feet at once, or squashed and stretched"),
+    hint=_(
+        "The body leaves the ground and lands, with both feet at once, or squashed and stretched"
+    ),
     seconds=1.0,
     keys=24,
     templates={

@@ -122,9 +122,9 @@ def test_what_cannot_be_kept_is_reported():
     assert [layer.name for layer in read.layers] == ["head"]
     assert sorted(read.summary.warnings) == [
         "head: drawn normally, not in the mode 'overlay'",
-        "title: left out, since Lissom takes drawn layers only",
+        "title: left out, because Lissom reads only drawn layers",
     ]
-    assert read.summary.notes == ("nothing: left out, since it is empty",)
+    assert read.summary.notes == ("nothing: left out, because it is empty",)
 
 
 @pytest.mark.parametrize(
@@ -135,10 +135,10 @@ def test_what_cannot_be_kept_is_reported():
         (drawing(size=(0, 9)), "size of '0' pixels"),
         (drawing(HEAD.replace('x="10"', 'x="nan"')), "x='nan'"),
         (drawing(HEAD.replace("0.png", "7.png")), "lacks data/7.png"),
-        (drawing(""), "no layer on which anything is drawn"),
+        (drawing(""), "all of its layers are empty"),
         (drawing("<stack>" * 60 + "</stack>" * 60), says(GROUPS_DEEP, most=50)),
         (drawing("<stack>"), "stack.xml is damaged"),
-        (drawing(HEAD * 201), "up to 200: merge"),
+        (drawing(HEAD * 201), "at most 200. Merge"),
     ],
 )
 def test_bad_files_are_reported_in_words(data, words):
@@ -274,10 +274,10 @@ def test_names_that_are_alike_get_the_next_free_numbers():
 
 
 def test_too_many_groups_and_long_names_are_refused():
-    with pytest.raises(LissomError, match=f"{MOST_GROUPS:,} groups"):
+    with pytest.raises(LissomError, match=f"too many groups; Lissom reads at most {MOST_GROUPS:,}"):
         read_openraster(drawing(HEAD + "<stack/>" * (MOST_GROUPS + 1)))
     for stack in (f'<stack name="{"x" * 5000}">{HEAD}</stack>', HEAD.replace("head", "x" * 5000)):
-        with pytest.raises(LissomError, match=f"up to {LONGEST_NAME:,}") as refusal:
+        with pytest.raises(LissomError, match=f"at most {LONGEST_NAME:,}") as refusal:
             read_openraster(drawing(stack))
         assert len(str(refusal.value)) < 300
 

@@ -71,7 +71,7 @@ def test_groups_keep_what_they_do():
         Group(name="limbs 2", blend="screen"),
     )
     assert found.layers[-1].opacity == 0.2
-    assert found.summary == ImportLog(notes=("at all: left out, since it is empty",))
+    assert found.summary == ImportLog(notes=("at all: left out, because it is empty",))
 
 
 def test_clipping_layers_are_clipped_by_what_is_below_them_in_their_group():
@@ -115,11 +115,11 @@ def test_what_an_empty_layer_clips_is_nowhere_and_what_an_adjustment_does_is_eve
         "leg": False,
         "shade": True,
     }
-    assert found.summary.warnings == ("levels: left out, since it is an adjustment layer",)
+    assert found.summary.warnings == ("levels: left out, because it is an adjustment layer",)
     assert found.summary.notes == (
-        "blank, hollow: left out, since it is empty",
-        "gone: left out, since it is clipped by the empty layer blank",
-        "gone too: left out, since it is clipped by the empty layer hollow",
+        "blank, hollow: left out, because it is empty",
+        "gone: left out, because the empty layer blank clips it",
+        "gone too: left out, because the empty layer hollow clips it",
     )
 
 
@@ -136,9 +136,9 @@ def test_what_an_empty_group_clips_is_nowhere_too():
     )
     assert [layer.name for layer in found.layers] == ["arm", "leg", "light"]
     assert found.summary.notes == (
-        "hollow, blank, blank: left out, since it is empty",
-        "gone: left out, since it is clipped by the empty group hollow",
-        "gone too: left out, since it is clipped by the empty group limbs",
+        "hollow, blank, blank: left out, because it is empty",
+        "gone: left out, because the empty group hollow clips it",
+        "gone too: left out, because the empty group limbs clips it",
     )
 
 
@@ -147,7 +147,7 @@ def test_a_group_whose_mask_lets_its_layers_shine_through_each_other_is_reported
         return read(Folder(name="limbs", layers=layers, mask=mask))
 
     half = Mask(pixels=HALF // 2, left=10, top=20)
-    notices = ("limbs: half seen through its mask, so that its layers shine through each other",)
+    notices = ("limbs: its mask makes it half transparent, so its layers shine through each other",)
     assert grouped(half, drawn("arm"), drawn("hand"), drawn("hat")).summary.warnings == notices
     aside = Drawn(name="aside", pixels=FULL, left=-5, top=50)
     assert not grouped(half, drawn("arm"), aside).summary.warnings
@@ -190,7 +190,7 @@ def test_masks_are_taken_into_the_pixels_of_layers_and_groups(mask):
     assert (own.picture.rgba[..., :3] == 255).all()
     grouped = read(Folder(name="limbs", layers=[drawn("arm")], mask=mask))
     assert_array_equal(grouped.layers[0].picture.rgba, own.picture.rgba)
-    notices = ("limbs: its mask is cut into the layers of the group, as they are drawn",)
+    notices = ("limbs: the mask of the group is applied to each of its layers",)
     assert grouped.summary.notes == (() if mask.disabled else notices)
 
 
@@ -213,9 +213,9 @@ def test_what_is_not_taken_over_is_reported_once_with_all_names():
     )
     assert found.summary.warnings == (
         "limbs, a, b: drawn normally, not in the mode 'overlay'",
-        "paint: left out, since it is a fill layer",
-        "hole: drawn over the layers behind, which it knocks out in the file",
-        "bright: drawn at all brightnesses, whatever its “Blend If” says",
+        "paint: left out, because it is a fill layer",
+        "hole: drawn over the layers behind; its knockout is ignored",
+        "bright: drawn at all brightnesses; its “Blend If” setting is ignored",
     )
 
 
@@ -270,5 +270,5 @@ def test_more_layers_than_there_is_time_for_are_refused_at_once(in_block):
     layer = Drawn(name="a", pixels=np.full((1, 1, 4), 200, np.uint8))
     few = read_photoshop(photoshop_file((9, 9), [layer] * 2, in_block=in_block))
     assert len(few.layers) == 2
-    with pytest.raises(LissomError, match=f"up to {MOST_RECORDS:,}"):
+    with pytest.raises(LissomError, match=f"at most {MOST_RECORDS:,}"):
         read_photoshop(photoshop_file((9, 9), [layer] * (MOST_RECORDS + 1), in_block=in_block))

@@ -127,7 +127,7 @@ def test_sixteen_bits_of_other_formats_are_noticed_too():
     for data in (b"P6 5 3 65535\n" + samples, tiff + samples):
         picture = decode_picture(data, "drawing")
         assert abs(int(picture.rgba[1, 1, 0]) - 0x80) <= 1
-        assert picture.notices == ("reduced its deep colours to 8 bits per channel",)
+        assert picture.notices == ("its deep colours were reduced to 8 bits per channel",)
     assert decode_picture(b"P6 5 3 255\n" + samples[:45], "drawing").notices == ()
 
 
@@ -151,7 +151,7 @@ def test_the_colours_of_a_profile_become_srgb(mode):
         assert_array_equal(picture.rgba, plain)
         assert picture.notices == ()
     else:
-        assert picture.notices == ("converted its colours from Display P3 to sRGB",)
+        assert picture.notices == ("its colours were converted from Display P3 to sRGB",)
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_greys_with_a_profile():
     data = encode(Image.fromarray(GREY), "PNG", icc_profile=grey_profile("Linear", 1.0))
     picture = decode_picture(data, "drawing")
     assert np.abs(picture.rgba[..., 0] - 255 * encoded(GREY / 255)).max() <= 2
-    assert picture.notices == ("converted its colours from Linear to sRGB",)
+    assert picture.notices == ("its colours were converted from Linear to sRGB",)
 
 
 def test_inks_with_a_profile():
@@ -183,7 +183,7 @@ def test_inks_with_a_profile():
     picture = decode_picture(data, "drawing")
     light = ((50 + 16) / 116) ** 3
     assert np.abs(picture.rgba[4, 4, :3] - 255 * encoded(np.array(light))).max() <= 2
-    assert picture.notices == ("converted its colours from Press to sRGB",)
+    assert picture.notices == ("its colours were converted from Press to sRGB",)
 
 
 @pytest.mark.parametrize(
@@ -242,7 +242,7 @@ def test_the_first_frame_of_an_animation_is_used(kind):
     data = encode(frames[0], kind, save_all=True, append_images=frames[1:], **options)
     picture = decode_picture(data, "drawing")
     assert_array_equal(picture.rgba[2, 2], [255, 0, 0, 255])
-    assert picture.notices == ("used the first of 3 frames",)
+    assert picture.notices == ("only the first of its 3 frames was used",)
 
 
 WHOLE = encode(

@@ -142,7 +142,7 @@ def test_a_nearly_closed_ring_stays_open_or_says_so() -> None:
 def test_closed_gap_is_reported() -> None:
     outline = outlined(pictures.ring(1024, mouth=2))
     assert contains(outline.outline, np.array([512 + 512j])).all()
-    assert any("closes over gaps of" in notice for notice in notices_of(outline))
+    assert any("bridges gaps of" in notice for notice in notices_of(outline))
 
 
 def test_parts_are_joined_by_the_shortest_bridges() -> None:
@@ -204,7 +204,7 @@ def test_hairlines_of_large_pictures_are_not_lost() -> None:
 def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
     outline = outlined(pictures.blob(900, 20, 0.3))
     assert len(outline.outline) <= 200
-    assert any(notice.startswith("margin widened") for notice in notices_of(outline))
+    assert any(notice.startswith("margin was widened") for notice in notices_of(outline))
 
 
 @pytest.mark.parametrize("density", [0.01, 0.1, 0.3])
@@ -240,7 +240,7 @@ def test_where_every_curve_is_intricate_the_simplest_one_is_fitted(fitted, monke
     result = outlined(pictures.blob())
     ((least, found),) = fitted
     assert 3 < least <= found == len(result.outline)
-    assert "margin widened 2.0 times for an outline of few vertices" in notices_of(result)
+    assert "margin was widened 2.0 times for an outline of few vertices" in notices_of(result)
 
 
 @pytest.mark.parametrize("name", ["needles", "ragged cloud", "hairlines"])

@@ -141,7 +141,7 @@ def test_the_largest_holes_are_kept_while_there_are_few_vertices() -> None:
     assert smallest >= 0.6 * sizes[len(enclosure.holes)]
     (reported,) = notices_of(enclosure)
     assert reported.startswith(f"{len(places) - len(enclosure.holes)} holes filled, the largest")
-    assert reported.endswith("of the subject, since too many open holes make posing slow")
+    assert reported.endswith("of the subject, because too many open holes make posing slow")
 
 
 def test_holes_are_where_they_are_in_the_picture() -> None:
