@@ -8,6 +8,7 @@ import numpy as np
 from imgui_bundle import imgui
 from PIL import Image, ImageDraw
 
+from app.document.commands import handle_commands
 from app.document.settings import Meshing
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import cut_out_editing, stiffness_editing
@@ -158,7 +159,7 @@ def _ears(window: Film, path: Path) -> None:
     window.act(add_handle, EAR)
     window.settle()
     ear = project.layer.handles[-1]
-    window.act(editing.edit_layer, editing.handle_commands.rename_handle, ear.id, "ear")
+    window.act(editing.edit_layer, handle_commands.rename_handle, ear.id, "ear")
     window.show_tab("Handle")
     window.act(editing.select_handles, frozenset({ear.id}))
     come_to_rest(window)

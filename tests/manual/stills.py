@@ -7,6 +7,7 @@ from pathlib import Path
 from harness import Robot
 
 from app.document import Target
+from app.document.commands import handle_commands
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
@@ -261,7 +262,7 @@ def _limit(window: Film, path: Path) -> None:
     for place in (NOSE, 390 + 540j, 590 + 460j, 352 + 65j, 485 + 80j, 580 + 65j, 265 + 80j):
         window.act(add_handle, place)
     nose = project.layer.handles[0].id
-    window.act(editing.edit_layer, editing.handle_commands.rename_handle, nose, "nose")
+    window.act(editing.edit_layer, handle_commands.rename_handle, nose, "nose")
     window.show_tab("Handle")
     window.settle()
     window.drag(window.point(NOSE), window.point(NOSE - 800 - 300j))
