@@ -146,7 +146,7 @@ def test_a_sheet_for_which_there_is_no_room_leaves_both_files_as_they_were(
             raise OSError(errno.EFBIG, "File too large")
 
     monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(LissomError, match=r"File too large.* make room"):
+    with pytest.raises(LissomError, match=r"File too large.* free some space"):
         exported(tmp_path, padding=9)
     assert contents(tmp_path) == before
 

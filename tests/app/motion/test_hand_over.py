@@ -145,7 +145,7 @@ def test_circles_at_any_frame_are_refused_by_name(hands):
     document = layers.attach_layer(2, CENTRE, Attachment(parent=1, parent_point=CENTRE, frame=20))(
         hands
     )
-    with pytest.raises(LissomError, match=r"at frame 30: '1' → '2' → '1'; detach"):
+    with pytest.raises(LissomError, match=r"at frame 30: '1' → '2' → '1'. Detach"):
         layers.attach_layer(1, CENTRE, Attachment(parent=2, parent_point=CENTRE, frame=30))(
             document
         )

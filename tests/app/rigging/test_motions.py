@@ -164,7 +164,7 @@ def test_parameters_have_ranges():
     for given in ({"speed": 0.0}, {"size": 3.0}, {"energy": -1.0}, {"start": 1.0}):
         with pytest.raises(EngineError, match=next(iter(given))):
             Parameters(**given)
-    with pytest.raises(EngineError, match="There is no kind 'centaur'"):
+    with pytest.raises(EngineError, match="There is no kind of body 'centaur'"):
         find_kind("centaur")
     with pytest.raises(EngineError, match="'chain' has no joint 'wing'"):
         Body(kind=find_kind("chain"), joints={"wing": 0j}, box=(0j, 1 + 1j))

@@ -161,7 +161,7 @@ def test_script_stiffens_what_it_says():
         ({}, says(NOT_LIST, where="stiff")),
         ([7], says(NOT_OBJECT, where="stiff[0]")),
         ([{"from": "start", "to": "knee", "amount": 3}], r"stiff\[0\] names the handle 'knee'"),
-        ([{"from": "start", "to": "start", "amount": 3}], "from 'start' to itself"),
+        ([{"from": "start", "to": "start", "amount": 3}], "connects 'start' to itself"),
         ([{"from": "start", "to": "end"}], says(LACKS_FIELD, name="amount")),
         ([{"from": "start", "amount": 2}], says(LACKS_FIELD, name="to")),
         ([{"from": "start", "to": "end", "amount": 101}], "from 1/30 to 100, not 101"),
@@ -185,7 +185,7 @@ def test_script_names_a_bone_that_leaves_the_drawing():
     picture[20:45, 200:280] = 0
     script = {**SCRIPT, "handles": {"start": [30, 50], "elbow": [240, 26], "end": [450, 50]}}
     script["stiff"] = [{"from": "start", "to": "end", "amount": 3}]
-    with pytest.raises(LissomError, match="stiff from 'start' to 'end': A bone must stay"):
+    with pytest.raises(LissomError, match="stiff from 'start' to 'end': The bone leaves"):
         pose_document(still_document(picture), parse_pose_script(script), lambda _: None)
     script["stiff"] = 2 * [{"from": "start", "to": "elbow", "amount": 3}]
     with pytest.raises(LissomError, match="A bone from 'start' to 'elbow' already exists"):

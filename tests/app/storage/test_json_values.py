@@ -22,7 +22,7 @@ def test_a_repeated_field_among_many_is_found_at_little_cost():
 
     count = 400
     names = [Name(number) for number in range(count)] + [Name(count - 1)]
-    with pytest.raises(LissomError, match=f"'{count - 1}' is given twice"):
+    with pytest.raises(LissomError, match=f"the field '{count - 1}' twice"):
         check_repeated_fields([(name, None) for name in names])
     assert compared < 5 * count
 

@@ -89,7 +89,7 @@ def test_failures_and_questions_tell_the_name(window, folder):
     window.act(files.open_recent_file, missing)
     failed, gone = messages(window)
     assert failed.startswith(f"{SHOWN}.png cannot be opened: cannot read ")
-    assert gone.startswith(f"{SHOWN}.png is not in ")
+    assert gone.startswith(f"{SHOWN}.png is no longer in ")
     window.act(saving.write_project, folder / f"{NAME}.lissom", None)
     window.settle()
     window.act(keys.set_last_frame, 7)

@@ -204,7 +204,7 @@ def test_hairlines_of_large_pictures_are_not_lost() -> None:
 def test_an_intricate_drawing_keeps_to_few_vertices() -> None:
     outline = outlined(pictures.blob(900, 20, 0.3))
     assert len(outline.outline) <= 200
-    assert any(notice.startswith("margin was widened") for notice in notices_of(outline))
+    assert any(notice.startswith("the margin was widened") for notice in notices_of(outline))
 
 
 @pytest.mark.parametrize("density", [0.01, 0.1, 0.3])
@@ -240,7 +240,7 @@ def test_where_every_curve_is_intricate_the_simplest_one_is_fitted(fitted, monke
     result = outlined(pictures.blob())
     ((least, found),) = fitted
     assert 3 < least <= found == len(result.outline)
-    assert "margin was widened 2.0 times for an outline of few vertices" in notices_of(result)
+    assert "the margin was widened 2.0 times for an outline of few vertices" in notices_of(result)
 
 
 @pytest.mark.parametrize("name", ["needles", "ragged cloud", "hairlines"])
