@@ -100,7 +100,7 @@ def _full_write(rng: np.random.Generator, folder: Path, document: Document, kind
     size = max(map(len, before.values()))
     limit = partial(_limit_files, int(rng.integers(0, 0.9 * size)))
     words = words_of(lambda: write(2), limit)
-    expect(re.search(r"it takes [\d.,]+ [KM]B; make room", words) is not None, words)
+    expect(re.search(r"The file needs [\d.,]+ [KM]B", words) is not None, words)
     expect(_contents(folder) == before, f"the {kind} before is not whole")
     autosave.remove()
 
