@@ -156,7 +156,7 @@ def test_a_full_disk_is_reported_in_words_whatever_pyav_makes_of_it(
 ):
     monkeypatch.setattr("app.storage.files.atomic.os.fdopen", FullDisk)
     FullDisk.room = room
-    with pytest.raises(LissomError, match="No space left on device. The file needs"):
+    with pytest.raises(LissomError, match=r"No space left on device\. The file needs"):
         exported(tmp_path, format_, transparent=False)
     assert list(tmp_path.iterdir()) == []
     assert capfd.readouterr().err == ""
