@@ -84,7 +84,7 @@ def test_turns_are_added_from_their_interval_on():
 def test_more_turns_than_an_angle_has_digits_for_are_refused(turns):
     fz = np.ones(3, dtype=complex)
     assert_array_equal(root_sheets(fz, [1_000_000, -2_000_000]), [0, 1_000_000, -1_000_000])
-    with pytest.raises(EngineError, match="more than 1,000,000 turns"):
+    with pytest.raises(EngineError, match="more than 1,000,000 whole turns"):
         root_sheets(fz, turns)
 
 
