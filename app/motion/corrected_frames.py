@@ -53,9 +53,9 @@ class CorrectedFrames:
             self._grounds, self._latest = earlier._grounds, earlier._latest  # noqa: SLF001 - its own
             if earlier._corrections is not None:  # noqa: SLF001
                 self._corrections = earlier._corrections.with_tracks(self.clip)  # noqa: SLF001
-        if not self._is_asked:
-            return
-        self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
+        # Corrections are functions of their own domain.
+        if self._is_asked and earlier.clip.layer.domain is self.clip.layer.domain:
+            self._rough = {**earlier._rough, **earlier._exact}  # noqa: SLF001
 
     def at(self, clip: Clip, frame: int) -> SecondaryCorrection | None:
         """Return the best known correction of a frame; None for another clip."""

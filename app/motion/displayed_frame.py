@@ -104,6 +104,8 @@ def show(
     """
     domain, moment = clip.layer.domain, segment_time_at(clip, frame)
     correction, is_rough = None, False
+    if corrected is not None and corrected.clip.layer.domain is not domain:
+        corrected = None
     if corrected is not None and pose is not None:
         correction = corrected.at(corrected.clip, frame)
     elif corrected is not None:

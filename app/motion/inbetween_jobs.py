@@ -107,9 +107,7 @@ def compute_segments(
             },
         )
     if sampler is None or sampler.domain is not mesh.domain or sampler.anchor != layer.anchor:
-        is_sibling = sampler is not None and sampler.domain.cage is mesh.domain.cage
-        sibling = sampler if is_sibling else None
-        sampler = PoseSampler(mesh.domain, anchor=layer.anchor, sibling=sibling)
+        sampler = PoseSampler(mesh.domain, anchor=layer.anchor, sibling=sampler)
     pins = AutoPins(clip, layer.variant, sampler)
     intervals = {
         segment_key(clip, number): CachedSegment(

@@ -155,7 +155,7 @@ class PoseSampler:
     values_at : complex128, shape (v,), optional
         Additional points that need values without derivatives; only with `points`.
     sibling : PoseSampler, optional
-        With the same outline and cage; shares the data that depends on these alone.
+        Shares the data that depends on outline and cages alone, if these are the same.
     """
 
     def __init__(
@@ -167,7 +167,9 @@ class PoseSampler:
         values_at: Complexes | None = None,
         sibling: "PoseSampler | None" = None,
     ) -> None:
-        self.domain = domain
+        if sibling is not None and not _have_same_outline(domain, sibling.domain):
+            sibling = None
+        self.domain: MeshedDomain = domain
         self.anchor = anchor
         mesh = domain.mesh
         triangles = mesh.triangles if points is None else None
@@ -371,6 +373,12 @@ class PoseSampler:
             bounds=bounds,
             transform=self.extension if variant.needs_transform else None,
         )
+
+
+def _have_same_outline(one: MeshedDomain, other: MeshedDomain) -> bool:
+    """Return whether two domains have the same loops and cages."""
+    first, second = ((*each.loops, *each.cages) for each in (one, other))
+    return len(first) == len(second) and all(map(np.array_equal, first, second))
 
 
 def _sampled(f: HarmonicMap, sites: SampledDomain) -> KeyframeSamples:

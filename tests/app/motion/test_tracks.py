@@ -36,6 +36,7 @@ from app.motion import (
     measure_extent,
     placed_animations,
     reuse_corrections,
+    show,
     trace_paths,
 )
 from app.motion.corrected_frames import CorrectedFrames
@@ -45,6 +46,7 @@ from app.reports import Verdict, certify_clip, corrected_frames
 from app.reports.acting_frames import acting_frames
 from app.rigging import simulate_spring, turn_arm
 from engine.geometry import IDENTITY_MOTION, diameter
+from engine.maps import Boundary
 
 IDS = {name: number for number, name in enumerate(PLACES)}
 SHORT = 4  # frames between two keys, and
@@ -556,6 +558,25 @@ def test_frames_of_an_earlier_anchor_are_corrected_along_their_own_paths():
     correction = animation.corrections.correction_at(3.0)
     shown = store.vertices(clip, 3, correction=correction).positions
     assert_allclose(shown, animation.positions(3.0), rtol=0, atol=1e-2)
+
+
+def test_nothing_of_an_earlier_outline_serves_another_one():
+    first = pulled(14 - 6j)
+    clip, layer = clip_of(first, 0), first.layers[0]
+    sampler = animate(first).sampler
+    domain = within(still_document(), layer.domain.outline + 1j).layers[0].domain
+    other = PoseSampler(domain, anchor=None, points=domain.outline, sibling=sampler)
+    assert other.known is not sampler.known
+    assert other.sites.boundary.span.equals(Boundary.sample(domain).span)
+    # Its corrections are of other functions, too.
+    frames = CorrectedFrames(clip)
+    frames.take(frames.missing_here(first, 3, {0: sampler})())
+    assert frames.at(clip, 3) is not None
+    rebuilt = clip_of(with_layer(first, domain=domain), 0)
+    assert CorrectedFrames(rebuilt, frames).at(rebuilt, 3) is None
+    pose, mesh = rebuilt.keys[0].pose, DeformMesh.coarse(domain)
+    shown = show(rebuilt, 3, pose, [InbetweenCache(mesh=mesh)], None, frames)
+    assert shown.correction is None
 
 
 def test_planted_track_is_solved_anew_when_the_parent_changes():
