@@ -188,8 +188,10 @@ def _prepare(
         return earlier
     layer = clip.layer
     sibling = siblings.get(layer.id)
-    if sibling is None or sibling.domain.cage is not layer.domain.cage:
-        sibling = PoseSampler(layer.domain, anchor=layer.anchor, points=layer.domain.outline)
+    is_own = sibling is not None and sibling.domain.cage is layer.domain.cage
+    if sibling is None or not is_own or sibling.anchor != layer.anchor:
+        outline = layer.domain.outline
+        sibling = PoseSampler(layer.domain, anchor=layer.anchor, points=outline, sibling=sibling)
     carried = find_parent_motion(document, layer.id, siblings)
     return FrameCorrector(clip, clip.layer.variant, sibling, carried)
 

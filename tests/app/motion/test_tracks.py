@@ -560,6 +560,16 @@ def test_frames_of_an_earlier_anchor_are_corrected_along_their_own_paths():
     assert_allclose(shown, animation.positions(3.0), rtol=0, atol=1e-2)
 
 
+def test_corrections_of_a_window_are_for_the_present_anchor():
+    first = pulled(14 - 6j)
+    sampler = animate(first).sampler
+    moved = with_layer(first, anchor=30 + 45j)
+    clip, frames = clip_of(moved, 0), CorrectedFrames(clip_of(moved, 0))
+    frames.take(frames.missing_here(moved, 3, {0: sampler})())
+    exact = Animation(clip).corrections.correction_at(3.0)
+    assert_allclose(frames.at(clip, 3).series.shifts, exact.series.shifts, rtol=0, atol=1e-9)
+
+
 def test_nothing_of_an_earlier_outline_serves_another_one():
     first = pulled(14 - 6j)
     clip, layer = clip_of(first, 0), first.layers[0]
