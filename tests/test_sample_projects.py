@@ -50,9 +50,9 @@ def test_a_sample_is_what_its_script_says(name):
         key.passing for key in script.keys
     ]
     names = {handle.name: handle.id for handle in document.layers[0].handles}
-    assert [dict(key.depths) for key in document.layers[0].keys] == [
-        {names[name]: front for name, front in key.fronts.items()} for key in script.keys
-    ]
+    assert document.layers[0].channels == {
+        (kind, names.get(part)): keys for (kind, part), keys in script.channels.items()
+    }
     assert {(handle.depth, handle.extent) for handle in document.layers[0].handles} == {
         (handle.front, handle.extent) for handle in script.handles.values()
     }

@@ -16,15 +16,11 @@ LONGEST = 300  # lines of a module
 
 # What one channel for all keys, one evaluator of frames and one kind of drag will replace.
 REPLACED = {
-    "app/document/__init__.py": {"filming"},
-    "app/document/commands/layers/filming_commands.py": {"filming"},
     "app/editor/actions/layer_setup/resolving.py": {"promise"},
     "app/editor/actions/posing/motion_presets/apply_motion.py": {"promise"},
     "app/editor/actions/project_files/exporting.py": {"promise"},
     "app/editor/actions/project_files/saving.py": {"promise"},
-    "app/editor/actions/timing/timeline_drag.py": {"filming"},
     "app/editor/actions/upkeep.py": {"upkeep"},
-    "app/editor/layering/layer_channels.py": {"filming"},
     "app/editor/pending_changes.py": {"promise"},
     "app/editor/project.py": {"promise"},
     "app/editor/work/promise.py": {"promise"},
@@ -38,12 +34,12 @@ REPLACED = {
 # Names in files of earlier versions, and the tool of another program.
 READ = {
     "app/storage/autosave.py": {"told"},
-    "app/storage/project/document_json.py": {"placings", "stillness", "told"},
+    "app/storage/project/document_json.py": {"stillness", "told"},
+    "app/storage/project/earlier_schemas.py": {"placings"},
     "app/manual/pages/after-effects.md": {"puppet"},
 }
 EXEMPT = {**REPLACED, **READ}
 REPLACED_LONG = {
-    "app/document/commands/layers/layer_commands.py",
     "app/document/layer.py",
     "app/document/model.py",
     "app/editor/actions/upkeep.py",
@@ -53,7 +49,6 @@ REPLACED_LONG = {
     "app/motion/inbetween_cache.py",
     "app/motion/inbetweens/pose_sampler.py",
     "app/solving/drag_solver.py",
-    "app/solving/script/pose_script.py",
     "app/solving/script_solver.py",
 }
 # Tables are looked things up in, and read by nobody from end to end.

@@ -7,24 +7,68 @@ graphics, window or clock.
 """
 
 from app.baseline import Baseline as Baseline
+from app.document.channels.cycles import (
+    Cycle as Cycle,
+    require_no_overlap as require_no_overlap,
+    require_repeatable_cycle as require_repeatable_cycle,
+)
+from app.document.channels.easing import (
+    HOLD as HOLD,
+    LINEAR as LINEAR,
+    PRESETS as PRESETS,
+    Easing as Easing,
+)
+from app.document.channels.key import BaseKey as BaseKey, Key as Key
+from app.document.channels.kind import (
+    Channel as Channel,
+    ChannelKeys as ChannelKeys,
+    ChannelKind as ChannelKind,
+    KeysByChannel as KeysByChannel,
+    Quantity as Quantity,
+    ValueField as ValueField,
+)
+from app.document.channels.kinds import (
+    CAMERA as CAMERA,
+    DEPTH as DEPTH,
+    DRAW_ORDER as DRAW_ORDER,
+    LAYER_KINDS as LAYER_KINDS,
+    MARKER as MARKER,
+    OPACITY as OPACITY,
+    PARENT as PARENT,
+    POSE as POSE,
+    SWITCH as SWITCH,
+    TRACK as TRACK,
+    TRANSFORM as TRANSFORM,
+    VISIBILITY as VISIBILITY,
+)
+from app.document.channels.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
+from app.document.channels.tangent_mode import TangentMode as TangentMode
+from app.document.channels.tracks import Track as Track, TrackKey as TrackKey
+from app.document.channels.values import (
+    Camera as Camera,
+    DrawOrder as DrawOrder,
+    Transform as Transform,
+)
 from app.document.checks import LAST_FRAME as LAST_FRAME
 from app.document.commands import (
-    cycle_commands as cycle_commands,
     handle_commands as handle_commands,
-    key_commands as key_commands,
     pose_commands as pose_commands,
     scene_commands as scene_commands,
     shape_commands as shape_commands,
     stiffness_commands as stiffness_commands,
-    track_commands as track_commands,
 )
 from app.document.commands.command import (
     Command as Command,
     combine_commands as combine_commands,
     with_number as with_number,
 )
+from app.document.commands.keys import (
+    channel_commands as channel_commands,
+    cycle_commands as cycle_commands,
+    key_commands as key_commands,
+    track_commands as track_commands,
+)
 from app.document.commands.layers import (
-    filming_commands as filming_commands,
     group_commands as group_commands,
     layer_commands as layer_commands,
     switch_group_commands as switch_group_commands,
@@ -64,22 +108,13 @@ from app.document.layers.groups import (
     ancestor_paths as ancestor_paths,
     common_path as common_path,
 )
-from app.document.layers.layer_keys import (
-    CameraKey as CameraKey,
-    DrawOrderKey as DrawOrderKey,
-    OpacityKey as OpacityKey,
-    TransformKey as TransformKey,
-)
-from app.document.layers.visibility import (
-    SwitchGroup as SwitchGroup,
-    SwitchKey as SwitchKey,
-    VisibilityKey as VisibilityKey,
-)
+from app.document.layers.switch_group import SwitchGroup as SwitchGroup
 from app.document.model import Document as Document
 from app.document.playhead import Playhead as Playhead
 from app.document.queries.applied_motion import (
-    digest_keys as digest_keys,
+    digest_motion as digest_motion,
     is_motion_unedited as is_motion_unedited,
+    keys_of_motion as keys_of_motion,
     motion_notices as motion_notices,
 )
 from app.document.queries.auto_pins import (
@@ -93,6 +128,45 @@ from app.document.queries.boundary_stiffness import (
     have_same_stiffness as have_same_stiffness,
     stiff_outline as stiff_outline,
     with_stiffness as with_stiffness,
+)
+from app.document.queries.channel_values.channel_keys import (
+    all_keys as all_keys,
+    channels_in as channels_in,
+    channels_of as channels_of,
+    cycles_of as cycles_of,
+    describe_channel as describe_channel,
+    display_frame as display_frame,
+    frames_in as frames_in,
+    keys_in as keys_in,
+    layer_keys as layer_keys,
+    pose_channel as pose_channel,
+    source_frame as source_frame,
+    track_channel as track_channel,
+    track_display_frame as track_display_frame,
+    track_in as track_in,
+    track_source_frame as track_source_frame,
+)
+from app.document.queries.channel_values.repeats import (
+    held_key_at as held_key_at,
+    is_switch_in_cycle as is_switch_in_cycle,
+    repeating_cycle as repeating_cycle,
+    with_repeats as with_repeats,
+)
+from app.document.queries.channel_values.tracks_at import (
+    TrackSample as TrackSample,
+    spring_root as spring_root,
+    track_at as track_at,
+    track_cycle as track_cycle,
+    velocity_at as velocity_at,
+)
+from app.document.queries.channel_values.values_at import (
+    camera_at as camera_at,
+    draw_order_key_at as draw_order_key_at,
+    layer_value_at as layer_value_at,
+    layers_in_draw_order as layers_in_draw_order,
+    opacity_at as opacity_at,
+    transform_at as transform_at,
+    value_at as value_at,
 )
 from app.document.queries.clips import (
     Clip as Clip,
@@ -117,16 +191,6 @@ from app.document.queries.layers.depth import (
     DepthPoint as DepthPoint,
     depth_points_at as depth_points_at,
 )
-from app.document.queries.layers.layer_state import (
-    CameraState as CameraState,
-    camera_at as camera_at,
-    draw_order_key_at as draw_order_key_at,
-    keyed_frame as keyed_frame,
-    layers_in_draw_order as layers_in_draw_order,
-    opacity_at as opacity_at,
-    repeating_cycle as repeating_cycle,
-    transform_at as transform_at,
-)
 from app.document.queries.layers.layer_tree import (
     TreeRow as TreeRow,
     layer_tree as layer_tree,
@@ -137,12 +201,8 @@ from app.document.queries.layers.switch_suggestions import (
     suggest_switch_groups as suggest_switch_groups,
 )
 from app.document.queries.layers.visibility import (
-    change_frame as change_frame,
-    is_switch_in_cycle as is_switch_in_cycle,
     is_visible as is_visible,
-    turn_frame as turn_frame,
     visibility_keys as visibility_keys,
-    with_repeats as with_repeats,
 )
 from app.document.queries.memo import memoized_on as memoized_on
 from app.document.queries.pose_tangents import (
@@ -164,13 +224,6 @@ from app.document.queries.timeline import (
     frames_for_fit as frames_for_fit,
     keyed_pose_at as keyed_pose_at,
     segment_time_at as segment_time_at,
-)
-from app.document.queries.tracks import (
-    TrackSample as TrackSample,
-    spring_root as spring_root,
-    track_at as track_at,
-    track_cycle as track_cycle,
-    velocity_at as velocity_at,
 )
 from app.document.rig.applied_motion import (
     AppliedMotion as AppliedMotion,
@@ -209,18 +262,4 @@ from app.document.settings import (
     find_limit_preset as find_limit_preset,
     relax_limits as relax_limits,
 )
-from app.document.timing.cycles import (
-    Cycle as Cycle,
-    require_no_overlap as require_no_overlap,
-    require_repeatable_cycle as require_repeatable_cycle,
-)
-from app.document.timing.easing import (
-    HOLD as HOLD,
-    LINEAR as LINEAR,
-    PRESETS as PRESETS,
-    Easing as Easing,
-)
-from app.document.timing.springs import SPRING_PRESETS as SPRING_PRESETS, Spring as Spring
-from app.document.timing.tangent_mode import TangentMode as TangentMode
-from app.document.timing.tracks import Track as Track, TrackKey as TrackKey
 from engine.variant import Variant as Variant

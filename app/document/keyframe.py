@@ -8,17 +8,16 @@ from typing import Self
 
 import numpy as np
 
+from app.document.channels.key import BaseKey
+from app.document.channels.kinds import require_depth
 from app.document.checks import (
     MAX_COORDINATE,
     NOTHING,
     Unknown,
     require,
-    require_frame,
     require_id,
     require_point,
 )
-from app.document.timing.easing import HOLD, LINEAR, Easing
-from app.document.timing.tangent_mode import TangentMode, require_tangent_mode
 from app.texts import N_, _
 from engine.arrays import Complexes, as_points, freeze
 from engine.maps import Certificate, HarmonicMap
@@ -33,7 +32,6 @@ MAX_REVOLUTIONS = 20
 # Pixels. Poses with targets within MAX_COORDINATE stay far below this size; a pose above it loses
 # too many digits to be drawn.
 LARGEST_COEFFICIENT = 1e12
-NO_DEPTHS: Mapping[int, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,15 +84,6 @@ class Handle:
     def effective_weight(self) -> float:
         """Weight in the solver, with the factor of a locked handle."""
         return self.weight * (LOCKED_WEIGHT if self.locked else 1.0)
-
-
-def require_depth(front: float) -> None:
-    """Raise a `LissomError` unless the depth is from −1 to 1."""
-    require(
-        -1 <= front <= 1,
-        N_("A depth must be from −1 (behind) to 1 (in front), not {depth:g}."),
-        depth=front,
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,22 +164,19 @@ class LibraryPose:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Keyframe:
-    """A pose at a frame, and the motion to the next key."""
+class Keyframe(BaseKey):
+    """A pose at a frame, and the motion to the next key; equal only to itself."""
 
-    frame: int
     pose: Pose
-    easing: Easing = LINEAR  # of the segment to the next key
-    # How the motion passes the key. A hold is stored as an easing.
-    tangent_mode: TangentMode = TangentMode.SMOOTH
     # Additional full turns of the anchor until the next key, counter-clockwise.
     revolutions: int = 0
-    # Depths from this key on, by handle id. Other handles keep their depth.
-    depths: Mapping[int, float] = field(default_factory=lambda: NO_DEPTHS)
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
+    motion: int | None = None  # id of the motion preset that made the key
+
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, _("A key"))
+        BaseKey.__post_init__(self)
         require(
             abs(self.revolutions) <= MAX_REVOLUTIONS,
             N_(
@@ -200,23 +186,13 @@ class Keyframe:
             most=MAX_REVOLUTIONS,
             revolutions=self.revolutions,
         )
-        require_tangent_mode(self.tangent_mode)
-        object.__setattr__(self, "tangent_mode", TangentMode(self.tangent_mode))
-        object.__setattr__(self, "depths", MappingProxyType(dict(self.depths)))
-        for front in self.depths.values():
-            require_depth(front)
 
-    @property
-    def shown_tangent_mode(self) -> TangentMode:
-        """Tangent mode of the key, with a hold shown as `TangentMode.HOLD`."""
-        return TangentMode.HOLD if self.easing == HOLD else self.tangent_mode
+    def copied(self, frame: int) -> Self:
+        """Return a copy of the key for another frame; it belongs to no motion preset."""
+        return replace(self, frame=frame, motion=None)
 
     def with_easing_of(self, other: Self, *, backwards: bool = False) -> Self:
         """Return the key with the segment of another key, or with that segment reversed."""
-        if backwards:
-            return replace(self, easing=other.easing.reversed(), revolutions=-other.revolutions)
-        return replace(self, easing=other.easing, revolutions=other.revolutions)
-
-    def retimed(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - a pose has no velocity
-        """Return the key at another frame; the speed factor `pace` has no effect on a pose."""
-        return self if frame == self.frame else replace(self, frame=frame)
+        turns = -other.revolutions if backwards else other.revolutions
+        eased = BaseKey.with_easing_of(self, other, backwards=backwards)
+        return replace(eased, revolutions=turns)

@@ -5,12 +5,18 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
 
 from app.cut_out import CutOut
+from app.document.channels.cycles import Cycle, require_no_overlap, require_repeatable_cycle
+from app.document.channels.key import Key
+from app.document.channels.kind import ChannelKeys, ChannelKind, require_order
+from app.document.channels.kinds import DRAW_ORDER, LAYER_KINDS, PARENT, POSE
+from app.document.channels.springs import Spring
+from app.document.channels.tracks import Track
 from app.document.checks import (
     NOTHING,
     Unknown,
@@ -21,22 +27,12 @@ from app.document.checks import (
     require_size,
 )
 from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
-from app.document.layers.attachments import Attachment, require_attachments
+from app.document.layers.attachments import Attachment
 from app.document.layers.groups import BLENDS, BlendMode
-from app.document.layers.layer_keys import (
-    DrawOrderKey,
-    OpacityKey,
-    TransformKey,
-    require_ascending_keys,
-)
-from app.document.layers.visibility import VisibilityKey, require_ascending_visibility_keys
 from app.document.rig.applied_motion import AppliedMotion, UnreadMotion, require_motions
 from app.document.rig.mirror_names import SIDES, mirrored_handles_by_name
 from app.document.rig.stiffness import Bone
 from app.document.settings import NATURAL, VARIANTS, Meshing
-from app.document.timing.cycles import Cycle, require_no_overlap, require_repeatable_cycle
-from app.document.timing.springs import Spring
-from app.document.timing.tracks import Track
 from app.errors import LissomError
 from app.texts import N_, _
 from engine.arrays import Booleans, Complexes, Floats, readonly
@@ -47,6 +43,8 @@ from engine.maps import Bounds, Certificate, HarmonicMap, require_stiffness
 from engine.variant import Variant
 
 Posed = TypeVar("Posed", Keyframe, LibraryPose)
+V = TypeVar("V")
+NO_CHANNELS: ChannelKeys = MappingProxyType({})
 NO_KEY = N_("There is no key at frame {frame}.")
 NO_HANDLE = N_("There is no handle with the id {identity}.")
 DUPLICATE_BONES = N_("Two bones connect handles {value!r}; keep one of them.")
@@ -117,22 +115,17 @@ class Layer:
     reference: bool = False  # a guide in the window; exports omit it
     locked: bool = False  # whether clicks on the drawing pass through
     hidden: bool = False  # at all frames
-    # In the order of their frames. The first key holds before its frame too; without keys, the
-    # layer is visible.
-    visibility_keys: tuple[VisibilityKey, ...] = ()
     opacity: float = 1.0  # in [0, 1]; used without opacity keys
-    opacity_keys: tuple[OpacityKey, ...] = ()
+    # Keys of the kinds in `LAYER_KINDS`, in the order of their frames. A channel without keys is
+    # not listed.
+    channels: ChannelKeys = field(default_factory=lambda: NO_CHANNELS)
+    unread_channels: tuple[object, ...] = ()  # JSON of a later version's kinds
     blend: BlendMode = "normal"
     # Whether the layer is visible only where the layer or group below it in its group is opaque.
     clipped: bool = False
     group: str = ""  # path of the innermost group around the layer; "" outside all groups
     # Keys of the parent, each valid from its frame on. An attached layer has an anchor.
     attachments: tuple[Attachment, ...] = ()
-    # Rigid motion of the whole layer, applied after the map while the layer has no parent.
-    transform_keys: tuple[TransformKey, ...] = ()
-    draw_order_keys: tuple[
-        DrawOrderKey, ...
-    ] = ()  # before the first key, the document's order holds
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -151,18 +144,26 @@ class Layer:
             blends=", ".join(BLENDS),
             blend=self.blend,
         )
-        require_ascending_visibility_keys(self.visibility_keys)
+        kept = {name: tuple(keys) for name, keys in self.channels.items() if keys}
+        object.__setattr__(self, "channels", MappingProxyType(kept))
+        handles = {handle.id for handle in self.handles}
+        for (name, part), keys in self.channels.items():
+            LAYER_KINDS[name].require(keys, self.name)
+            require(
+                part is None or part in handles,
+                N_("{channel} of {layer!r} belongs to the handle {part}, which does not exist."),
+                channel=LAYER_KINDS[name].label,
+                layer=self.name,
+                part=part,
+            )
         require(
             not self.attachments or self.anchor is not None,
             N_("{name!r} is attached but has no anchor; set an anchor."),
             name=self.name,
         )
-        require_attachments(self.attachments)
-        require_ascending_keys(self.transform_keys, N_("The movement of {layer!r}"), self.name)
-        require_ascending_keys(self.opacity_keys, N_("The opacity of {layer!r}"), self.name)
-        require_ascending_keys(self.draw_order_keys, N_("The order of {layer!r}"), self.name)
+        require_order(self.attachments, PARENT.label, self.name)
         require(
-            all(key.beside != self.id for key in self.draw_order_keys),
+            all(key.value.beside != self.id for key in self.keys_of(DRAW_ORDER)),
             N_("{name!r} cannot be in front of itself or behind itself."),
             name=self.name,
         )
@@ -192,6 +193,19 @@ class Layer:
         # Files store the name of the variant.
         object.__setattr__(self, "variant", Variant(self.variant))
 
+    def keys_of(self, kind: ChannelKind[V], part: int | str | None = None) -> tuple[Key[V], ...]:
+        """Return the keys of a kind in `LAYER_KINDS`."""
+        return self.channels.get((kind.name, part), ())
+
+    def with_keys_of(
+        self, kind: ChannelKind[V], keys: Iterable[Key[V]], part: int | str | None = None
+    ) -> "Layer":
+        """Return the layer with other keys of a channel, the same object without a change."""
+        given = tuple(keys)
+        if given == self.keys_of(kind, part):
+            return self
+        return replace(self, channels={**self.channels, (kind.name, part): given})
+
     @property
     def key_frames(self) -> frozenset[int]:
         return frozenset(key.frame for key in self.keys)
@@ -201,8 +215,8 @@ class Layer:
         """The first and the last frame of all keys and cycles."""
         frames = [key.frame for key in self.keys]
         frames += [key.frame for track in self.tracks for key in track.keys]
-        frames += [key.frame for key in self.transform_keys]
-        frames += [key.frame for key in self.opacity_keys]
+        for (name, _part), keys in self.channels.items():
+            frames += [key.frame for key in keys if not LAYER_KINDS[name].is_held]
         for cycle in self.cycles:
             frames += [cycle.first, cycle.last if cycle.until is None else cycle.until]
         return min(frames), max(frames)
@@ -417,25 +431,9 @@ class Layer:
 
     def _check_keys(self) -> None:
         require(len(self.keys) > 0, N_("An animation needs at least one key."))
-        for before, after in pairwise(key.frame for key in self.keys):
-            require(
-                after != before,
-                N_("Two keys are at frame {before}; move or delete one of them."),
-                before=before,
-            )
-            require(
-                after > before,
-                N_("The keys at frames {before} and {after} are out of order."),
-                before=before,
-                after=after,
-            )
+        require_order(self.keys, POSE.label, self.name)
         for key in self.keys:
             self._check_pose(key.pose, _("The key at frame {frame}").format(frame=key.frame))
-            require(
-                key.depths.keys() <= key.pose.targets.keys(),
-                N_("The key at frame {frame} moves a handle to the front that does not exist."),
-                frame=key.frame,
-            )
         frames = [key.frame for key in self.keys]
         require_no_overlap(self.cycles)
         for cycle in self.cycles:

@@ -13,15 +13,17 @@ from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import NoReturn
 
+from app.document.channels.cycles import count_repeated_changes
+from app.document.channels.key import Key
+from app.document.channels.kinds import CAMERA, LAYER_KINDS, VISIBILITY
+from app.document.channels.values import Camera
 from app.document.checks import NOTHING, Unknown, require, require_distinct, require_size
 from app.document.layer import Layer
 from app.document.layers.attachments import Attachment, repeated_joints
 from app.document.layers.groups import Group, ancestor_paths
-from app.document.layers.layer_keys import CameraKey, require_ascending_keys
-from app.document.layers.visibility import SwitchGroup
+from app.document.layers.switch_group import SwitchGroup
 from app.document.rig.mirror_names import PAIRS, SidePairs, require_pairs
 from app.document.settings import ExportSettings, FrameRange, Marker, require_fps
-from app.document.timing.cycles import count_repeated_changes
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError
 from app.texts import N_, _
 
@@ -62,7 +64,7 @@ class Document:
     # An outer group comes before the groups inside it.
     groups: tuple[Group, ...] = ()
     # Keys of the visible part of the scene. Without keys, the canvas is visible.
-    camera: tuple[CameraKey, ...] = ()
+    camera: tuple[Key[Camera], ...] = ()
     # Notices of all imports of layered drawings.
     import_log: ImportLog = EMPTY_IMPORT_LOG
     # Layers by id, switch groups by the ids of their layers, groups by path.
@@ -99,7 +101,7 @@ class Document:
                 before=before,
                 after=after,
             )
-        require_ascending_keys(self.camera, N_("The camera"))
+        CAMERA.require(self.camera, _("scene"))
         for key in self.camera:
             self._require_inside(key.frame)
         require_fps(self.fps, _("The speed"))
@@ -141,6 +143,10 @@ class Document:
         if identity not in self._layers:
             raise LissomError(_(NO_LAYER).format(identity=identity))
         return self._layers[identity]
+
+    def find_layer(self, identity: int) -> Layer | None:
+        """Return the layer with this id, if any."""
+        return self._layers.get(identity)
 
     def switch_group(self, name: str) -> SwitchGroup:
         for choice in self.switch_groups:
@@ -235,9 +241,11 @@ class Document:
         for layer in self.layers:
             for frame in layer.keyed_range:
                 self._require_inside(frame)
-            for key in layer.draw_order_keys:
-                if key.beside is not None:
-                    self.layer(key.beside)
+            for (name, _part), keys in layer.channels.items():
+                kind = LAYER_KINDS[name]
+                for field_name in kind.layer_fields:
+                    for other in {kind.field_of(key.value, field_name) for key in keys} - {None}:
+                        self.layer(other)
         self._check_switch_groups()
         self._check_repeats()
         self._check_attachments()
@@ -248,7 +256,10 @@ class Document:
         """Refuse documents with more visibility, order and attachment changes than MAX_CHANGES."""
         end, count = self.frames.last, 0
         for layer in self.layers:
-            for changes in (layer.visibility_keys, layer.draw_order_keys, layer.attachments):
+            held = [
+                keys for (name, _part), keys in layer.channels.items() if LAYER_KINDS[name].is_held
+            ]
+            for changes in (*held, layer.attachments):
                 count += count_repeated_changes([each.frame for each in changes], layer.cycles, end)
         for choice in self.switch_groups:
             cycles = set.intersection(*({*self.layer(each).cycles} for each in choice.layers))
@@ -256,8 +267,8 @@ class Document:
         require(
             count <= MAX_CHANGES,
             N_(
-                "With repeats, layers have {count:,} keys of visibility, draw order and "
-                "attachment, more than {most:,}. End the repeats earlier."
+                "With repeats, layers have {count:,} keys of visibility, draw order, depth and "
+                "parent, more than {most:,}. End the repeats earlier."
             ),
             count=count,
             most=MAX_CHANGES,
@@ -335,7 +346,7 @@ class Document:
                     name=choice.name,
                 )
                 require(
-                    not layer.visibility_keys,
+                    not layer.keys_of(VISIBILITY),
                     N_(
                         "The layer {layer!r} has visibility keys and is in the switch {name!r}, "
                         "but a switch alone decides visibility. Delete the visibility keys, or "

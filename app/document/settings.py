@@ -1,15 +1,13 @@
 """Settings of a document: limits, frames, variants, meshing, export."""
 
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Final, Literal, NamedTuple, Self, get_args
 
+from app.document.channels.key import BaseKey
 from app.document.checks import (
     LAST_FRAME,
-    NOTHING,
-    Unknown,
     require,
-    require_frame,
     require_size,
 )
 from app.export_formats import EXPORT_FORMATS, FormatSettings, expand_colour
@@ -115,15 +113,13 @@ class FrameRange:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Marker:
+class Marker(BaseKey):
     """A name for a frame, such as a beat; the frame may lie after the end of the animation."""
 
-    frame: int
     name: str
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        require_frame(self.frame, _("A marker"))
+        BaseKey.__post_init__(self)
         require(bool(self.name.strip()), N_("A marker needs a name."))
 
 

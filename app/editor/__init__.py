@@ -46,26 +46,15 @@ from app.editor.session import (
     with_project as with_project,
 )
 from app.editor.timeline_view import (
-    CameraDrag as CameraDrag,
     CycleDrag as CycleDrag,
     Edge as Edge,
     EdgeDrag as EdgeDrag,
     KeyBox as KeyBox,
     KeyDrag as KeyDrag,
-    KeyRow as KeyRow,
-    KeysByRow as KeysByRow,
-    MarkerDrag as MarkerDrag,
     ScrubDrag as ScrubDrag,
-    SwitchDrag as SwitchDrag,
     TimeDrag as TimeDrag,
     TimeGesture as TimeGesture,
     TimeRangeView as TimeRangeView,
-    TrackRow as TrackRow,
-    TurnDrag as TurnDrag,
-    display_frame as display_frame,
-    frames_in as frames_in,
-    layer_of as layer_of,
-    row_of as row_of,
 )
 from app.editor.work.jobs import JobKind as JobKind, Jobs as Jobs
 from app.editor.work.layer_runtime import (

@@ -4,30 +4,41 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from app.document import (
+    CAMERA,
+    MARKER,
+    SWITCH,
+    TRACK,
+    TRANSFORM,
     Baseline,
+    Channel,
     Clip,
     Document,
     History,
     Keyframe,
+    KeysByChannel,
     Layer,
     Meshing,
     PictureFile,
     Playhead,
     Pose,
     PreviewPose,
-    Track,
     TreeRow,
     Variant,
     camera_at,
+    channels_of,
     clip_of,
+    keys_in,
     layer_tree,
+    pose_channel,
+    track_in,
     transform_at,
 )
-from app.editor.timeline_view import KeyRow, KeysByRow, TimelineState, TrackRow, row_of
+from app.editor.timeline_view import TimelineState
 from app.editor.work.derived import Derived
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
 from app.editor.work.motion_setup import MotionJob, MotionSetup
@@ -146,9 +157,9 @@ class Project:
     moved_at: float = -inf  # the clock's seconds when the playhead last moved
     timeline: TimelineState = field(default_factory=TimelineState)
     selected_handles: frozenset[int] = frozenset()  # ids
-    # Rows without selected keys are left out.
-    selected_keys: KeysByRow = field(default_factory=dict)
-    track_row: TrackRow | None = None  # the selected track row
+    # Channels without selected keys are left out.
+    selected_keys: KeysByChannel = field(default_factory=dict)
+    selected_channel: Channel[Any] | None = None  # `channel` is by default the poses
     motion_setup: MotionSetup | None = None  # the draft of a motion
     last_motion_setup: MotionSetup | None = None  # the last closed or applied draft
     recording: Recording | None = None  # until accepted or discarded
@@ -199,20 +210,23 @@ class Project:
         return tuple(each.id for each in reversed(self.document.layers) if each.id in chosen)
 
     @property
-    def rows(self) -> list[KeyRow]:
-        """Rows of the timeline from top to bottom, the front layer first."""
-        rows: list[KeyRow] = []
-        for layer in (row.layer for row in self.tree if row.layer):
-            rows.append(layer.id)
-            if layer.id in self.timeline.expanded_layers:
-                rows += [row_of(layer, track) for track in layer.tracks]
-        return rows
+    def lanes(self) -> list[Channel[Any]]:
+        """Channels with a lane in the timeline, from top to bottom, the front layer first."""
+        document = self.document
+        lanes = [Channel(MARKER)] if document.markers else []
+        lanes += [Channel(CAMERA)] if document.camera else []
+        for row in self.tree:
+            if row.switch_group is not None:
+                lanes.append(Channel(SWITCH, part=row.switch_group.name))
+            if row.layer is not None:
+                lanes += self.lanes_of(row.layer)
+        return lanes
 
-    def track_in(self, row: KeyRow) -> Track | None:
-        """Return the track of a row; None for a pose row or a missing track."""
-        if not isinstance(row, TrackRow) or row.layer not in self.layer_runtimes:
-            return None
-        return self.document.layer(row.layer).track_of(row.handle)
+    def lanes_of(self, layer: Layer) -> list[Channel[Any]]:
+        """Channels of a layer with a lane in the timeline: the poses, then the others if shown."""
+        if layer.id not in self.timeline.expanded_layers:
+            return [pose_channel(layer.id)]
+        return [*channels_of(layer)]
 
     @property
     def selected_frames(self) -> frozenset[int]:
@@ -220,47 +234,49 @@ class Project:
 
         Setting it deselects all other keys.
         """
-        return self.selected_keys.get(self.active, frozenset())
+        return self.selected_keys.get(pose_channel(self.active), frozenset())
 
     @selected_frames.setter
     def selected_frames(self, frames: frozenset[int]) -> None:
-        self.selected_keys = {self.active: frames} if frames else {}
+        self.selected_keys = {pose_channel(self.active): frames} if frames else {}
+
+    @property
+    def channel(self) -> Channel[Any]:
+        """The selected channel: of the scene or of the active layer, by default its poses."""
+        chosen = self.selected_channel
+        is_shown = chosen is not None and chosen.layer in (None, self.active)
+        is_keyed = chosen is not None and bool(keys_in(self.document, chosen))
+        return chosen if chosen is not None and is_shown and is_keyed else pose_channel(self.active)
 
     @property
     def selected_track(self) -> int | None:
-        """The handle id of the selected track row of the active layer.
+        """The handle id of the selected track of the active layer.
 
-        None if the pose row is selected. Setting it selects a row.
+        None if another channel is selected. A track that is set is selected once it has keys.
         """
-        row = self.track_row
-        if row is None or row.layer != self.active or self.layer.track_of(row.handle) is None:
-            return None
-        return row.handle
+        track = track_in(self.document, self.channel)
+        return None if track is None else track.handles[0]
 
     @selected_track.setter
     def selected_track(self, handle: int | None) -> None:
-        self.track_row = None if handle is None else TrackRow(self.active, handle)
-
-    @property
-    def row(self) -> KeyRow:
-        """The selected row: of the active layer's poses, or of one of its tracks."""
-        handle = self.selected_track
-        return row_of(self.layer, None if handle is None else self.layer.track_of(handle))
+        track = None if handle is None else self.layer.track_of(handle)
+        part = handle if track is None else track.handles[0]
+        self.selected_channel = None if part is None else Channel(TRACK, self.active, part)
 
     @property
     def selected_key_count(self) -> int:
-        """The number of selected keys in all rows."""
+        """The number of selected keys in all channels."""
         return sum(map(len, self.selected_keys.values()))
 
     @property
     def sources(self) -> tuple[Path, ...]:
         return (*self.drawings, *([] if self.path is None else [self.path]))
 
-    def keys_with(self, row: KeyRow, frame: int) -> KeysByRow:
-        """Return the selected keys of all rows if a key is one of them, or else only this key."""
-        if frame in self.selected_keys.get(row, ()):
+    def keys_with(self, channel: Channel[Any], frame: int) -> KeysByChannel:
+        """Return all selected keys if a key is one of them, or else only this key."""
+        if frame in self.selected_keys.get(channel, ()):
             return self.selected_keys
-        return {row: frozenset({frame})}
+        return {channel: frozenset({frame})}
 
     @property
     def clip(self) -> Clip:
@@ -385,8 +401,14 @@ class Project:
         return (
             own is not None
             and (before.frames, before.loop) == (document.frames, document.loop)
-            and (own.attachments, own.anchor, own.domain, own.transform_keys, own.cycles)
-            == (layer.attachments, layer.anchor, layer.domain, layer.transform_keys, layer.cycles)
+            and (own.attachments, own.anchor, own.domain, own.keys_of(TRANSFORM), own.cycles)
+            == (
+                layer.attachments,
+                layer.anchor,
+                layer.domain,
+                layer.keys_of(TRANSFORM),
+                layer.cycles,
+            )
             and all(was.get(each.id) is each for each in document.all_ancestors(layer.id))
         )
 

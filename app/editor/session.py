@@ -5,9 +5,20 @@ from dataclasses import dataclass, field
 from functools import wraps
 from itertools import count
 from pathlib import Path
-from typing import Concatenate, Literal, ParamSpec, Protocol
+from typing import Any, Concatenate, Literal, ParamSpec, Protocol
 
-from app.document import Baseline, Document, Keyframe, Layer, Meshing, Track, TrackKey, Variant
+from app.document import (
+    BaseKey,
+    Baseline,
+    Channel,
+    Document,
+    Keyframe,
+    Layer,
+    Meshing,
+    Track,
+    TrackKey,
+    Variant,
+)
 from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
@@ -160,6 +171,15 @@ class CopiedTrack:
     keys: tuple[TrackKey, ...]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class CopiedChannel:
+    """Copied keys of another channel, with its layer at that time, if it has one."""
+
+    layer: Layer | None
+    channel: Channel[Any]
+    keys: tuple[BaseKey, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Hint:
     """A hint about the pointer: gesture and effect as one text, and the key to hold."""
@@ -271,6 +291,7 @@ class Session:
     is_timeline_focused: bool = False
     copied: tuple[CopiedKeys, ...] = ()  # one for each copied layer
     copied_tracks: tuple[CopiedTrack, ...] = ()  # one for each copied track
+    copied_channels: tuple[CopiedChannel, ...] = ()  # one for each other copied channel
     is_space_used: bool = False  # whether Space was held to pan the view
     hovered: int | None = None  # the handle under the pointer
     hint: str = ""  # about the item under the pointer

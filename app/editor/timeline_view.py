@@ -2,18 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Literal, NamedTuple, Self
+from typing import Any, Literal, Self
 
 from app.document import (
+    Channel,
     Clip,
-    Cycle,
     Document,
     FrameRange,
-    Keyframe,
+    KeysByChannel,
     Layer,
     Pose,
-    Track,
-    TrackKey,
     measure_target_errors,
 )
 from app.editor.work.derived import Derived
@@ -22,73 +20,6 @@ SMALLEST, LARGEST = 0.002, 4.0  # em per frame
 MARGIN = 1.4  # em left and right of fitted frames
 ROOM = 0.04  # of the width: space right of the last frame for dragged keys
 Edge = Literal["preview start", "preview range", "preview end", "animation end"]
-
-
-class TrackRow(NamedTuple):
-    """The row of a track: the ids of its layer and of its first handle."""
-
-    layer: int
-    handle: int
-
-
-# The pose row of a layer, as its id, or a track row.
-KeyRow = int | TrackRow
-# Frames of keys, by row.
-KeysByRow = Mapping[KeyRow, frozenset[int]]
-
-
-def layer_of(row: KeyRow) -> int:
-    return row.layer if isinstance(row, TrackRow) else row
-
-
-def row_of(layer: Layer, track: Track | None) -> KeyRow:
-    """Return the row of a layer's track, or its pose row."""
-    return layer.id if track is None else TrackRow(layer.id, track.handles[0])
-
-
-def keys_in(document: Document, row: KeyRow) -> tuple[Keyframe, ...] | tuple[TrackKey, ...]:
-    """Return the keys of a row; none if the row no longer exists."""
-    layer = next((each for each in document.layers if each.id == layer_of(row)), None)
-    if layer is None or not isinstance(row, TrackRow):
-        return () if layer is None else layer.keys
-    track = layer.track_of(row.handle)
-    return () if track is None or track.handles[0] != row.handle else track.keys
-
-
-def frames_in(document: Document, row: KeyRow) -> frozenset[int]:
-    """Return the frames of a row's keys, without the delay of a track."""
-    return frozenset(key.frame for key in keys_in(document, row))
-
-
-def display_frame(document: Document, track: Track | None, frame: int) -> int:
-    """Return the shown frame of a key; a track's delay is added.
-
-    The frame wraps around in a loop, and in a cycle that repeats the track.
-    """
-    seen = frame + (0 if track is None else track.delay)
-    cycle = None if track is None else _cycle_of(document, track)
-    if cycle is not None:
-        return seen if seen <= cycle.last else int(cycle.source_frame(seen))
-    first, last = document.frames.first, document.frames.last
-    return seen - (last - first) if document.loop and seen > last else seen
-
-
-def _cycle_of(document: Document, track: Track) -> Cycle | None:
-    """Return the cycle that repeats a track, if there is one."""
-    layer = next((each for each in document.layers if track in each.tracks), None)
-    cycles = () if layer is None else layer.cycles
-    return next((cycle for cycle in cycles if cycle.repeats_keys(track.keys)), None)
-
-
-def source_frame(document: Document, track: Track, seen: int) -> int | None:
-    """Return the key frame for a shown frame of a track; None if none is possible."""
-    first, last = document.frames.first, document.frames.last
-    own, cycle = seen - track.delay, _cycle_of(document, track)
-    if cycle is not None and cycle.covers(seen):
-        return own if own in track.key_frames else int(cycle.source_frame(own))
-    if own < first and document.loop:
-        own += last - first
-    return None if own < first else own
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,9 +89,10 @@ class TimeDrag:
 class KeyDrag(TimeDrag):
     """Drag of keys, or of copies of them."""
 
-    keys: KeysByRow  # in `before`
-    row: KeyRow  # of the pressed key, in the active layer
+    keys: KeysByChannel  # in `before`
+    channel: Channel[Any]  # of the pressed key
     pressed: int  # frame of the pressed key
+    mark: KeysByChannel  # keys that the pressed mark stands for
     copies: bool
     by: int = 0  # offset in frames
 
@@ -173,31 +105,6 @@ class EdgeDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class MarkerDrag(TimeDrag):
-    """Drag of a marker from a frame in `before` to the frame `at`."""
-
-    marker: int
-    at: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class CameraDrag(TimeDrag):
-    """Drag of a camera key from a frame in `before` to the frame `at`."""
-
-    key: int
-    at: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class SwitchDrag(TimeDrag):
-    """Drag of a visibility key from a frame in `before` to the frame `at`."""
-
-    layer: int
-    switch: int
-    at: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CycleDrag(TimeDrag):
     """Drag of the end of a cycle that begins at a frame, or of the end of its repeats."""
 
@@ -207,21 +114,12 @@ class CycleDrag(TimeDrag):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class TurnDrag(TimeDrag):
-    """Drag of a switch key from the frame `turn` to the frame `at`."""
-
-    choice: str
-    turn: int
-    at: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class KeyBox:
-    """A box of time and rows that selects keys."""
+    """A box of time and lanes that selects keys."""
 
     start: float  # frame of the press
-    row: KeyRow  # row of the press
-    keeps: KeysByRow  # other selected keys
+    channel: Channel[Any]  # lane of the press
+    keeps: KeysByChannel  # other selected keys
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -271,11 +169,11 @@ class TimelineState:
     scrolled: float = 0.0
     # The last selected row and expanded layers: the rows scroll to the selected row only
     # after a change.
-    last_shown_rows: tuple[KeyRow, frozenset[int]] | None = None
-    expanded_layers: frozenset[int] = frozenset()  # layers whose tracks have rows
+    last_shown_rows: tuple[Channel[Any], frozenset[int]] | None = None
+    expanded_layers: frozenset[int] = frozenset()  # layers whose channels have lanes
     target_errors: Derived[Layer, KeyErrors] = field(default_factory=lambda: Derived({}))
-    # Shown frames of a row's keys, in order.
-    keyed_frames: Derived[tuple[Document, KeyRow], tuple[int, ...]] = field(
+    # Shown frames of a channel's keys, in order.
+    keyed_frames: Derived[tuple[Document, Channel[Any]], tuple[int, ...]] = field(
         default_factory=lambda: Derived(())
     )
     # Frames of keys that the limits slow down, with the shares, by clip and number of delivered

@@ -4,7 +4,15 @@ from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final
 
-from app.document import Document, Group, Layer
+from app.document import (
+    DRAW_ORDER,
+    OPACITY,
+    Document,
+    Group,
+    Layer,
+    channels_of,
+    describe_channel,
+)
 from app.export.frame_vertices import FrameVertices
 from app.export.morph_mesh import (
     DEFAULT_TOLERANCE,
@@ -118,14 +126,10 @@ class MeshExport:
                 )
         layers = self._document.exported_layers
         constant = [
-            _("the opacity of {name}").format(name=each.name)
+            describe_channel(self._document, channel)
             for each in layers
-            if each.opacity_keys
-        ]
-        constant += [
-            _("the order of {name}").format(name=each.name)
-            for each in layers
-            if each.draw_order_keys
+            for channel in channels_of(each)
+            if channel.kind in (OPACITY, DRAW_ORDER) or channel.kind.uniform
         ]
         constant += [_("the camera")] if self._document.camera and not format_.has_frame else []
         if constant:

@@ -8,6 +8,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from app.document import (
+    OPACITY,
     CompositeGroup,
     Document,
     Layer,
@@ -166,13 +167,14 @@ def build_morph_scene(
 
 def _with_peak_opacity(document: Document) -> Document:
     """Return a document with each layer's largest opacity at all times."""
-    layers = tuple(
-        replace(each, opacity_keys=(), opacity=max(key.opacity for key in each.opacity_keys))
-        if each.opacity_keys
-        else each
+    layers = (
+        replace(
+            each.with_keys_of(OPACITY, ()),
+            opacity=max((key.value for key in each.keys_of(OPACITY)), default=each.opacity),
+        )
         for each in document.layers
     )
-    return replace(document, layers=layers)
+    return replace(document, layers=tuple(layers))
 
 
 def _painted(

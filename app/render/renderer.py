@@ -6,7 +6,11 @@ from typing import Final
 
 import moderngl
 
-from app.document import BlendMode, CompositeGroup
+from app.document import (
+    LAYER_KINDS,
+    BlendMode,
+    CompositeGroup,
+)
 from app.render.colormap import heat_colormap
 from app.render.gpu.mesh import PosedMesh
 from app.render.gpu.programs import Programs, ShaderFiles
@@ -48,6 +52,9 @@ _CLIPPED: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
         (moderngl.DST_ALPHA, moderngl.ONE, *_STAYS),
     ),
 }
+
+# Values of all effects of layers that leave a layer unchanged, by uniform.
+_UNCHANGED = {kind.uniform: kind.default for kind in LAYER_KINDS.values() if kind.uniform}
 
 
 class Renderer:
@@ -167,6 +174,8 @@ class Renderer:
             "tint": tint or (0.0, 0.0, 0.0),
             "strength": 0.0 if tint is None else 1.0,
             "opacity": whole.opacity,
+            **_UNCHANGED,
+            **whole.effects,
         }
         passes = (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]
         if whole.is_pass_through:

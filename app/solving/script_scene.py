@@ -1,20 +1,29 @@
 """Applying relations and channels of layers in a pose script to a document."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from app.document import (
+    DEPTH,
+    DRAW_ORDER,
+    LAYER_KINDS,
+    SWITCH,
+    TRANSFORM,
+    VISIBILITY,
     Attachment,
+    ChannelKeys,
+    ChannelKind,
     Document,
-    DrawOrderKey,
+    Key,
     Layer,
-    OpacityKey,
-    SwitchKey,
-    TransformKey,
     attachments_repeat,
+    channels_in,
+    describe_channel,
     is_switch_in_cycle,
     is_visible,
+    keys_in,
     layer_commands,
     repeating_cycle,
     switch_group_commands,
@@ -97,26 +106,27 @@ def with_world_transforms(document: Document, script: PoseScript) -> Document:
     return document
 
 
-def with_draw_order(document: Document, script: PoseScript) -> Document:
-    for part in script.layers:
-        if part.layer is None or not part.order:
-            continue
+def resolve_channels(document: Document, layer: Layer, part: LayerScript) -> ChannelKeys:
+    """Return the channels of a layer, with the ids of handles and layers."""
+    handles = {handle.name: handle.id for handle in layer.handles}
+    channels: dict[tuple[str, int | str | None], tuple[Key[Any], ...]] = {}
+    for (name, handle), keys in part.channels.items():
+        kind = LAYER_KINDS[name]
         try:
-            layer = find_layer(document, part.layer)
-            order_keys = tuple(
-                DrawOrderKey(
-                    each.frame,
-                    None if each.beside is None else find_layer(document, each.beside).id,
-                    each.in_front,
-                )
-                for each in part.order
-            )
-            document = document.with_layer(replace(layer, draw_order_keys=order_keys))
+            resolved = tuple(_with_layer_ids(document, kind, key) for key in keys)
         except LissomError as error:
-            raise LissomError(
-                _("layer {layer!r}: order: {error}").format(layer=part.layer, error=error)
-            ) from error
-    return document
+            raise LissomError(f"{_(kind.label)}: {error}") from error
+        channels[name, None if handle is None else handles[str(handle)]] = resolved
+    return channels
+
+
+def _with_layer_ids(document: Document, kind: ChannelKind[Any], key: Key[Any]) -> Key[Any]:
+    """Return a key with ids of layers instead of their names."""
+    names = {field: kind.field_of(key.value, field) for field in kind.layer_fields}
+    found = {
+        field: find_layer(document, name).id for field, name in names.items() if name is not None
+    }
+    return replace(key, value=replace(key.value, **found)) if found else key
 
 
 def with_switch_groups(document: Document, script: PoseScript) -> Document:
@@ -130,9 +140,9 @@ def with_switch_groups(document: Document, script: PoseScript) -> Document:
             ) from error
         form = switch_group_commands.create_switch_group(given.name, tuple(identities.values()))
         document = form(document)
-        turns = tuple(SwitchKey(frame, identities[layer]) for frame, layer in given.turns)
+        keys = tuple(SWITCH.key(key.frame, identities[key.value]) for key in given.keys)
         (*others, made) = document.switch_groups
-        document = replace(document, switch_groups=(*others, replace(made, keys=turns)))
+        document = replace(document, switch_groups=(*others, replace(made, keys=keys)))
     return document
 
 
@@ -141,9 +151,11 @@ def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
     frames = range(document.frames.first, document.frames.last + 1)
     notices = []
     for part in script.layers:
-        if part.layer is None or not part.movement:
+        if part.layer is None:
             continue
         layer = find_layer(document, part.layer)
+        if not layer.keys_of(TRANSFORM):
+            continue
         ancestors = [document.parent_chain(layer.id, frame)[1:] for frame in frames]
         if all(ancestors):
             notices.append(
@@ -156,10 +168,8 @@ def warn_unused_transforms(document: Document, script: PoseScript) -> list[str]:
 
 def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
     """Return notices of cycles without keys, and of channels that do not repeat in a cycle."""
-    opacity = part.opacity if isinstance(part.opacity, tuple) else ()
-    keyed = [key.frame for key in part.keys] + [switch.frame for switch in layer.visibility_keys]
-    keyed += [key.frame for key in part.movement] + [key.frame for key in opacity]
-    keyed += [key.frame for key in part.order]
+    keyed = [key.frame for key in part.keys]
+    keyed += [key.frame for keys in layer.channels.values() for key in keys]
     notices = [
         _("{cycle} contain no key, so nothing repeats; set a key there").format(
             cycle=cycle.description
@@ -171,20 +181,18 @@ def warn_unused_cycles(layer: Layer, part: LayerScript) -> list[str]:
             or attachments_repeat(layer.attachments, cycle)
         )
     ]
-    rows: dict[str, tuple[TransformKey, ...] | tuple[OpacityKey, ...]] = {
-        _("its movement does not repeat, because it ends differently than it starts in {cycle}"): (
-            part.movement
-        ),
-        _(
-            "its opacity does not repeat, because it ends differently than it starts in {cycle}"
-        ): opacity,
-    }
-    for notice, row in rows.items():
-        cycle = next(
-            (each for each in part.cycles if len(row) > 1 and each.repeats_keys(row)), None
-        )
-        if cycle is not None and repeating_cycle(layer, row) is None:
-            notices.append(notice.format(cycle=cycle.description))
+    for (name, _part), keys in layer.channels.items():
+        kind = LAYER_KINDS[name]
+        cycle = next((each for each in layer.cycles if each.repeats_keys(keys)), None)
+        if cycle is None or kind.is_held or len(keys) < 2:
+            continue
+        if repeating_cycle(kind, keys, layer.cycles) is None:
+            notices.append(
+                _(
+                    "{channel} does not repeat, because it ends differently than it starts in "
+                    "{cycle}"
+                ).format(channel=_(kind.label), cycle=cycle.description)
+            )
     for cycle in part.cycles:
         changes = any(cycle.first < joint.frame < cycle.last for joint in layer.attachments)
         if changes and not attachments_repeat(layer.attachments, cycle):
@@ -224,7 +232,7 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
             continue
         layer = find_layer(document, part.layer)
         choice = document.switch_group_of(layer.id)
-        late = [frame for frame, visible in part.visible or () if visible and frame > last]
+        late = [key.frame for key in layer.keys_of(VISIBILITY) if key.value and key.frame > last]
         if any(is_visible(document, layer, frame) for frame in range(first, last + 1)):
             continue
         if choice is not None:
@@ -233,7 +241,7 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
                     layer=part.layer, name=choice.name
                 )
             )
-        elif part.visible is None:
+        elif (VISIBILITY.name, None) not in part.channels:
             notices.append(
                 _(
                     "{layer} is hidden in the drawing and never visible; show it with "
@@ -254,15 +262,17 @@ def warn_invisible_layers(document: Document, script: PoseScript) -> list[str]:
                 )
             )
     late_changes = [
-        (_("switch {name!r}: {layer}").format(name=given.name, layer=layer), frame)
+        (_("switch {name!r}: {layer}").format(name=given.name, layer=key.value), key.frame)
         for given in script.choices
-        for frame, layer in given.turns
+        for key in given.keys
     ]
     for part in script.layers:
         parent = _("the parent of {layer}").format(layer=part.layer)
-        order = _("the order of {layer}").format(layer=part.layer)
         late_changes += [(parent, joint.frame) for joint in part.attach]
-        late_changes += [(order, each.frame) for each in part.order]
+    for channel in channels_in(document):
+        if channel.kind in (DRAW_ORDER, DEPTH):
+            what = describe_channel(document, channel)
+            late_changes += [(what, key.frame) for key in keys_in(document, channel)]
     return notices + [
         _("{what} from frame {frame} on has no effect: the animation ends at frame {last}").format(
             what=what, frame=frame, last=last

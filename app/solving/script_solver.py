@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from app.document import (
+    VISIBILITY,
     Document,
     FrameRange,
     Keyframe,
     Layer,
     Pose,
     Target,
-    VisibilityKey,
     brushed_stiffness,
     handle_commands,
     is_visible,
@@ -27,12 +27,12 @@ from app.solving.drag_solver import DragSolver, Rig
 from app.solving.script.pose_script import LayerScript, PoseKey, PoseScript
 from app.solving.script_scene import (
     find_layer,
+    resolve_channels,
     warn_invisible_layers,
     warn_unused_cycles,
     warn_unused_switches,
     warn_unused_transforms,
     with_attachments,
-    with_draw_order,
     with_switch_groups,
     with_world_transforms,
 )
@@ -83,9 +83,7 @@ def pose_document(
             layer, found = _posed(document.layer(identity), part, progress, loop=script.loop)
         document = document.with_layer(layer)
         notices += found
-    document = with_switch_groups(
-        with_world_transforms(with_draw_order(document, script), script), script
-    )
+    document = with_switch_groups(with_world_transforms(document, script), script)
     return document, (
         *notices,
         *warn_unused_transforms(document, script),
@@ -164,16 +162,10 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
         document = handle_commands.add_handle(identity, handle.at, name=name)(document)
         document = layer_commands.set_depth(identity, added, handle.front, handle.extent)(document)
         document = handle_commands.unpin_handles(identity, {added}, free=not handle.still)(document)
-    layer = document.layer(identity)
-    if part.visible is not None:
+    if (VISIBILITY.name, None) in part.channels:
         # The script's visibility overrides hidden layers of the drawing.
         document = layer_commands.show_layer(identity)(document)
-        switches = tuple(VisibilityKey(frame, visible) for frame, visible in part.visible)
-        layer = replace(document.layer(identity), visibility_keys=switches)
-    if isinstance(part.opacity, tuple):
-        layer = replace(layer, opacity_keys=part.opacity)
-    elif part.opacity is not None:
-        layer = replace(layer, opacity=part.opacity)
+    layer = document.layer(identity)
     document = document.with_layer(
         replace(
             layer,
@@ -181,7 +173,8 @@ def _prepared(document: Document, identity: int, part: LayerScript) -> Document:
             bounds=part.bounds,
             anchor=part.anchor,
             has_auto_pins=part.still,
-            transform_keys=part.movement,
+            opacity=layer.opacity if part.opacity is None else part.opacity,
+            channels=resolve_channels(document, layer, part),
             tracks=tuple(
                 replace(track, handles=tuple(first + number for number in track.handles))
                 for track in part.tracks
@@ -238,7 +231,6 @@ def _posed(
     rig = Rig.of(layer)
     pose = layer.keys[0].pose
     whose = "" if part.layer is None else f"{part.layer}, "
-    identities = {handle.name: handle.id for handle in layer.handles}
     keys: list[Keyframe] = []
     notices: list[str] = []
     for key in part.keys:
@@ -251,7 +243,7 @@ def _posed(
             pose, found = again.pose, []
         cycle = next((each for each in part.cycles if each.last == key.frame), None)
         if again is not None and cycle is not None and cycle.until != cycle.last:
-            if not is_alike or key.fronts:
+            if not is_alike:
                 raise LissomError(
                     _(
                         "the key at frame {frame} lies where {cycle} repeat, but it differs "
@@ -260,12 +252,7 @@ def _posed(
                 )
             continue
         notices += [f"{whose}{notice}" for notice in found]
-        fronts = {identities[name]: front for name, front in key.fronts.items()}
-        keys.append(
-            Keyframe(
-                frame=key.frame, pose=pose, easing=key.ease, tangent_mode=key.passing, depths=fronts
-            )
-        )
+        keys.append(Keyframe(frame=key.frame, pose=pose, easing=key.ease, tangent_mode=key.passing))
     posed = replace(layer, keys=tuple(keys), cycles=part.cycles)
     return posed, [*notices, *(whose + notice for notice in warn_unused_cycles(posed, part))]
 

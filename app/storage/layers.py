@@ -39,6 +39,12 @@ READERS = {".ora": read_openraster, ".psd": read_photoshop}
 FEWEST_TRIANGLES = 4_000
 LARGEST_FLAT = 1_024  # pixels: layers on a canvas of twice this size are reduced
 WHOLE = CutOut(background="none")  # removes only transparent pixels
+# Fields of a layer that belong to its picture, its handles and their motion.
+DRAWN = (
+    *("picture", "domain", "meshing", "cut_out", "is_stale", "still", "stiffness", "mirror"),
+    *("handles", "next_handle", "has_auto_pins", "tracks", "springs", "bones", "library"),
+    *("motions", "unread_motions", "variant", "bounds"),
+)
 
 
 def is_layered(path: Path) -> bool:
@@ -233,31 +239,19 @@ def make_still_layer(layer: Layer) -> Layer:
 
 
 def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
-    """Return a layer, posable or still, as drawn, in the place of another layer."""
+    """Return a layer, posable or still, as drawn, in the place of another layer.
+
+    The channels of the other layer's handles are left out.
+    """
     anchor = replaced.anchor
     if anchor is not None:
         anchor = complex(layer.domain.nearest(np.array([anchor]))[0])
     return replace(
-        layer,
-        id=replaced.id,
-        name=replaced.name,
-        corner=replaced.corner,
+        replaced,
+        **{name: getattr(layer, name) for name in DRAWN},
         anchor=anchor,
         keys=(replace(layer.keys[0], frame=replaced.keys[0].frame),),
-        cycles=replaced.cycles,
-        reference=replaced.reference,
-        locked=replaced.locked,
-        hidden=replaced.hidden,
-        visibility_keys=replaced.visibility_keys,
-        opacity=replaced.opacity,
-        opacity_keys=replaced.opacity_keys,
-        blend=replaced.blend,
-        clipped=replaced.clipped,
-        group=replaced.group,
-        attachments=replaced.attachments,
-        transform_keys=replaced.transform_keys,
-        draw_order_keys=replaced.draw_order_keys,
-        unknown=replaced.unknown,
+        channels={name: keys for name, keys in replaced.channels.items() if name[1] is None},
     )
 
 

@@ -19,7 +19,7 @@ from app.document import (
     visibility_keys,
 )
 from app.errors import LissomError
-from app.storage import load_project, sample_images
+from app.storage import load_project, sample_images, save_project
 from tests.bench.table import Row, Table
 
 SAMPLE = "giraffe.lissom"
@@ -57,9 +57,12 @@ def tables(extent: Extent) -> Iterator[Table]:
 
 
 def _two_layers() -> dict[str, bytes]:
-    """Return the members of a project with the sample twice."""
-    with zipfile.ZipFile(sample_images() / SAMPLE) as archive:
-        members = {name: archive.read(name) for name in archive.namelist()}
+    """Return the members of a project in the present schema, with the sample twice."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / SAMPLE
+        save_project(path, load_project(sample_images() / SAMPLE))
+        with zipfile.ZipFile(path) as archive:
+            members = {name: archive.read(name) for name in archive.namelist()}
     content = json.loads(members["project.json"])
     (layer,) = content["layers"]
     content["layers"].append(layer | {"id": 1, "name": "other"})
@@ -106,12 +109,18 @@ def _of_layer(name: str, make: Callable[[int], Any]) -> Filling:
     return lambda content, size: content["layers"][0].update({name: _many(size, make)})
 
 
+def _of_channel(kind: str, make: Callable[[int], Any]) -> Filling:
+    return lambda content, size: content["layers"][0].update(
+        channels=[{"kind": kind, "keys": _many(size, make)}]
+    )
+
+
 def _key(number: int, **own: Any) -> Content:
     return {"frame": number, "easing": "linear", "tangent_mode": "through", **own}
 
 
 def _turns(content: Content, size: int) -> None:
-    turns = _many(size, lambda number: [number, number % 2])
+    turns = _many(size, lambda number: {"frame": number, "layer": number % 2})
     content["switch_groups"] = [{"name": "mouth", "layers": [0, 1], "keys": turns}]
 
 
@@ -158,7 +167,8 @@ def _repeats(content: Content, size: int) -> None:
     layer = content["layers"][0]
     repeat = {"first": 0, "last": 2, "until": None}
     layer |= {"keys": layer["keys"][:1], "cycles": [repeat]}
-    layer["visibility_keys"] = [[0, True], [1, False]]
+    keys = [{"frame": 0, "visible": True}, {"frame": 1, "visible": False}]
+    layer["channels"] = [{"kind": "visibility", "keys": keys}]
     content["frames"] = [0, 59 * size // 1_000]
 
 
@@ -185,12 +195,11 @@ FILLINGS: dict[str, Filling] = {
     "camera keys": _of_scene("camera", lambda n: _key(n, centre=[0, 0], zoom=1.0, turn=0.0)),
     "turns of a switch": _turns,
     "fields not known": _of_scene("later", lambda number: {"value": number}),
-    "visibility keys": _of_layer("visibility_keys", lambda number: [number, number % 2 == 0]),
-    "movement keys": _of_layer("transform_keys", lambda n: _key(n, shift=[0, 0], turn=0.0)),
-    "opacity keys": _of_layer("opacity_keys", lambda number: _key(number, opacity=0.5)),
-    "draw order keys": _of_layer(
-        "draw_order_keys",
-        lambda number: {"frame": number, "beside": 1, "in_front": number % 2 == 0},
+    "visibility keys": _of_channel("visibility", lambda n: {"frame": n, "visible": n % 2 == 0}),
+    "movement keys": _of_channel("transform", lambda n: _key(n, shift=[0, 0], turn=0.0)),
+    "opacity keys": _of_channel("opacity", lambda number: _key(number, opacity=0.5)),
+    "draw order keys": _of_channel(
+        "draw_order", lambda n: {"frame": n, "beside": 1, "in_front": n % 2 == 0}
     ),
     "track keys": _track,
     "joints": _joints,
@@ -200,6 +209,6 @@ FILLINGS: dict[str, Filling] = {
         "cycles", lambda n: {"first": 100 + 4 * n, "last": 102 + 4 * n, "until": 103 + 4 * n}
     ),
     "motions": _of_layer(
-        "motions", lambda n: MOTION | {"first": 3 * n, "start": 3 * n, "last": 3 * n + 2}
+        "motions", lambda n: MOTION | {"id": n, "first": 3 * n, "start": 3 * n, "last": 3 * n + 2}
     ),
 }

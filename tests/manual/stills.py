@@ -13,7 +13,7 @@ from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.motion_presets import preset_setup
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.timing import cycles, keys
-from app.editor.layering.layer_channels import key_camera
+from app.editor.actions.timing.channel_keys import key_camera
 from app.editor.layering.layer_selection import set_active_layer, toggle_tree_row
 from app.editor.poses import copying, library, pasting
 from app.storage import sample_images
@@ -154,7 +154,7 @@ def _front(window: Film, path: Path) -> None:
     window.resize((1000, 696))
     window.show_tab("Handle")
     come_to_rest(window)
-    scroll_to(window, "**/From this key on")
+    scroll_to(window, "//Handle/**/key depth")
     _still(window, path)
 
 

@@ -7,8 +7,8 @@ import numpy as np
 from harness import Harness
 from interpolation_shapes import around, subdivided
 
-from app.document import History, clip_of
-from app.document.commands import key_commands, scene_commands, shape_commands
+from app.document import History, channel_commands, clip_of, pose_channel
+from app.document.commands import scene_commands, shape_commands
 from app.document.keyframe import Target
 from app.document.layer import new_layer
 from app.document.model import Document
@@ -80,7 +80,9 @@ def bend_bar(
     if last is not None:
         bar = window.again(bend_bar, None, held)
         if last != BENT:
-            bar.history.do(key_commands.move_keys(bar.active, {BENT}, last - BENT))
+            bar.history.do(
+                channel_commands.move_keys({pose_channel(bar.active): {BENT}}, last - BENT)
+            )
         bar.history.do(scene_commands.set_frames(FrameRange(0, last)))
         playback.seek(window.session, last)
     elif held == "loose":

@@ -4,14 +4,24 @@ from dataclasses import replace
 
 from scenes import drawn
 
+from app.document import (
+    CAMERA,
+    DRAW_ORDER,
+    OPACITY,
+    SWITCH,
+    TRANSFORM,
+    VISIBILITY,
+    Camera,
+    DrawOrder,
+    Transform,
+)
+from app.document.channels.cycles import Cycle
+from app.document.channels.tracks import Track, TrackKey
 from app.document.commands import handle_commands
 from app.document.keyframe import Keyframe
-from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
-from app.document.layers.visibility import SwitchGroup, SwitchKey, VisibilityKey
+from app.document.layers.switch_group import SwitchGroup
 from app.document.model import Document
 from app.document.settings import FrameRange, Marker
-from app.document.timing.cycles import Cycle
-from app.document.timing.tracks import Track, TrackKey
 
 KINDS = ("keys", "tracks", "switches", "cycles", "changes", "turns", "markers", "camera")
 
@@ -29,19 +39,23 @@ def crowded(kind: str, count: int) -> Document:
             row = tuple(TrackKey(frame=at, place=0j) for at in frames)
             layer = replace(layer, tracks=(Track(handles=(handle,), keys=row),))
         case "switches":
-            row = tuple(VisibilityKey(at, visible=bool(at % 2)) for at in frames)
-            layer = replace(layer, visibility_keys=row)
+            row = tuple(VISIBILITY.key(at, value=bool(at % 2)) for at in frames)
+            layer = replace(layer, channels={(VISIBILITY.name, None): row})
         case "cycles":
             layer = replace(layer, cycles=(Cycle(first=0, last=1),))
         case "changes":
             layer = replace(
                 layer,
-                transform_keys=tuple(TransformKey(frame=at) for at in frames),
-                opacity_keys=tuple(OpacityKey(frame=at, opacity=0.5) for at in frames),
-                draw_order_keys=tuple(DrawOrderKey(frame=at, beside=None) for at in frames),
+                channels={
+                    (TRANSFORM.name, None): tuple(TRANSFORM.key(at, Transform()) for at in frames),
+                    (OPACITY.name, None): tuple(OPACITY.key(at, 0.5) for at in frames),
+                    (DRAW_ORDER.name, None): tuple(
+                        DRAW_ORDER.key(at, DrawOrder(beside=None)) for at in frames
+                    ),
+                },
             )
         case "turns":
-            turns = tuple(SwitchKey(at, at % 2) for at in frames)
+            turns = tuple(SWITCH.key(at, at % 2) for at in frames)
             choice = SwitchGroup(name="mouth", layers=(0, 1), keys=turns)
             other = replace(layer, id=1, name="other")
             return replace(document, layers=(layer, other), switch_groups=(choice,))
@@ -49,6 +63,6 @@ def crowded(kind: str, count: int) -> Document:
             row = tuple(Marker(frame=at, name=f"marker {at}") for at in frames)
             document = replace(document, markers=row)
         case "camera":
-            row = tuple(CameraKey(frame=at, centre=0j, zoom=1.0) for at in frames)
+            row = tuple(CAMERA.key(at, Camera(centre=0j, zoom=1.0)) for at in frames)
             document = replace(document, camera=row)
     return replace(document, layers=(layer,))

@@ -11,29 +11,47 @@ from pictures import blank_png
 from shapes import regular_polygon
 
 from app.cut_out import CutOut, Mask, Stroke
+from app.document import (
+    CAMERA,
+    DEPTH,
+    DRAW_ORDER,
+    MARKER,
+    OPACITY,
+    SWITCH,
+    TRACK,
+    TRANSFORM,
+    VISIBILITY,
+    Camera,
+    Channel,
+    DrawOrder,
+    Transform,
+    channel_commands,
+    pose_channel,
+)
+from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.channels.springs import Spring
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
 from app.document.commands import (
     handle_commands,
-    key_commands,
     pose_commands,
     scene_commands,
     shape_commands,
     stiffness_commands,
-    track_commands,
 )
 from app.document.commands.command import Command
-from app.document.commands.layers import filming_commands, layer_commands, switch_group_commands
-from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, TangentMode, Target
+from app.document.commands.keys import (
+    key_commands,
+    track_commands,
+)
+from app.document.commands.layers import layer_commands, switch_group_commands
+from app.document.keyframe import Handle, Keyframe, LibraryPose, Pose, Target
 from app.document.layer import PictureFile, new_layer
 from app.document.layers.attachments import Attachment
 from app.document.layers.groups import Group
-from app.document.layers.layer_keys import CameraKey, DrawOrderKey, OpacityKey, TransformKey
-from app.document.layers.visibility import VisibilityKey
 from app.document.model import Document
 from app.document.rig.stiffness import Bone
 from app.document.settings import FRAMINGS, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
-from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
-from app.document.timing.springs import Spring
-from app.document.timing.tracks import Track, TrackKey
 from app.errors import ImportLog
 from app.export_formats import EXPORT_FORMATS, MeshOptions, SpriteSheetOptions
 from engine.domain.build import MeshedDomain
@@ -125,7 +143,8 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
     )
     copy = dataclasses.replace(layer, id=layer_commands.next_layer_id(document), corner=inside(rng))
     turn = complex(np.exp(1j * rng.normal()))
-    flag = bool(rng.integers(2))
+    flag, to = bool(rng.integers(2)), int(rng.integers(50))
+    shown = layer.keys_of(VISIBILITY)[0].frame if layer.keys_of(VISIBILITY) else 3
     commands = [
         layer_commands.duplicate_layer(layer.id),
         layer_commands.add_layer(copy),
@@ -138,12 +157,8 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
         layer_commands.set_locked(layer.id, locked=flag),
         layer_commands.set_reference(layer.id, reference=flag),
         layer_commands.key_visibility(layer.id, int(rng.integers(50)), visible=flag),
-        layer_commands.key_visibility(layer.id, int(rng.integers(50)), visible=None),
-        layer_commands.move_visibility_key(
-            layer.id,
-            layer.visibility_keys[0].frame if layer.visibility_keys else 3,
-            int(rng.integers(50)),
-        ),
+        channel_commands.delete_keys({Channel(VISIBILITY, layer.id): {int(rng.integers(50))}}),
+        channel_commands.move_keys({Channel(VISIBILITY, layer.id): {shown}}, to - shown),
         layer_commands.attach_layer(layer.id, inside(rng), joint),
         layer_commands.detach_layer(layer.id, turn, inside(rng)),
     ]
@@ -153,8 +168,8 @@ def _random_layer_command(rng: np.random.Generator, document: Document) -> Comma
         commands += [
             layer_commands.set_depth(layer.id, handle, rng.uniform(-1, 1), None),
             layer_commands.set_depth(layer.id, handle, 0.5, 10 * rng.random() + 1),
-            layer_commands.key_depth(layer.id, frame, handle, rng.uniform(-1, 1)),
-            layer_commands.key_depth(layer.id, frame, handle, None),
+            channel_commands.set_key(Channel(DEPTH, layer.id, handle), frame, rng.uniform(-1, 1)),
+            channel_commands.delete_keys({Channel(DEPTH, layer.id, handle): {frame}}),
         ]
     return commands[rng.integers(len(commands))]
 
@@ -171,8 +186,8 @@ def _random_choice_command(rng: np.random.Generator, document: Document) -> Comm
         ),
         switch_group_commands.create_switch_group("two", rng.permutation(ids)[:2].tolist()),
         switch_group_commands.choose_at(identity, frame),
-        switch_group_commands.unchoose_at(name, turn),
-        switch_group_commands.move_turn(name, turn, to),
+        channel_commands.delete_keys({Channel(SWITCH, part=name): {turn}}),
+        channel_commands.move_keys({Channel(SWITCH, part=name): {turn}}, to - turn),
         switch_group_commands.rename_switch_group(name, f"choice {rng.integers(3)}"),
         switch_group_commands.add_to_switch_group(name, [identity]),
         switch_group_commands.remove_from_switch_group(identity),
@@ -213,18 +228,24 @@ def _random_key_command(rng: np.random.Generator, document: Document) -> Command
         key_commands.replace_key_pose(0, frames[0], pose),
         key_commands.insert_key(0, int(rng.integers(80)), pose),
         key_commands.insert_key(0, int(rng.integers(80)), pose, easing=easing),
-        key_commands.move_keys(0, frames, by),
-        key_commands.copy_keys(0, frames, by),
-        key_commands.delete_keys(0, frames),
-        key_commands.reverse_keys(0, frames),
-        key_commands.insert_keys(0, [document.layers[0].key(frame) for frame in frames]),
+        channel_commands.move_keys({pose_channel(0): frames}, by),
+        channel_commands.copy_keys({pose_channel(0): frames}, by),
+        channel_commands.delete_keys({pose_channel(0): frames}),
+        channel_commands.reverse_keys({pose_channel(0): frames}),
+        channel_commands.insert_keys(
+            {pose_channel(0): [document.layers[0].key(frame) for frame in frames]}
+        ),
         key_commands.insert_pose(0, int(rng.integers(80)), pose, easing),
-        key_commands.scale_keys(0, frames, float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
+        channel_commands.scale_keys(
+            {pose_channel(0): frames}, float(rng.choice([0.5, 1.0, 1.5, 2.0]))
+        ),
         scene_commands.scale_time(float(rng.choice([0.5, 1.0, 1.5, 2.0]))),
         key_commands.match_loop_ends(0),
-        key_commands.set_easing(0, frames, easing),
+        channel_commands.set_easing({pose_channel(0): frames}, easing),
         key_commands.set_revolutions(0, frames, int(rng.integers(-1, 2))),
-        key_commands.set_tangent_mode(0, frames, TangentMode(rng.choice(list(TangentMode)))),
+        channel_commands.set_tangent_mode(
+            {pose_channel(0): frames}, TangentMode(rng.choice(list(TangentMode)))
+        ),
     ]
     return commands[rng.integers(len(commands))]
 
@@ -280,15 +301,17 @@ def _random_track_command(rng: np.random.Generator, document: Document) -> Comma
         *2 * [track_commands.put_spring(0, random_spring(rng, one))],
         track_commands.put_track_key(0, one, int(rng.integers(60)), inside(rng), planted=flag),
         track_commands.put_track_key(0, one, every[0], inside(rng), turn=rng.normal()),
-        track_commands.put_track_keys(0, one, random_track(rng, (one,)).keys),
-        track_commands.move_track_keys(0, one, frames, by),
-        track_commands.copy_track_keys(0, one, frames, by),
-        track_commands.delete_track_keys(0, one, frames),
-        track_commands.reverse_track_keys(0, one, frames),
-        track_commands.scale_track_keys(0, one, frames, factor),
-        track_commands.set_track_easing(0, one, frames, PRESETS["in"] if flag else LINEAR),
-        track_commands.set_track_passing(
-            0, one, frames, TangentMode(rng.choice(list(TangentMode)))
+        channel_commands.insert_keys({Channel(TRACK, 0, one): random_track(rng, (one,)).keys}),
+        channel_commands.move_keys({Channel(TRACK, 0, one): frames}, by),
+        channel_commands.copy_keys({Channel(TRACK, 0, one): frames}, by),
+        channel_commands.delete_keys({Channel(TRACK, 0, one): frames}),
+        channel_commands.reverse_keys({Channel(TRACK, 0, one): frames}),
+        channel_commands.scale_keys({Channel(TRACK, 0, one): frames}, factor),
+        channel_commands.set_easing(
+            {Channel(TRACK, 0, one): frames}, PRESETS["in"] if flag else LINEAR
+        ),
+        channel_commands.set_tangent_mode(
+            {Channel(TRACK, 0, one): frames}, TangentMode(rng.choice(list(TangentMode)))
         ),
         track_commands.set_delay(0, one, int(rng.integers(50))),
         track_commands.set_reach(0, one, rng.random()),
@@ -356,8 +379,8 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
         scene_commands.set_preview(None if rng.random() < 0.5 else frames),
         scene_commands.add_marker(int(rng.integers(90)), [None, "beat"][rng.integers(2)]),
         scene_commands.rename_marker(at, f"ü {rng.integers(3)}"),
-        scene_commands.move_marker(at, int(rng.integers(90))),
-        scene_commands.delete_marker(at),
+        channel_commands.move_keys({Channel(MARKER): {at}}, int(rng.integers(90)) - at),
+        channel_commands.delete_keys({Channel(MARKER): {at}}),
         scene_commands.set_loop(loop=bool(rng.integers(2))),
         *_camera_commands(rng, document),
         scene_commands.set_mirror_names((("near", "far"), (f"é {rng.integers(3)}", "B"))),
@@ -377,19 +400,23 @@ def _random_settings_command(rng: np.random.Generator, document: Document) -> Co
 def _camera_commands(rng: np.random.Generator, document: Document) -> list[Command]:
     frame, to = (int(at) for at in rng.integers(50, size=2))
     at = document.camera[0].frame if document.camera else frame
-    faded, moved = document.layer(0).opacity_keys, document.layer(0).transform_keys
+    faded, moved = document.layer(0).keys_of(OPACITY), document.layer(0).keys_of(TRANSFORM)
     other = int(rng.integers(len(document.layers)))
-    key = CameraKey(frame=frame, centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
+    camera = Camera(centre=inside(rng), zoom=rng.uniform(0.1, 9), turn=rng.normal())
     return [
-        filming_commands.key_camera(key),
-        filming_commands.move_camera_key(at, to),
-        filming_commands.delete_camera_key(at),
-        filming_commands.key_opacity(0, frame, rng.random()),
-        filming_commands.delete_opacity_key(0, faded[0].frame if faded else frame),
-        filming_commands.key_movement(0, frame, inside(rng), rng.normal()),
-        filming_commands.delete_movement_key(0, moved[0].frame if moved else frame),
-        filming_commands.place_at(0, DrawOrderKey(frame, other, bool(rng.integers(2)))),
-        filming_commands.unplace_at(0, frame),
+        channel_commands.set_key(Channel(CAMERA), frame, camera),
+        channel_commands.move_keys({Channel(CAMERA): {at}}, to - at),
+        channel_commands.delete_keys({Channel(CAMERA): {at}}),
+        channel_commands.set_key(Channel(OPACITY, 0), frame, rng.random()),
+        channel_commands.delete_keys({Channel(OPACITY, 0): {faded[0].frame if faded else frame}}),
+        channel_commands.set_key(
+            Channel(TRANSFORM, 0), frame, Transform(inside(rng), rng.normal())
+        ),
+        channel_commands.delete_keys({Channel(TRANSFORM, 0): {moved[0].frame if moved else frame}}),
+        channel_commands.set_key(
+            Channel(DRAW_ORDER, 0), frame, DrawOrder(other, bool(rng.integers(2)))
+        ),
+        channel_commands.delete_keys({Channel(DRAW_ORDER, 0): {frame}}),
     ]
 
 
@@ -480,7 +507,7 @@ def full_document() -> Document:
         keys=(
             Keyframe(frame=3, pose=bent, easing=PRESETS["in-out"], unknown=more),
             Keyframe(frame=10, pose=folded, easing=Easing((0.1, 0.2, 1 / 3, 1.0)), revolutions=-1),
-            Keyframe(frame=40, pose=bent, easing=HOLD, depths={4: 0.25, 1: 0.0}),
+            Keyframe(frame=40, pose=bent, easing=HOLD),
         ),
         anchor=100.5 + 99j,
         has_auto_pins=False,
@@ -496,7 +523,6 @@ def full_document() -> Document:
         reference=True,
         locked=True,
         hidden=True,
-        visibility_keys=(VisibilityKey(0, visible=False), VisibilityKey(12, visible=True)),
         opacity=0.25,
         attachments=(
             Attachment(
@@ -504,6 +530,14 @@ def full_document() -> Document:
             ),
         ),
         unknown=MappingProxyType({"visible": False, "bounds": {"tau": 4}}),
+        channels={
+            (VISIBILITY.name, None): (
+                VISIBILITY.key(0, value=False),
+                VISIBILITY.key(12, value=True),
+            ),
+            (DEPTH.name, 1): (DEPTH.key(40, 0.0),),
+            (DEPTH.name, 4): (DEPTH.key(40, 0.25),),
+        },
     )
     return dataclasses.replace(
         empty,
@@ -576,23 +610,25 @@ def clocked_document() -> Document:
         blend="multiply",
         clipped=True,
         group="limbs/left",
-        transform_keys=(
-            TransformKey(frame=2, shift=complex(1 / 3, -0.0), turn=0.1, unknown=more),
-            TransformKey(frame=9, easing=PRESETS["in"], tangent_mode=TangentMode.STOP),
-        ),
-        opacity_keys=(OpacityKey(frame=3, opacity=1 / 3), OpacityKey(frame=60, opacity=0.0)),
-        draw_order_keys=(
-            DrawOrderKey(frame=7, beside=5, in_front=False),
-            DrawOrderKey(frame=70, beside=None),
-        ),
+        channels={
+            (TRANSFORM.name, None): (
+                TRANSFORM.key(2, Transform(shift=complex(1 / 3, -0.0), turn=0.1), unknown=more),
+                TRANSFORM.key(9, Transform(), easing=PRESETS["in"], tangent_mode=TangentMode.STOP),
+            ),
+            (OPACITY.name, None): (OPACITY.key(3, 1 / 3), OPACITY.key(60, 0.0)),
+            (DRAW_ORDER.name, None): (
+                DRAW_ORDER.key(7, DrawOrder(beside=5, in_front=False)),
+                DRAW_ORDER.key(70, DrawOrder(beside=None)),
+            ),
+        },
     )
     groups = (
         Group(name="limbs", hidden=True, unknown=more),
         Group(name="limbs/left", opacity=1 / 3, blend="screen", clipped=True),
     )
     camera = (
-        CameraKey(frame=1, centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5, unknown=more),
-        CameraKey(frame=9, centre=9j, zoom=0.1, easing=HOLD, tangent_mode=TangentMode.CORNER),
+        CAMERA.key(1, Camera(centre=complex(1 / 3, -0.0), zoom=2.0, turn=-0.5), unknown=more),
+        CAMERA.key(9, Camera(centre=9j, zoom=0.1), easing=HOLD, tangent_mode=TangentMode.CORNER),
     )
     pairs = (("L", "R"), ("Fuß", "Tatze\n"))
     layers = (child, parent)

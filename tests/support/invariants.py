@@ -6,10 +6,10 @@ import numpy as np
 
 from app.document.keyframe import Pose
 from app.document.layer import Layer
+from app.document.queries.channel_values.channel_keys import frames_in
 from app.editor.actions import playback
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.timeline_view import frames_in
 from engine.domain.build import MeshedDomain
 from engine.domain.validity import require_domain
 from engine.maps.boundary import Boundary
@@ -29,9 +29,9 @@ def check_invariants(session: Session) -> None:
     document, layer = project.document, project.layer
     assert set(project.layer_runtimes) == {each.id for each in document.layers}
     assert project.selected_handles <= {handle.id for handle in layer.handles}
-    for row, frames in project.selected_keys.items():
+    for channel, frames in project.selected_keys.items():
         assert frames
-        assert frames <= frames_in(document, row)
+        assert frames <= frames_in(document, channel)
     assert playback.current_frame(session, project) in document.frames
     for each in document.layers:
         frames = [key.frame for key in each.keys]

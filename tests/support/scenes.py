@@ -8,32 +8,41 @@ from animations import BLOB, still_document, within
 from documents import random_spring, random_track
 from shapes import regular_polygon
 
+from app.document import (
+    CAMERA,
+    DEPTH,
+    DRAW_ORDER,
+    OPACITY,
+    TRANSFORM,
+    Camera,
+    Channel,
+    DrawOrder,
+    Transform,
+    all_keys,
+    channel_commands,
+)
+from app.document.channels.easing import PRESETS
+from app.document.channels.tangent_mode import TangentMode
 from app.document.commands import (
-    cycle_commands,
     handle_commands,
     scene_commands,
     shape_commands,
     stiffness_commands,
-    track_commands,
 )
 from app.document.commands.command import Command
-from app.document.commands.layers import (
-    filming_commands,
-    group_commands,
-    layer_commands,
-    switch_group_commands,
+from app.document.commands.keys import (
+    cycle_commands,
+    track_commands,
 )
-from app.document.keyframe import Keyframe, LibraryPose, Pose, TangentMode, Target
+from app.document.commands.layers import group_commands, layer_commands, switch_group_commands
+from app.document.keyframe import Keyframe, LibraryPose, Pose, Target
 from app.document.layer import Layer
 from app.document.layers.attachments import Attachment
-from app.document.layers.layer_keys import CameraKey, DrawOrderKey
 from app.document.model import Document
 from app.document.rig.applied_motion import AppliedMotion
 from app.document.settings import VARIANTS, FrameRange
-from app.document.timing.easing import PRESETS
 from app.editor import Session
 from app.editor.project import Project
-from app.editor.timeline_view import TrackRow, frames_in
 from app.errors import LissomError
 from app.rigging import Parameters
 from app.storage.layers import make_still_layer
@@ -143,7 +152,7 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
         keep_world_transform=bool(rng.integers(2)),
     )
     until = _any(rng, (None, to, to + (to - one), LAST))
-    camera = CameraKey(frame=one, centre=place, zoom=rng.uniform(0.3, 4), turn=rng.normal())
+    camera = Camera(centre=place, zoom=rng.uniform(0.3, 4), turn=rng.normal())
     changes = [
         layer_commands.attach_layer(layer.id, place, joint),
         layer_commands.key_visibility(layer.id, one, visible=flag),
@@ -152,10 +161,12 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
         ),
         switch_group_commands.choose_at(layer.id, to),
         *2 * [cycle_commands.set_cycle(layer.id, one, to, until)],
-        filming_commands.key_camera(camera),
-        filming_commands.key_opacity(layer.id, one, rng.random()),
-        filming_commands.key_movement(layer.id, to, place - 60, rng.normal()),
-        filming_commands.place_at(layer.id, DrawOrderKey(one, other.id, flag)),
+        channel_commands.set_key(Channel(CAMERA), one, camera),
+        channel_commands.set_key(Channel(OPACITY, layer.id), one, rng.random()),
+        channel_commands.set_key(
+            Channel(TRANSFORM, layer.id), to, Transform(place - 60, rng.normal())
+        ),
+        channel_commands.set_key(Channel(DRAW_ORDER, layer.id), one, DrawOrder(other.id, flag)),
         group_commands.group_layers([layer.id, other.id], group),
         group_commands.set_group_hidden(group, hidden=flag),
         scene_commands.add_marker(one, _any(rng, (None, "beat"))),
@@ -181,7 +192,7 @@ def _random_change(rng: np.random.Generator, document: Document) -> Command:
             stiffness_commands.add_bone(layer.id, ends, 10.0),
             handle_commands.group_handles(layer.id, set(some), "arms"),
             handle_commands.lock_handles(layer.id, set(some), locked=flag),
-            layer_commands.key_depth(layer.id, one, handles[0], rng.uniform(-1, 1)),
+            channel_commands.set_key(Channel(DEPTH, layer.id, handles[0]), one, rng.uniform(-1, 1)),
             scene_commands.apply_motion(layer, _given(rng, handles, one, to)),
         ]
     return changes[rng.integers(len(changes))]
@@ -211,14 +222,10 @@ def random_state(rng: np.random.Generator, session: Session, project: Project) -
     project.selected_handles = frozenset(
         handle.id for handle in layer.handles if rng.random() < 0.5
     )
-    rows = [each.id for each in document.layers]
-    rows += [
-        TrackRow(each.id, track.handles[0]) for each in document.layers for track in each.tracks
-    ]
-    for row in rows:
-        frames = frozenset(frame for frame in frames_in(document, row) if rng.random() < 0.4)
+    for channel, keyed in all_keys(document).items():
+        frames = frozenset(frame for frame in sorted(keyed) if rng.random() < 0.4)
         if frames and rng.random() < 0.6:
-            project.selected_keys[row] = frames
+            project.selected_keys[channel] = frames
     project.timeline.expanded_layers = frozenset(
         each.id for each in document.layers if rng.random() < 0.5
     )

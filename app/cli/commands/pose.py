@@ -139,6 +139,19 @@ DRAWING. A layer that stands still has these too, with "handles": {} and "keys":
 Keys of the camera and of movements have ease and passing as those of poses. They start and end at
 rest, unless they have an ease.
 
+"channels" sets any channel of a layer, with an easing and a tangent for every key:
+
+   "channels": {"transform": [{"frame": 0}, {"frame": 24, "shift": [60, 0], "turn": 90}],
+                "opacity": [{"frame": 0, "opacity": 1, "easing": "in-out"},
+                            {"frame": 12, "opacity": 0.2, "tangent_mode": "stop"}],
+                "draw_order": [{"frame": 24, "beside": "arm", "in_front": true}],
+                "visibility": [{"frame": 0, "visible": true}, {"frame": 40, "visible": false}],
+                "depth": {"hand": [{"frame": 8, "depth": -1}]}}
+
+"depth" has a channel for each handle. "easing" is as "ease" above, by default linear.
+"tangent_mode" is through, corner or stop. It is corner by default for opacity, otherwise through.
+A channel is set in one place: here, or by "movement", "opacity", "order", "visible" or "front".
+
 examples:
   lissom pose giraffe.png nod.json --out nod.lissom
   lissom pose giraffe.png nod.json --out nod.lissom --triangles 20000 --detail fine

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.document.commands.command import layer_command, with_number
-from app.document.commands.track_handles import with_moved_handle, without_handles
+from app.document.commands.keys.track_handles import with_moved_handle, without_handles
 from app.document.keyframe import Handle, Pose, Target
 from app.document.layer import Layer
 from app.texts import _
@@ -67,15 +67,12 @@ def remove_handles(layer: Layer, identities: Collection[int]) -> Layer:
         return replace(pose, targets=targets)
 
     handles = tuple(handle for handle in layer.handles if handle.id not in gone)
-    keys = tuple(
-        replace(key, depths={i: front for i, front in key.depths.items() if i not in gone})
-        for key in layer.keys
-    )
+    channels = {name: keys for name, keys in layer.channels.items() if name[1] not in gone}
     motions = tuple(
         replace(each, joints={name: i for name, i in each.joints.items() if i not in gone})
         for each in layer.motions
     )
-    left = without_handles(replace(layer, keys=keys, motions=motions), gone)
+    left = without_handles(replace(layer, channels=channels, motions=motions), gone)
     return _with_poses(left, remaining, handles)
 
 

@@ -6,10 +6,16 @@ from itertools import pairwise
 from typing import Any
 
 from app.document.commands.command import command, with_number
-from app.document.commands.key_commands import with_scaled_time
-from app.document.commands.retime import TimeScale
+from app.document.commands.keys.retime import TimeScale, nearest_frame
+from app.document.commands.keys.stored_keys import KeyRows, put_rows
 from app.document.layer import Layer
 from app.document.model import Document
+from app.document.queries.channel_values.channel_keys import (
+    channels_in,
+    describe_channel,
+    keys_in,
+    track_channel,
+)
 from app.document.rig.applied_motion import AppliedMotion
 from app.document.rig.mirror_names import SidePairs
 from app.document.settings import ExportSettings, FrameRange, Marker
@@ -45,23 +51,19 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
             return None
         return FrameRange(frames.clamp(part.first), frames.clamp(part.last))
 
-    return _with_ranges(document, frames, cut)
+    return replace(document, **{**_mapped_ranges(document, cut), "frames": frames})
 
 
-def _with_ranges(
-    document: Document,
-    frames: FrameRange,
-    to: Callable[[FrameRange], FrameRange | None],
-    **changes: Any,
-) -> Document:
-    """Return a document with other frames, and with its ranges mapped by a function."""
+def _mapped_ranges(
+    document: Document, to: Callable[[FrameRange], FrameRange | None]
+) -> dict[str, Any]:
+    """Return a document's frames, preview range and export range, mapped by a function."""
 
-    def moved(part: FrameRange | None) -> FrameRange | None:
+    def mapped(part: FrameRange | None) -> FrameRange | None:
         return None if part is None else to(part)
 
-    export = replace(document.export, frames=moved(document.export.frames))
-    preview = moved(document.preview)
-    return replace(document, frames=frames, preview=preview, export=export, **changes)
+    export = replace(document.export, frames=mapped(document.export.frames))
+    return {"frames": to(document.frames), "preview": mapped(document.preview), "export": export}
 
 
 @command(_("Set preview range"))
@@ -102,27 +104,32 @@ def scale_time(document: Document, factor: float) -> Document:
     def scaled(frames: FrameRange) -> FrameRange:
         return FrameRange(scale(frames.first), scale(frames.last))
 
-    return _with_ranges(
-        document,
-        scaled(document.frames),
-        scaled,
-        layers=tuple(with_scaled_time(layer, scale) for layer in document.layers),
-        markers=scale.retimed(
-            document.markers, _("markers"), lambda marker, at: replace(marker, frame=at)
+    rows = {
+        channel: scale.scaled(keys_in(document, channel), describe_channel(document, channel))
+        for channel in channels_in(document)
+    }
+    changes = {layer.id: _scaled_fields(layer, scale, rows) for layer in document.layers}
+    return put_rows(document, rows, changes, **_mapped_ranges(document, scaled))
+
+
+def _scaled_fields(layer: Layer, scale: TimeScale, rows: KeyRows) -> dict[str, Any]:
+    """Return a layer's scaled fields; springs keep their frequencies in seconds."""
+    return {
+        "cycles": tuple(cycle.retimed(scale) for cycle in layer.cycles),
+        "motions": tuple(
+            motion.moved(scale)
+            for motion in layer.motions
+            if scale(motion.start) < scale(motion.last)
         ),
-        switch_groups=tuple(
+        "tracks": tuple(
             replace(
-                choice,
-                keys=scale.retimed(
-                    choice.keys,
-                    _("switch keys of {name!r}").format(name=choice.name),
-                    lambda turn, at: turn._replace(frame=at),
-                ),
+                track,
+                keys=rows[track_channel(layer.id, track)],
+                delay=nearest_frame(scale.factor * track.delay),
             )
-            for choice in document.switch_groups
+            for track in layer.tracks
         ),
-        camera=scale.paced(document.camera, _("camera keys")),
-    )
+    }
 
 
 @command(_("Add marker"))
@@ -137,17 +144,6 @@ def add_marker(document: Document, frame: int, name: str | None = None) -> Docum
 @command(_("Rename marker"))
 def rename_marker(document: Document, frame: int, name: str) -> Document:
     return _with_marker(document, frame, replace(document.marker(frame), name=name))
-
-
-@command(_("Move marker"))
-def move_marker(document: Document, frame: int, to: int) -> Document:
-    return _with_marker(document, frame, replace(document.marker(frame), frame=to))
-
-
-@command(_("Delete marker"))
-def delete_marker(document: Document, frame: int) -> Document:
-    gone = document.marker(frame)
-    return _with_markers(document, (marker for marker in document.markers if marker is not gone))
 
 
 def _with_marker(document: Document, frame: int, changed: Marker) -> Document:
@@ -186,15 +182,8 @@ def apply_motion(document: Document, moved: Layer, given: AppliedMotion) -> Docu
 def _moves(document: Document) -> bool:
     """Return whether any part of a document has motion."""
     has_time = bool(document.preview or document.markers or document.camera)
-    has_time |= any(choice.keys[1:] for choice in document.switch_groups)
+    has_time |= any(switch.keys[1:] for switch in document.switch_groups)
     return has_time or any(
-        each.keys[1:]
-        or each.tracks
-        or each.cycles
-        or each.visibility_keys
-        or each.transform_keys
-        or each.opacity_keys
-        or each.draw_order_keys
-        or each.attachments[1:]
+        each.keys[1:] or each.tracks or each.cycles or each.channels or each.attachments[1:]
         for each in document.layers
     )

@@ -2,26 +2,18 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 from typing import Self
 
-from app.document.checks import (
-    LAST_FRAME,
-    NOTHING,
-    Unknown,
-    require,
-    require_frame,
-    require_id,
-    require_point,
-)
-from app.document.timing.cycles import Cycle, count_changes_within
+from app.document.channels.cycles import Cycle, count_changes_within
+from app.document.channels.key import BaseKey
+from app.document.checks import LAST_FRAME, require, require_id, require_point
 from app.texts import N_, _
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Attachment:
+class Attachment(BaseKey):
     """A joint that attaches a layer to a parent from a frame on, or detaches it.
 
     The layer's anchor follows the point of the parent at every time. The in-betweens leave this
@@ -45,9 +37,9 @@ class Attachment:
     # Whether the layer blends to its placement under the next attachment, so that nothing jumps
     # there. Needs `keep_world_transform`.
     blends_to_next: bool = False
-    unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 
     def __post_init__(self) -> None:
+        BaseKey.__post_init__(self)
         if self.parent is not None:
             require_id(self.parent, _("A layer"))
         require_point(self.parent_point, _("A joint"))
@@ -57,7 +49,6 @@ class Attachment:
             N_("The rotation of a joint must be finite, not {rest_rotation}."),
             rest_rotation=self.rest_rotation,
         )
-        require_frame(self.frame, _("A joint"))
         require(
             self.kept_since is None or 0 <= self.kept_since <= self.frame,
             N_(
@@ -73,20 +64,18 @@ class Attachment:
         """The frame whose placement the attachment keeps."""
         return self.frame if self.kept_since is None else self.kept_since
 
-    def retimed(self, to: Callable[[int], int]) -> Self:
-        """Return the attachment with its frames mapped by a function."""
+    def retimed(self, frame: int, pace: float) -> Self:  # noqa: ARG002 - it has no velocity
+        """Return the attachment at another frame.
+
+        The frame whose placement is kept stays, but is no later than the attachment.
+        """
+        since = None if self.kept_since is None else min(self.kept_since, frame)
+        return replace(self, frame=frame, kept_since=since)
+
+    def mapped(self, to: Callable[[int], int], pace: float) -> Self:  # noqa: ARG002
+        """Return the attachment in a time that is mapped as a whole."""
         since = None if self.kept_since is None else to(self.kept_since)
         return replace(self, frame=to(self.frame), kept_since=since)
-
-
-def require_attachments(joints: tuple[Attachment, ...]) -> None:
-    for before, after in pairwise(joints):
-        require(
-            before.frame < after.frame,
-            N_("The attachment keys at frames {before} and {after} are out of order."),
-            before=before.frame,
-            after=after.frame,
-        )
 
 
 def attachments_repeat(joints: Sequence[Attachment], cycle: Cycle) -> bool:

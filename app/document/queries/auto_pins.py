@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.baseline import Baseline
+from app.document.channels.easing import HOLD
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
@@ -12,7 +13,6 @@ from app.document.queries.key_segments import clip_segments
 from app.document.queries.memo import memoized_on
 from app.document.queries.pose_tangents import adjacent_segments, pose_segments
 from app.document.settings import FrameRange
-from app.document.timing.easing import HOLD
 from engine.arrays import Booleans, Floats, freeze
 
 SAME_TARGET_DISTANCE = 0.5  # pixels between two targets that count as equal

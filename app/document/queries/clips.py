@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from operator import attrgetter
 
 from app.baseline import Baseline
+from app.document.channels.kinds import LAYER_KINDS
 from app.document.keyframe import Handle, Keyframe
 from app.document.layer import Layer
 from app.document.model import Document
@@ -13,21 +14,15 @@ from app.document.settings import FrameRange
 # Fields of a layer, and of its handles, that do not affect its motion. All other fields do.
 UNMOVING = {
     *("name", "next_handle", "library", "mirror", "motions", "unread_motions", "reference"),
-    *(
-        "locked",
-        "hidden",
-        "visibility_keys",
-        "opacity",
-        "opacity_keys",
-        "blend",
-        "clipped",
-        "group",
-    ),
-    *("draw_order_keys", "unknown"),
+    *("locked", "hidden", "opacity", "blend", "clipped", "group", "unread_channels", "unknown"),
 }
 UNMOVING_OF_HANDLES = {"name", "group", "unknown"}
 _of_layer = attrgetter(
-    *(each.name for each in fields(Layer) if each.name not in UNMOVING | {"handles", "stiffness"})
+    *(
+        each.name
+        for each in fields(Layer)
+        if each.name not in UNMOVING | {"handles", "stiffness", "channels"}
+    )
 )
 _of_handle = attrgetter(
     *(each.name for each in fields(Handle) if each.name not in UNMOVING_OF_HANDLES)
@@ -38,7 +33,8 @@ _of_handle = attrgetter(
 def motion_source(layer: Layer) -> tuple[object, ...]:
     """Return the fields that determine a layer's motion; equal values mean equal motion."""
     stiffness = None if layer.stiffness is None else layer.stiffness.tobytes()
-    return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness)
+    moving = tuple(each for each in layer.channels.items() if LAYER_KINDS[each[0][0]].moves_layer)
+    return (*_of_layer(layer), tuple(map(_of_handle, layer.handles)), stiffness, moving)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

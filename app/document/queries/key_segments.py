@@ -9,11 +9,11 @@ from bisect import bisect_left, bisect_right
 from itertools import pairwise
 from typing import NamedTuple
 
+from app.document.channels.cycles import Cycle
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.memo import memoized_on
 from app.document.settings import FrameRange
-from app.document.timing.cycles import Cycle
 
 
 class Segment(NamedTuple):

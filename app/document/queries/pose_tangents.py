@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.baseline import Baseline
+from app.document.channels.tangent_mode import TangentMode
 from app.document.keyframe import Keyframe
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
@@ -14,7 +15,6 @@ from app.document.queries.key_segments import ResolvedCycle, Segment, clip_segme
 from app.document.queries.memo import memoized_on
 from app.document.queries.tangents import KeyTangent, TangentSegment, stop_factor, tangents_at
 from app.document.settings import FrameRange
-from app.document.timing.tangent_mode import TangentMode
 from engine.interpolation import InteriorKnot, support_of
 
 # Pixels. Maps whose coefficients differ less are visually equal: the solver reproduces a pose only

@@ -6,10 +6,11 @@ Between two keys, a value is a cubic Hermite polynomial of the eased time.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
-from app.document.timing.easing import HOLD, Easing
-from app.document.timing.tangent_mode import TangentMode
+from app.document.channels.easing import HOLD
+from app.document.channels.key import BaseKey, KeyedProperty, Value
+from app.document.channels.tangent_mode import TangentMode
 from engine.interpolation import InteriorKnot
 
 # Tangent of a segment at a key: the knot of a smooth key, or the share of a straight blend's speed,
@@ -17,38 +18,7 @@ from engine.interpolation import InteriorKnot
 KeyTangent = InteriorKnot | float
 
 
-class KeyLike(Protocol):
-    """A key of any channel."""
-
-    @property
-    def frame(self) -> int:
-        """Frame of the key."""
-
-    @property
-    def easing(self) -> Easing:
-        """Easing of the segment to the next key."""
-
-    @property
-    def tangent_mode(self) -> TangentMode:
-        """Tangent mode; a hold is an easing."""
-
-
-Key = TypeVar("Key", bound=KeyLike)
-Value = TypeVar("Value", float, complex)
-
-
-@dataclass(frozen=True)  # no slots: Python 3.11 cannot combine them with Generic
-class KeyedProperty(Generic[Key, Value]):
-    """A value that is interpolated between keys."""
-
-    value_of: Callable[[Key], Value]
-    tolerance: float  # two keys closer than this are equal
-    # A key's own velocity per frame; None derives the velocity from the neighbouring keys.
-    velocity: Callable[[Key], Value | None] = lambda _: None
-
-    def is_same(self, one: Key, other: Key) -> bool:
-        """Return whether two keys have the same value."""
-        return abs(self.value_of(one) - self.value_of(other)) <= self.tolerance
+Keyed = TypeVar("Keyed", bound=BaseKey)
 
 
 class TangentSegment(NamedTuple):
@@ -60,14 +30,14 @@ class TangentSegment(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class KeySequence(Generic[Key]):
+class KeySequence(Generic[Keyed]):
     """Keys in order of time, and the motion beyond their ends."""
 
-    keys: tuple[Key, ...]
+    keys: tuple[Keyed, ...]
     # Length in frames from the last key to the first. 0 if the two are the same moment, None if the
     # motion does not wrap around.
     gap: int | None
-    is_same: Callable[[Key, Key], bool]  # whether two keys have the same value
+    is_same: Callable[[Keyed, Keyed], bool]  # whether two keys have the same value
     # Whether smooth first and last keys have zero velocity; otherwise the motion is straight there.
     starts_and_ends_at_rest: bool = False
 
@@ -101,11 +71,11 @@ class KeySequence(Generic[Key]):
 
 
 def tangents_at(
-    keys: Sequence[Key],
+    keys: Sequence[Keyed],
     index: int,
     before: TangentSegment | None,
     after: TangentSegment | None,
-    is_same: Callable[[Key, Key], bool],
+    is_same: Callable[[Keyed, Keyed], bool],
     *,
     is_end: bool = False,
 ) -> tuple[KeyTangent, KeyTangent]:
@@ -140,7 +110,7 @@ def tangents_at(
     )
 
 
-def _moving_segment(keys: Sequence[KeyLike], leg: TangentSegment | None) -> TangentSegment | None:
+def _moving_segment(keys: Sequence[BaseKey], leg: TangentSegment | None) -> TangentSegment | None:
     """Return the segment unless it is a hold."""
     return None if leg is None or keys[leg.first].easing == HOLD else leg
 
@@ -151,7 +121,10 @@ def stop_factor(pace: float) -> float:
 
 
 def sample_segment(
-    sequence: KeySequence[Key], leg: TangentSegment, time: float, moved: KeyedProperty[Key, Value]
+    sequence: KeySequence[Keyed],
+    leg: TangentSegment,
+    time: float,
+    moved: KeyedProperty[Keyed, Value],
 ) -> Value:
     """Return the value at a share of a segment, 0 to 1; exact at both keys.
 
@@ -170,7 +143,7 @@ def sample_segment(
 
 
 def segment_slopes(
-    sequence: KeySequence[Key], leg: TangentSegment, moved: KeyedProperty[Key, Value]
+    sequence: KeySequence[Keyed], leg: TangentSegment, moved: KeyedProperty[Keyed, Value]
 ) -> tuple[Value, Value]:
     """Return the slopes over the eased time at both ends of a segment."""
     change = moved.value_of(sequence.keys[leg.last]) - moved.value_of(sequence.keys[leg.first])
@@ -181,9 +154,9 @@ def segment_slopes(
 
 
 def _slope(
-    sequence: KeySequence[Key],
+    sequence: KeySequence[Keyed],
     index: int,
-    moved: KeyedProperty[Key, Value],
+    moved: KeyedProperty[Keyed, Value],
     change: Value,
     *,
     side: int,
@@ -210,7 +183,7 @@ def _slope(
 
 
 def _own_velocity(
-    sequence: KeySequence[Key], index: int, moved: KeyedProperty[Key, Value]
+    sequence: KeySequence[Keyed], index: int, moved: KeyedProperty[Keyed, Value]
 ) -> tuple[Value | None, tuple[float, float]]:
     """Return a key's own velocity, and the lengths in frames of a linear blend at its speeds.
 

@@ -1,18 +1,21 @@
 """Position between keys at a frame, changed frames, and frames of an export."""
 
-from collections.abc import Iterable
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple
 
+from app.document.channels.key import BaseKey
+from app.document.channels.kind import Channel
+from app.document.channels.kinds import TRANSFORM
 from app.document.keyframe import Pose
 from app.document.layer import Layer
 from app.document.model import Document
+from app.document.queries.channel_values.channel_keys import channels_in, channels_of, keys_in
+from app.document.queries.channel_values.tracks_at import track_at
+from app.document.queries.channel_values.values_at import camera_at, transform_at, value_at
 from app.document.queries.clips import Clip, clip_of
 from app.document.queries.key_segments import clip_segments, segment_at_frame
-from app.document.queries.layers.layer_state import camera_at, opacity_at, transform_at
 from app.document.queries.pose_tangents import pose_segments
-from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange, require_fps
 from app.errors import LissomError
 from app.texts import _
@@ -30,19 +33,6 @@ class SegmentTime(NamedTuple):
     # Time within the segment's in-betweens, from 0 at the first key to 1 at the second. If only
     # these two keys are blended, the time is the weight of the second.
     weight: float
-
-
-class _HasFrame(Protocol):
-    @property
-    def frame(self) -> int: ...
-
-
-class _Key(NamedTuple):
-    """A key with the id or name of its owner."""
-
-    whose: int | str
-    frame: int
-    key: object
 
 
 def segment_time_at(clip: Clip, frame: float) -> SegmentTime:
@@ -84,27 +74,22 @@ def changed_ranges(before: Document, after: Document) -> list[FrameRange]:
             stretches += [FrameRange(each.first, each.until or each.last) for each in changed]
             frames = {after.frames.clamp(frame) for frame in _changed_in_tracks(other, layer)}
             stretches += [FrameRange(frame, frame) for frame in sorted(frames)]
-    frames = {key.frame for key in _keys_beside(before) ^ _keys_beside(after)}
+    old, new = _keys_by_channel(before), _keys_by_channel(after)
+    frames = {
+        key.frame
+        for channel in old | new
+        for key in {*old.get(channel, ())} ^ {*new.get(channel, ())}
+    }
     return stretches + [FrameRange(frame, frame) for frame in sorted(frames)]
 
 
-def _keys_beside(document: Document) -> set[_Key]:
-    """Return all keys and markers except pose and track keys, with their owners."""
-    rows: list[tuple[int | str, Iterable[_HasFrame]]] = [
-        ("markers", document.markers),
-        ("camera", document.camera),
-        *((choice.name, choice.keys) for choice in document.switch_groups),
-    ]
-    for layer in document.layers:
-        moved = (
-            layer.transform_keys,
-            layer.opacity_keys,
-            layer.draw_order_keys,
-            layer.visibility_keys,
-            layer.attachments,
-        )
-        rows += [(layer.id, row) for row in moved]
-    return {_Key(whose, key.frame, key) for whose, row in rows for key in row}
+def _keys_by_channel(document: Document) -> dict[Channel[Any], tuple[BaseKey, ...]]:
+    """Return the keys of all channels except poses and tracks."""
+    return {
+        channel: keys_in(document, channel)
+        for channel in channels_in(document)
+        if not channel.kind.is_blended
+    }
 
 
 def _changed_keys(before: Layer, after: Layer) -> list[FrameRange]:
@@ -170,7 +155,7 @@ def _is_same(document: Document, first: int, second: int) -> bool:
 
 
 def _moves_alike(document: Document, first: int, second: int) -> bool:
-    """Return whether the camera and the transforms and opacities of all layers are equal."""
+    """Return whether the camera and all interpolated channels of all layers are equal."""
     shots = [camera_at(document, frame) for frame in (first, second)]
     pairs: list[list[RigidMotion | Similarity]] = [
         [shot.canvas_motion(document.canvas) for shot in shots if shot is not None]
@@ -184,8 +169,10 @@ def _moves_alike(document: Document, first: int, second: int) -> bool:
         abs(one.factor - other.factor) <= SAME_FACTOR and abs(one.shift - other.shift) <= SAME_PLACE
         for one, other in filter(None, pairs)
     ) and all(
-        opacity_at(document, each, first) == opacity_at(document, each, second)
-        for each in document.layers
+        value_at(document, channel, first) == value_at(document, channel, second)
+        for layer in document.layers
+        for channel in channels_of(layer)
+        if channel.kind.components and channel.kind is not TRANSFORM
     )
 
 

@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from types import MappingProxyType
 from typing import Self
 
-from app.document.checks import LAST_FRAME, NOTHING, Unknown, require
+from app.document.checks import LAST_FRAME, NOTHING, Unknown, require, require_distinct
 from app.rigging import Parameters, find_kind, find_motion
 from app.texts import N_
 
@@ -21,6 +20,7 @@ class AppliedMotion:
     still as the preset made them.
     """
 
+    id: int = 0  # unique in the layer; keys of the motion refer to it
     motion: str  # name of an entry of `app.rigging.MOTIONS`
     kind: str  # name of one of its `KINDS`
     joints: Mapping[str, int]  # joint name to handle id
@@ -84,17 +84,8 @@ class UnreadMotion:
 
 
 def require_motions(motions: Sequence[AppliedMotion], handles: Collection[int]) -> None:
-    """Refuse motions that overlap, or whose joints are not among the handles."""
-    for before, after in pairwise(motions):
-        require(
-            before.last <= after.first,
-            N_(
-                "The motion from frame {first} on starts before the motion from frame "
-                "{before_first} on ends."
-            ),
-            first=after.first,
-            before_first=before.first,
-        )
+    """Refuse motions with the same id, or whose joints are not among the handles."""
+    require_distinct((each.id for each in motions), N_("Two motions have the id {value!r}."))
     for motion in motions:
         for joint, identity in motion.joints.items():
             require(

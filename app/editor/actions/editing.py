@@ -2,17 +2,21 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Concatenate, NamedTuple, ParamSpec
+from typing import Concatenate, ParamSpec
 
 from app.document import (
+    POSE,
     Command,
     Document,
     FrameRange,
+    KeysByChannel,
     PreviewPose,
+    all_keys,
     changed_ranges,
+    channel_commands,
     clip_of,
-    key_commands,
-    track_commands,
+    frames_in,
+    pose_channel,
 )
 from app.editor import pending_changes
 from app.editor.actions import playback
@@ -22,7 +26,6 @@ from app.editor.actions.posing.pose_commit import commit_targets
 from app.editor.actions.posing.pose_drag import cancel_drag, revert_drag
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import KeyRow, KeysByRow, TrackRow, frames_in, layer_of
 from app.editor.work.layer_runtime import LayerRuntime
 from app.storage import decode_picture
 from app.texts import N_, _
@@ -30,24 +33,8 @@ from app.texts import N_, _
 Arguments = ParamSpec("Arguments")
 
 
-class KeyVerb(NamedTuple):
-    """An edit of keys: its commands for pose keys and for track keys.
-
-    Without a command for tracks, track keys stay unchanged.
-    """
-
-    to_poses: Callable[..., Command]
-    to_tracks: Callable[..., Command] | None = None
-
-    def at(self, row: KeyRow, frames: frozenset[int], *args: object) -> Command | None:
-        if not isinstance(row, TrackRow):
-            return self.to_poses(row, frames, *args)
-        return None if self.to_tracks is None else self.to_tracks(*row, frames, *args)
-
-
 FIRST_KEY_STAYS = N_("The first key of {layers} was not deleted. A layer needs at least one key.")
 UNDONE, REDONE = _("Undone: {step}"), _("Redone: {step}")
-DELETE = KeyVerb(key_commands.delete_keys, track_commands.delete_track_keys)
 
 
 @with_project
@@ -171,11 +158,9 @@ def select_handles(_: Session, project: Project, handles: frozenset[int]) -> Non
 
 @with_project
 def select_all(session: Session, project: Project) -> None:
-    """Select every handle or, in the timeline, the keys in all rows of selected layers."""
+    """Select every handle or, in the timeline, the keys of all channels."""
     if session.is_timeline_focused:
-        document = project.document
-        posed = [row for row in project.rows if not document.layer(layer_of(row)).still]
-        select_keys_in_rows(session, {row: frames_in(document, row) for row in posed})
+        select_channel_keys(session, movable_keys(project.document))
     else:
         select_handles(session, frozenset(handle.id for handle in project.layer.handles))
 
@@ -194,32 +179,30 @@ def deselect_keys(_: Session, project: Project) -> None:
 @with_project
 def select_keys(session: Session, project: Project, frames: frozenset[int]) -> None:
     """Select the keys at these frames where they exist, and no handles."""
-    select_keys_in_rows(session, {project.active: frames})
+    select_channel_keys(session, {pose_channel(project.active): frames})
 
 
 @with_project
-def select_keys_in_rows(_: Session, project: Project, chosen_of: KeysByRow) -> None:
-    """Select keys of several rows where they exist, and no handles."""
-    project.selected_handles, project.selected_keys = frozenset(), chosen_of
+def select_channel_keys(_: Session, project: Project, keys: KeysByChannel) -> None:
+    """Select keys of several channels where they exist, and no handles."""
+    project.selected_handles, project.selected_keys = frozenset(), keys
     _forget_what_is_gone(project)
 
 
-def change_keys(verb: KeyVerb, chosen_of: KeysByRow, *args: object) -> Command:
-    """Return one command that changes keys of several rows."""
-    changes = (verb.at(row, frames, *args) for row, frames in chosen_of.items())
-    commands = [change for change in changes if change is not None]
-
-    def all_of_them(document: Document) -> Document:
-        for command in commands:
-            document = command(document)
-        return document
-
-    return Command(commands[0].label, all_of_them)
+def movable_keys(document: Document) -> KeysByChannel:
+    """Return all keys but the poses of still pictures."""
+    return {
+        channel: frames
+        for channel, frames in all_keys(document).items()
+        if channel.kind is not POSE
+        or channel.layer is None
+        or not document.layer(channel.layer).still
+    }
 
 
 @with_project
 def delete_selection(session: Session, project: Project) -> None:
-    """Delete the selected keys or, in the timeline, the selected track, or the selected handles.
+    """Delete the selected keys or, in the timeline, the selected channel, or selected handles.
 
     While a motion is drafted, leave out the joint that was touched last.
     """
@@ -227,21 +210,24 @@ def delete_selection(session: Session, project: Project) -> None:
         joint_placement.exclude_joint(session, project.motion_setup.selected_joint)
     elif project.selected_keys:
         _delete_keys(session, project)
-    elif session.is_timeline_focused and project.selected_track is not None:
-        edit_layer(session, track_commands.remove_tracks, (project.selected_track,))
+    elif session.is_timeline_focused and project.channel.kind is not POSE:
+        channel = project.channel
+        keys = {channel: frames_in(project.document, channel)}
+        edit_document(session, channel_commands.delete_keys(keys))
     elif project.selected_handles:
         remove_handles(session, project.selected_handles)
 
 
 def _delete_keys(session: Session, project: Project) -> None:
     """Delete the selected keys; a layer whose keys are all selected keeps its first key."""
-    chosen_of, keeping = dict(project.selected_keys), list[str]()
-    for row, chosen in project.selected_keys.items():
-        if not isinstance(row, TrackRow) and chosen >= frames_in(project.document, row):
-            chosen_of[row] = chosen - {min(chosen)}
-            keeping.append(repr(project.document.layer(row).name))
-    left = {row: frames for row, frames in chosen_of.items() if frames}
-    edit_document(session, change_keys(DELETE, left or project.selected_keys))
+    keys, keeping = dict(project.selected_keys), list[str]()
+    for channel, chosen in project.selected_keys.items():
+        is_pose = channel.kind is POSE and channel.layer is not None
+        if is_pose and chosen >= frames_in(project.document, channel):
+            keys[channel] = chosen - {min(chosen)}
+            keeping.append(repr(project.document.layer(channel.layer or 0).name))
+    left = {channel: frames for channel, frames in keys.items() if frames}
+    edit_document(session, channel_commands.delete_keys(left or project.selected_keys))
     if keeping:
         session.show_notice(_(FIRST_KEY_STAYS).format(layers=", ".join(keeping)))
 
@@ -280,8 +266,10 @@ def _forget_what_is_gone(project: Project) -> None:
     project.other_selected_layers &= project.layer_runtimes.keys()
     project.solo &= project.layer_runtimes.keys()
     project.selected_handles &= {handle.id for handle in project.layer.handles}
-    chosen = {row: at & frames_in(document, row) for row, at in project.selected_keys.items()}
-    project.selected_keys = {row: frames for row, frames in chosen.items() if frames}
+    chosen = {
+        channel: at & frames_in(document, channel) for channel, at in project.selected_keys.items()
+    }
+    project.selected_keys = {channel: frames for channel, frames in chosen.items() if frames}
     if project.playhead.frame not in document.frames:
         frame = document.frames.clamp(project.playhead.frame)
         project.playhead = replace(project.playhead, frame=frame)

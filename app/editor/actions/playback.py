@@ -2,9 +2,9 @@
 
 from bisect import bisect_left
 
+from app.document import display_frame, frames_in
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import display_frame, frames_in
 
 SPEEDS = (0.25, 0.5, 1.0, 2.0)
 
@@ -67,11 +67,11 @@ def keyed_frames(project: Project) -> list[int]:
 
 
 def _keyed_frames(project: Project) -> tuple[int, ...]:
-    document, row, keyed = project.document, project.row, project.timeline.keyed_frames
-    if not keyed.follows((document, row)):
-        track = project.track_in(row)
-        frames = sorted(display_frame(document, track, frame) for frame in frames_in(document, row))
-        keyed.set((document, row), tuple(frames))
+    document, channel, keyed = project.document, project.channel, project.timeline.keyed_frames
+    if not keyed.follows((document, channel)):
+        keys = frames_in(document, channel)
+        frames = sorted(display_frame(document, channel, frame) for frame in keys)
+        keyed.set((document, channel), tuple(frames))
     return keyed.value
 
 

@@ -8,7 +8,15 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from app.document import Document, FrameRange, Layer, handle_commands, key_commands, scene_commands
+from app.document import (
+    Document,
+    FrameRange,
+    Layer,
+    channel_commands,
+    handle_commands,
+    pose_channel,
+    scene_commands,
+)
 from app.editor.action import do
 from app.editor.actions.project_files import files, saving
 from app.editor.actions.project_files.saving import PROJECT
@@ -111,7 +119,9 @@ def _at_rest(document: Document) -> Document:
     layer = document.layers[0]
     free = [handle.id for handle in layer.handles if not handle.name.endswith(HELD)]
     for command in (
-        key_commands.delete_keys(layer.id, [key.frame for key in layer.keys[1:]]),
+        channel_commands.delete_keys(
+            {pose_channel(layer.id): frozenset(key.frame for key in layer.keys[1:])}
+        ),
         handle_commands.remove_handles(layer.id, free),
         scene_commands.set_frames(FrameRange(0, LAST)),
         scene_commands.set_export(replace(document.export.in_format(FORMAT), size=SIZE)),

@@ -232,13 +232,6 @@ def toggle_visibility_key(session: Session, project: Project, identity: int) -> 
 
 
 @with_project
-def delete_visibility_key(session: Session, project: Project, identity: int) -> None:
-    """Delete a layer's visibility key at the present frame."""
-    frame = playback.current_frame(session, project)
-    editing.edit_document(session, layer_commands.key_visibility(identity, frame, visible=None))
-
-
-@with_project
 def note_listed_layer(_: Session, project: Project) -> None:
     """Note that the list of layers has scrolled to the active layer."""
     project.last_listed_layer = project.active

@@ -3,9 +3,12 @@
 from collections.abc import Callable, Collection, Sequence
 
 from app.document import (
+    PARENT,
     Attachment,
+    Channel,
     Command,
     Document,
+    channel_commands,
     combine_commands,
     layer_commands,
     transform_at,
@@ -185,7 +188,8 @@ def reparent_layer(session: Session, project: Project, child: int, parent: int |
 @with_project
 def delete_parent_key(session: Session, _: Project, child: int, frame: int) -> None:
     """Delete a parent key; the previous parent holds on."""
-    editing.edit_document(session, layer_commands.delete_attachment_key(child, frame))
+    keys = {Channel(PARENT, child): frozenset({frame})}
+    editing.edit_document(session, channel_commands.delete_keys(keys))
 
 
 @with_project

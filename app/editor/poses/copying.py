@@ -3,14 +3,25 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from app.document import Clip, Keyframe, Layer, Pose, clip_of, keyed_pose_at, segment_time_at
+from app.document import (
+    POSE,
+    BaseKey,
+    Clip,
+    Keyframe,
+    Layer,
+    Pose,
+    clip_of,
+    keyed_pose_at,
+    keys_in,
+    segment_time_at,
+    track_in,
+)
 from app.editor import pending_changes
 from app.editor.actions import playback
 from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.editor.poses import pose_insertion
 from app.editor.project import Project
-from app.editor.session import CopiedKeys, CopiedTrack, Session, with_project
-from app.editor.timeline_view import TrackRow, layer_of
+from app.editor.session import CopiedChannel, CopiedKeys, CopiedTrack, Session, with_project
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler
 from app.solving import Rig, fit_shown_pose
@@ -68,7 +79,7 @@ def _copy_poses(session: Session, project: Project, chosen: Sequence[int]) -> No
         poses = {**known, **found}
         keys = [(each, Keyframe(frame=frame, pose=poses[each.id])) for each in layers]
         session.copied = tuple(CopiedKeys(layer, (key,), is_pose=True) for layer, key in keys)
-        session.copied_tracks = ()
+        session.copied_tracks = session.copied_channels = ()
         text = ngettext(
             "Pose of {count} layer at frame {frame} copied.",
             "Poses of {count} layers at frame {frame} copied.",
@@ -94,15 +105,19 @@ def is_copying_keys(session: Session, project: Project) -> bool:
 @with_project
 def copy_keys(session: Session, project: Project) -> None:
     """Copy the selected keys; unfinished drags update the copies as well."""
-    keys, tracks = [], []
-    for row, at in project.selected_keys.items():
-        layer, track = project.document.layer(layer_of(row)), project.track_in(row)
-        if isinstance(row, TrackRow) and track is not None:
-            taken = tuple(key for key in track.keys if key.frame in at)
-            tracks.append(CopiedTrack(layer, track, taken))
-        else:
+    document, keys, tracks, others = project.document, [], [], []
+    for channel, at in project.selected_keys.items():
+        layer = None if channel.layer is None else document.layer(channel.layer)
+        track, row = track_in(document, channel), keys_in(document, channel)
+        taken = tuple(key for key in row if key.frame in at)
+        if layer is not None and track is not None:
+            own = tuple(key for key in track.keys if key.frame in at)
+            tracks.append(CopiedTrack(layer, track, own))
+        elif layer is not None and channel.kind is POSE:
             keys.append(CopiedKeys(layer, tuple(map(layer.key, sorted(at)))))
-    _take(session, keys, tracks)
+        else:
+            others.append(CopiedChannel(layer, channel, taken))
+    _take(session, keys, tracks, others)
 
 
 def _between(rig: Callable[[], Rig], clip: Clip, frame: int, sibling: PoseSampler | None) -> Pose:
@@ -114,16 +129,22 @@ def _copy(session: Session, frame: int, layer: Layer, pose: Pose) -> None:
 
 
 def _take(
-    session: Session, copied: Sequence[CopiedKeys], tracks: Sequence[CopiedTrack] = ()
+    session: Session,
+    copied: Sequence[CopiedKeys],
+    tracks: Sequence[CopiedTrack] = (),
+    others: Sequence[CopiedChannel] = (),
 ) -> None:
     session.copied, session.copied_tracks = tuple(copied), tuple(tracks)
+    session.copied_channels = tuple(others)
     poses = [key.frame for each in copied for key in each.keys]
-    first, *more = poses + [key.frame for each in tracks for key in each.keys]
+    rows: list[Sequence[BaseKey]] = [each.keys for each in tracks]
+    rows += [each.keys for each in others]
+    first, *more = poses + [key.frame for row in rows for key in row]
     if more:
         count = 1 + len(more)
         text = ngettext("{count} key copied.", KEYS_COPIED, count).format(count=count)
     elif poses:
         text = _("Pose at frame {frame} copied.").format(frame=first)
     else:
-        text = _("Key of the track at frame {frame} copied.").format(frame=first)
+        text = _("Key at frame {frame} copied.").format(frame=first)
     session.show_notice(text, topic="copy")

@@ -176,7 +176,7 @@ def _find_paste_destinations(
     found: dict[int, PasteDestination] = {}
     document, copied = project.document, _copied(session)
     for each in copied:
-        for layer in _receiving_layers(project, each.layer, way, is_alone=len(copied) == 1):
+        for layer in find_receiving_layers(project, each.layer, way, is_alone=len(copied) == 1):
             found.setdefault(layer.id, find_paste_destination(document, each, layer, way))
     return list(found.values())
 
@@ -184,12 +184,13 @@ def _find_paste_destinations(
 def _copied(session: Session) -> list[CopiedKeys]:
     """Return the copied keys of each layer; none if only track keys were copied."""
     copied = {each.layer.id: each for each in session.copied}
-    for each in session.copied_tracks:
-        copied.setdefault(each.layer.id, CopiedKeys(each.layer, ()))
+    others = [each.layer for each in session.copied_tracks]
+    for layer in filter(None, [*others, *(each.layer for each in session.copied_channels)]):
+        copied.setdefault(layer.id, CopiedKeys(layer, ()))
     return list(copied.values())
 
 
-def _receiving_layers(
+def find_receiving_layers(
     project: Project, source: Layer, way: PasteMode, *, is_alone: bool
 ) -> Iterator[Layer]:
     """Yield the layers that take the copied keys of a layer."""

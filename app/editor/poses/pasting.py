@@ -5,12 +5,12 @@ from dataclasses import replace
 
 from app.document import (
     Keyframe,
-    Pose,
     Target,
     clip_of,
-    mirrored_handles_by_name,
     parse_pairs,
+    pose_channel,
     scene_commands,
+    track_display_frame,
 )
 from app.editor import pending_changes
 from app.editor.action import do
@@ -25,10 +25,10 @@ from app.editor.poses.paste_destinations import (
     paste_keys_disabled_reason,
     skipped_layers_reasons,
 )
+from app.editor.poses.pasting_keys import paste_keys, pasteable_keys
 from app.editor.poses.pasting_tracks import paste_track, pasteable_tracks
 from app.editor.project import LastFlip, Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import display_frame
 from app.editor.work.jobs import JobKind
 from app.solving import Rig, fit_shown_pose, flip_poses, flip_targets
 from app.texts import _, ngettext
@@ -39,13 +39,16 @@ LABELS: Mapping[PasteMode, str] = {
 }
 PASTING = JobKind(_("Pasting"), _("The poses could not be pasted"), "hand")
 FLIPPING = JobKind(_("Flipping"), _("The pose could not be flipped"), "hand")
+NO_PLACE = _("The copied keys fit no channel here. Paste them as they are.")
 NOT_PASTED = _("The pose was not pasted: a layer, its shape or its handles changed. Paste again.")
 
 
 def paste_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
     """Return why nothing copied can be pasted, as a sentence; empty if it can."""
-    tracks = pasteable_tracks(session, project, way)
-    return "" if tracks else paste_keys_disabled_reason(session, project, way)
+    if pasteable_tracks(session, project, way) or pasteable_keys(session, project, way):
+        return ""
+    reason = paste_keys_disabled_reason(session, project, way)
+    return reason or ("" if session.copied else NO_PLACE)
 
 
 def paste_on_selected_disabled_reason(session: Session, project: Project, way: PasteMode) -> str:
@@ -71,18 +74,25 @@ def paste_copied(session: Session, project: Project, way: PasteMode = "as it is"
 def _paste(session: Session, project: Project, frame: int, way: PasteMode) -> None:
     if paste_disabled_reason(session, project, way):
         return
-    tracks = pasteable_tracks(session, project, way)
+    tracks, others = (
+        pasteable_tracks(session, project, way),
+        pasteable_keys(session, project, way),
+    )
     found = [each for each in find_paste_destinations(session, project, way) if each.copied.keys]
     starts = [key.frame for each in found for key in each.copied.keys]
     starts += [
-        display_frame(project.document, c.track, k.frame) for c in tracks.values() for k in c.keys
+        track_display_frame(project.document, each.track, key.frame)
+        for each in tracks.values()
+        for key in each.keys
     ]
+    starts += [key.frame for keys in others.values() for key in keys]
     by, gesture = frame - min(starts), object()
     reasons = skipped_layers_reasons(session, project, way)
 
     def then() -> None:
         for row, each in tracks.items():
             paste_track(session, project, row, each, by, gesture)
+        paste_keys(session, project, others, by, gesture)
         for reason in reasons:
             session.show_notice(reason)
         names = [each.layer.name for each in found]
@@ -219,19 +229,14 @@ def _solving(
         def flip() -> Sequence[Keyframe]:
             rig = Rig.of(layer, earlier)
             poses = flip_poses(rig, [key.pose for key in keys], layer.axis, pairs)
-            partners = mirrored_handles_by_name(layer.handles, pairs)
-            own = {handle.id: partners.get(handle.id, handle.id) for handle in layer.handles}
             return [
-                _carried(key, own, turns=-1, pose=pose)
+                replace(key, pose=pose, revolutions=-key.revolutions)
                 for key, pose in zip(keys, poses, strict=True)
             ]
 
         return flip
     carriage, clip = landing.pose_transfer(way), clip_of(project.document, layer.id)
     turns = -1 if carriage.similarity.mirrors else 1
-    # Depth belongs to the handle and is not swapped with the pose within one layer.
-    fronts = {handle.id: handle.id for handle in layer.handles}
-    fronts = fronts if landing.is_own else dict(landing.pairs)
 
     def carry() -> Sequence[Keyframe]:
         rig = Rig.of(layer, earlier)
@@ -240,16 +245,10 @@ def _solving(
         for key in landing.copied.keys:
             present = None if is_whole else fit_shown_pose(rig, clip, key.frame + by, sibling)
             pose = carriage.transfer_pose(rig, key.pose, present)
-            solved.append(_carried(key, fronts, turns=turns, pose=pose))
+            solved.append(replace(key, pose=pose, revolutions=turns * key.revolutions))
         return solved
 
     return carry
-
-
-def _carried(key: Keyframe, fronts: Mapping[int, int], *, turns: int, pose: Pose) -> Keyframe:
-    """Return a key with another pose, and its depth points moved to other handles."""
-    known = {i: key.depths[other] for i, other in fronts.items() if other in key.depths}
-    return replace(key, pose=pose, revolutions=turns * key.revolutions, depths=known)
 
 
 def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Keyframe]) -> None:
@@ -258,6 +257,6 @@ def _note_flip(project: Project, landing: PasteDestination, flipped: Sequence[Ke
     project.last_flip = LastFlip(
         layer=layer,
         keys=tuple(_fitted(project, landing)),
-        frames=project.selected_keys.get(layer, frozenset()),
+        frames=project.selected_keys.get(pose_channel(layer), frozenset()),
         poses=tuple(key.pose for key in flipped),
     )

@@ -3,24 +3,27 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from app.document import track_commands
+from app.document import (
+    channel_commands,
+    track_channel,
+    track_commands,
+)
 from app.editor.poses.paste_destinations import PasteDestination, PasteMode, find_paste_destinations
 from app.editor.project import Project
 from app.editor.session import CopiedTrack, Session
-from app.editor.timeline_view import TrackRow
 from app.texts import _
 
 
 def pasteable_tracks(
     session: Session, project: Project, way: PasteMode
-) -> Mapping[TrackRow, CopiedTrack]:
-    """Return the copied keys of each track, by the row on which they can be pasted.
+) -> Mapping[tuple[int, int], CopiedTrack]:
+    """Return the copied keys of each track, by the layer and the handle that can take them.
 
     Keys of a single track go to the selected track. Otherwise they go with the poses, by names.
     """
     copied, chosen = session.copied_tracks, project.selected_track
     if way == "as it is" and len(copied) == 1 and chosen is not None:
-        return {TrackRow(project.active, chosen): copied[0]}
+        return {(project.active, chosen): copied[0]}
     carried = {}
     for landing in find_paste_destinations(session, project, way):
         ours = {other: identity for identity, other in landing.pairs.items()}
@@ -28,7 +31,7 @@ def pasteable_tracks(
             handles = tuple(ours[each_id] for each_id in each.track.handles if each_id in ours)
             if each.layer.id == landing.copied.layer.id and each.track.handles[0] in ours:
                 track = _transferred_track(landing, each, way, handles)
-                carried[TrackRow(landing.layer.id, handles[0])] = track
+                carried[landing.layer.id, handles[0]] = track
     return carried
 
 
@@ -62,11 +65,17 @@ def _transferred_track(
 
 
 def paste_track(
-    session: Session, project: Project, row: TrackRow, copied: CopiedTrack, by: int, gesture: object
+    session: Session,
+    project: Project,
+    onto: tuple[int, int],
+    copied: CopiedTrack,
+    by: int,
+    gesture: object,
 ) -> None:
-    """Paste track keys on a row, `by` frames later, and select them."""
-    layer = project.document.layer(row.layer)
-    track, name = layer.track_of(row.handle), layer.handle(row.handle).name
+    """Paste track keys on a layer's handle, `by` frames later, and select them."""
+    identity, handle = onto
+    layer = project.document.layer(identity)
+    track, name = layer.track_of(handle), layer.handle(handle).name
     if track is not None and track.is_scene_space != copied.track.is_scene_space:
         if copied.track.is_scene_space:
             text = _(
@@ -89,14 +98,14 @@ def paste_track(
         session.show_notice(text.format(handle=name))
         return
     if track is None:
-        handles = copied.track.handles if copied.track.handles[0] == row.handle else (row.handle,)
+        handles = copied.track.handles if copied.track.handles[0] == handle else (handle,)
         track = replace(copied.track, handles=handles, keys=keys)
-        command = track_commands.put_track(row.layer, track)
+        command = track_commands.put_track(identity, track)
     else:
-        command = track_commands.put_track_keys(*row, keys)
+        command = channel_commands.insert_keys({track_channel(identity, track): keys})
     project.history.do(command, gesture=gesture)
     frames = frozenset(key.frame for key in keys)
     project.selected_handles, project.selected_keys = (
         frozenset(),
-        {**project.selected_keys, row: frames},
+        {**project.selected_keys, track_channel(identity, track): frames},
     )

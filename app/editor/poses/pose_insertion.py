@@ -3,14 +3,23 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
-from app.document import Keyframe, Layer, Pose, key_commands, with_all_targets
+from app.document import (
+    Channel,
+    Keyframe,
+    Layer,
+    Pose,
+    channel_commands,
+    key_commands,
+    pose_channel,
+    with_all_targets,
+)
 from app.editor.actions import playback
 from app.editor.actions.posing.inserting import solve_nearest_pose
 from app.editor.actions.posing.pose_drag import pose_at_playhead
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.timeline_view import KeyRow
 from app.editor.work.jobs import JobKind
 from app.solving import Rig
 from engine.maps import Bounds, certify
@@ -45,22 +54,22 @@ def insert_poses(
     """
     gesture = gesture or object()
     first = min(key.frame for keys in keys_of.values() for key in keys)
-    chosen_of: dict[KeyRow, frozenset[int]] = {}
+    chosen_of: dict[Channel[Any], frozenset[int]] = {}
     is_alone = sum(map(len, keys_of.values())) == 1
     for layer, keys in keys_of.items():
         is_pose = is_alone or layer in poses
         # A single pose changes all repeats; several keys cannot be inserted into repeats.
         at = project.document.layer(layer).source_of(frame) if is_pose else frame
-        moved = [replace(key, frame=key.frame + at - first) for key in keys]
+        moved = [key.copied(key.frame + at - first) for key in keys]
         if is_pose:
             easing = session.preferences.easing
             command = key_commands.insert_pose(layer, at, moved[0].pose, easing)
         else:
-            command = key_commands.insert_keys(layer, moved)
+            command = channel_commands.insert_keys({pose_channel(layer): moved})
         project.history.do(replace(command, label=label or command.label), gesture=gesture)
-        chosen_of[layer] = frozenset(key.frame for key in moved)
+        chosen_of[pose_channel(layer)] = frozenset(key.frame for key in moved)
     unkeyed = project.history.preview_pose
-    if unkeyed is not None and unkeyed.frame in chosen_of.get(unkeyed.layer, ()):
+    if unkeyed is not None and unkeyed.frame in chosen_of.get(pose_channel(unkeyed.layer), ()):
         project.history.set_preview_pose(None, gesture=gesture)
     project.selected_handles, project.selected_keys = frozenset(), chosen_of
 
@@ -80,15 +89,7 @@ def fit_keys_to_layer(
     its limits at that time.
     """
     layer = project.document.layer(identity)
-    known = {handle.id for handle in layer.handles}
-    return [
-        replace(
-            key,
-            pose=_fitted(project, layer, key.pose, bounds),
-            depths={i: front for i, front in key.depths.items() if i in known},
-        )
-        for key in keys
-    ]
+    return [replace(key, pose=_fitted(project, layer, key.pose, bounds)) for key in keys]
 
 
 def _fitted(project: Project, layer: Layer, pose: Pose, bounds: Bounds) -> Pose:

@@ -6,10 +6,10 @@ from typing import Self
 
 import numpy as np
 
+from app.document import KeysByChannel
 from app.editor.actions import editing
 from app.editor.project import Project
 from app.editor.session import CLICK, Hint, Mark, Session
-from app.editor.timeline_view import KeysByRow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ class SelectionSnapshot:
     """The selection when a gesture began."""
 
     handles: frozenset[int]
-    keys: KeysByRow
+    keys: KeysByChannel
 
 
 @dataclass(slots=True, kw_only=True, eq=False)

@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 
-from app.document import Attachment, Document, Layer, Pose, clip_of
+from app.document import TRANSFORM, Attachment, Document, Layer, Pose, clip_of
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.pose_sampler import PoseSampler
 from app.motion.inbetweens.spring_offsets import ParentMotion
@@ -224,7 +224,7 @@ def find_parent_motion(
 ) -> ParentMotion | None:
     """Return the function from frame to the layer's transform; None if it never moves."""
     own = document.layer(layer)
-    if not (own.has_parent or own.transform_keys):
+    if not (own.has_parent or own.keys_of(TRANSFORM)):
         return None
     return partial(ParentTransforms(document, siblings).parent_transform, layer)
 

@@ -10,7 +10,7 @@ from app.document import (
     Keyframe,
     Layer,
     cycle_commands,
-    digest_keys,
+    digest_motion,
 )
 
 BLEND = 0.25  # seconds over which a motion blends in
@@ -45,14 +45,22 @@ def splice_motion(
     if given.repeat_count > 1 and not given.parameters.travel:
         period = (given.last - given.start) // given.repeat_count
         cycles.append(Cycle(first=given.start, last=given.start + period, until=given.last))
+    used = {each.id for each in layer.motions} | {key.motion or 0 for key in layer.keys}
+    given = replace(given, id=1 + max(used))
+    # The key that it blends in from stays that of the motion before.
+    before = {key.frame: key.motion for key in layer.keys}
+    own = [
+        replace(key, motion=given.id if key.frame >= given.start else before.get(key.frame))
+        for key in keys
+    ]
     kept = [key for key in layer.keys if not first <= key.frame <= last]
     motions = [each for each in layer.motions if not each.overlaps(first, last)]
     layer = replace(
         layer,
-        keys=tuple(sorted([*kept, *keys], key=lambda key: key.frame)),
+        keys=tuple(sorted([*kept, *own], key=lambda key: key.frame)),
         cycles=tuple(sorted(cycles, key=lambda cycle: cycle.first)),
     )
-    given = replace(given, digest=digest_keys(layer, first, given.last))
+    given = replace(given, digest=digest_motion(layer, given))
     motions.append(given)
     return replace(layer, motions=tuple(sorted(motions, key=lambda each: each.first)))
 

@@ -1,16 +1,15 @@
 """Fields that keys of several kinds share in a pose script."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, TypeVar
 
 from app.document import HOLD, LAST_FRAME, LINEAR, Easing, TangentMode
 from app.errors import LissomError, join_names
-from app.storage import JsonObject, as_object, repr_for_error
+from app.storage import JsonObject, as_object, located, repr_for_error
 from app.texts import N_, _
 
-Made = TypeVar("Made")
 NOT_A_FRAME = N_("{where}.{name} must be a whole number from 0 to {last}, not {content}")
+NO_KEYS = N_("{where} must be a list of at least one key")
 OUT_OF_ORDER = N_(
     "{where}: frame {after} comes after frame {before}; give frames in ascending order, each once"
 )
@@ -45,7 +44,7 @@ def read_easing_and_tangent(key: JsonObject, where: str) -> tuple[Easing, Tangen
 
     The default tangent mode is smooth, or a corner if the key has an easing.
     """
-    ease = Easing.parse(key["ease"]) if "ease" in key else LINEAR
+    ease = located(f"{where}.ease", Easing.parse, key["ease"]) if "ease" in key else LINEAR
     default = TangentMode.CORNER if "ease" in key else TangentMode.SMOOTH
     word = key.get("passing", default)
     if word not in list(TangentMode):
@@ -80,11 +79,3 @@ def check_handle_name(name: str, handles: Collection[str], where: str) -> None:
                 "{where} names the handle {name!r}, which does not exist; the handles are {handles}"
             ).format(where=where, name=name, handles=join_names([*handles]))
         )
-
-
-def build_value(kind: Callable[..., Made], where: str, **fields: Any) -> Made:
-    """Return a value built from fields; errors get the place in the script."""
-    try:
-        return kind(**fields)
-    except LissomError as error:
-        raise LissomError(f"{where}: {error}") from error

@@ -1,47 +1,18 @@
-"""Relations and channels of layers in a pose script, and the camera.
-
-Attachments, switch groups, transforms, opacity and draw order.
-"""
+"""Attachments, switch groups and the canvas in a pose script."""
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import radians
-from typing import Any, TypeVar
 
-from app.document import CameraKey, OpacityKey, TransformKey
+from app.document import SWITCH, Key
 from app.errors import LissomError
-from app.solving.script.fields import (
-    build_value,
-    check_frame_order,
-    read_easing_and_tangent,
-    read_fields,
-    read_frame,
-)
-from app.storage import (
-    JsonObject,
-    as_flag,
-    as_list,
-    as_number,
-    as_object,
-    as_point,
-    as_text,
-    as_whole,
-    repr_for_error,
-)
-from app.texts import N_, _
+from app.solving.script.channels import read_pairs
+from app.solving.script.fields import check_frame_order, read_fields, read_frame
+from app.storage import JsonObject, as_flag, as_list, as_point, as_text, as_whole, repr_for_error
+from app.texts import _
 
 SWITCH_GROUP_FIELDS = ("name", "layers", "keys")
 ATTACHMENT_FIELDS = ("to", "at", "turn", "frame", "keep")
-TANGENT_FIELDS = ("frame", "ease", "passing")
-CAMERA_FIELDS = (*TANGENT_FIELDS, "centre", "zoom", "turn")
-TRANSFORM_FIELDS = (*TANGENT_FIELDS, "shift", "turn")
-# Fields for a place beside another layer, and whether it is in front.
-SIDES = {"in_front_of": True, "behind": False}
-
-Key = TypeVar("Key", CameraKey, TransformKey)
-ZOOM_NOT_POSITIVE = N_("{where}.zoom must be above 0, not {zoom:g}")
-NO_KEYS = N_("{where}.keys must be a list of at least one key")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +32,7 @@ class ScriptSwitchGroup:
 
     name: str
     layers: tuple[str, ...]
-    turns: tuple[tuple[int, str], ...] = ()
+    keys: tuple[Key[str], ...] = ()
 
 
 def parse_attachments(content: object, where: str) -> tuple[ScriptAttachment, ...]:
@@ -95,17 +66,8 @@ def _joint(content: object, where: str) -> ScriptAttachment:
     )
 
 
-def parse_visibility(content: object, where: str) -> tuple[tuple[int, bool], ...]:
-    switches = [
-        (frame, as_flag(visible, at))
-        for at, frame, visible in _from_frames(content, where, _("true or false"))
-    ]
-    check_frame_order([frame for frame, _visible in switches], where)
-    return tuple(switches)
-
-
 def parse_switch_groups(
-    script: JsonObject, switched: Sequence[str]
+    script: JsonObject, switched: Sequence[str | None]
 ) -> tuple[ScriptSwitchGroup, ...]:
     """Return the switch groups; `switched` are layers with visibility keys of their own."""
     entries = as_list(script.get("choices", []), "choices")
@@ -147,115 +109,18 @@ def _choice(content: object, where: str) -> ScriptSwitchGroup:
                     where=where, layer=layer
                 )
             )
-    turns = []
-    for at, frame, layer in _from_frames(fields.get("keys", []), f"{where}.keys", _("a layer")):
-        turn = frame, as_text(layer, at)
-        if turn[1] not in layers:
+    keys = read_pairs(SWITCH, fields.get("keys", []), f"{where}.keys")
+    for index, key in enumerate(keys):
+        if key.value not in layers:
             raise LissomError(
                 _("{where} shows {layer!r}, which is not among its layers").format(
-                    where=at, layer=turn[1]
+                    where=f"{where}.keys[{index}]", layer=key.value
                 )
             )
-        turns.append(turn)
-    check_frame_order([frame for frame, _layer in turns], f"{where}.keys")
     name = as_text(fields["name"], f"{where}.name").strip()
     if not name:
         raise LissomError(_("{where}.name is empty; give the switch a name").format(where=where))
-    return ScriptSwitchGroup(name=name, layers=layers, turns=tuple(turns))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScriptDrawOrder:
-    """From a frame on, a layer is directly in front of or behind another layer, by name."""
-
-    frame: int
-    beside: str | None  # None restores the layer's place in the drawing
-    in_front: bool = True
-
-
-def parse_camera(content: object) -> tuple[CameraKey, ...]:
-    def key(read: JsonObject, where: str, **way: Any) -> CameraKey:
-        zoom = as_number(read.get("zoom", 1.0), f"{where}.zoom")
-        if not zoom > 0:
-            raise LissomError(_(ZOOM_NOT_POSITIVE).format(where=where, zoom=zoom))
-        return build_value(
-            CameraKey,
-            where,
-            centre=as_point(read["centre"], f"{where}.centre"),
-            zoom=zoom,
-            turn=radians(as_number(read.get("turn", 0.0), f"{where}.turn")),
-            **way,
-        )
-
-    return _parse_keys(content, "camera", CAMERA_FIELDS, key)
-
-
-def parse_transform_keys(content: object, where: str) -> tuple[TransformKey, ...]:
-
-    def key(read: JsonObject, where: str, **way: Any) -> TransformKey:
-        return build_value(
-            TransformKey,
-            where,
-            shift=as_point(read.get("shift", [0.0, 0.0]), f"{where}.shift"),
-            turn=radians(as_number(read.get("turn", 0.0), f"{where}.turn")),
-            **way,
-        )
-
-    return _parse_keys(content, where, TRANSFORM_FIELDS, key)
-
-
-def _parse_keys(
-    content: object, where: str, fields: tuple[str, ...], make: Callable[..., Key]
-) -> tuple[Key, ...]:
-    entries = as_list(read_fields(content, where, ("keys",))["keys"], f"{where}.keys")
-    if not entries:
-        raise LissomError(_(NO_KEYS).format(where=where))
-    keys = []
-    for index, entry in enumerate(entries):
-        at = f"{where}.keys[{index}]"
-        read = read_fields(entry, at, fields)
-        easing, passing = read_easing_and_tangent(read, at)
-        keys.append(make(read, at, frame=read_frame(read, at), easing=easing, tangent_mode=passing))
-    check_frame_order([key.frame for key in keys], f"{where}.keys")
-    return tuple(keys)
-
-
-def parse_opacity(content: object, where: str) -> float | tuple[OpacityKey, ...]:
-    """Return the opacity of a layer: a number, or keys."""
-    if not isinstance(content, list):
-        return build_value(OpacityKey, where, frame=0, opacity=as_number(content, where)).opacity
-    if not content:
-        raise LissomError(
-            _("{where} must be a number, or a list of at least one key").format(where=where)
-        )
-    keys = tuple(
-        build_value(OpacityKey, at, frame=frame, opacity=as_number(opacity, at))
-        for at, frame, opacity in _from_frames(content, where, _("a number"))
-    )
-    check_frame_order([key.frame for key in keys], where)
-    return keys
-
-
-def parse_draw_order(content: object, where: str) -> tuple[ScriptDrawOrder, ...]:
-    keys = []
-    for at, frame, place in _from_frames(
-        content, where, _('"in_front_of" or "behind" with a layer, or null')
-    ):
-        if place is None:
-            keys.append(ScriptDrawOrder(frame=frame, beside=None))
-            continue
-        read = as_object(place, at)
-        (side, *others) = read or {"": ""}
-        if others or side not in SIDES:
-            raise LissomError(
-                _('{where} must have "in_front_of" or "behind" with a layer, not {content}').format(
-                    where=at, content=repr_for_error(place)
-                )
-            )
-        beside = as_text(read[side], f"{at}.{side}")
-        keys.append(ScriptDrawOrder(frame=frame, beside=beside, in_front=SIDES[side]))
-    check_frame_order([key.frame for key in keys], where)
-    return tuple(keys)
+    return ScriptSwitchGroup(name=name, layers=layers, keys=keys)
 
 
 def parse_canvas(content: object) -> tuple[int, int]:
@@ -268,19 +133,3 @@ def parse_canvas(content: object) -> tuple[int, int]:
         )
     width, height = (as_whole(side, "canvas") for side in sides)
     return width, height
-
-
-def _from_frames(content: object, where: str, what: str) -> list[tuple[str, int, Any]]:
-    """Return pairs of a frame and a value, each after its place in the script."""
-    found = []
-    for index, entry in enumerate(as_list(content, where)):
-        at = f"{where}[{index}]"
-        pair = as_list(entry, at)
-        if len(pair) != 2:
-            raise LissomError(
-                _("{where} must be a frame and {what}, not {content}").format(
-                    where=at, what=what, content=repr_for_error(pair)
-                )
-            )
-        found.append((at, read_frame({"frame": pair[0]}, at), pair[1]))
-    return found

@@ -8,22 +8,26 @@ from pathlib import Path
 from typing import Any
 
 from app.document import (
+    LAYER_KINDS,
     LINEAR,
     NATURAL,
     VARIANTS,
+    VISIBILITY,
     Bone,
-    CameraKey,
+    Camera,
+    ChannelKeys,
     Cycle,
     Easing,
-    OpacityKey,
+    Key,
     Spring,
     TangentMode,
     Track,
-    TransformKey,
     Variant,
 )
 from app.errors import LissomError
+from app.solving.script.channels import parse_camera, parse_channels, parse_opacity
 from app.solving.script.fields import (
+    NO_KEYS,
     check_frame_order,
     check_handle_name,
     read_easing_and_tangent,
@@ -32,16 +36,10 @@ from app.solving.script.fields import (
 )
 from app.solving.script.layers import (
     ScriptAttachment,
-    ScriptDrawOrder,
     ScriptSwitchGroup,
     parse_attachments,
-    parse_camera,
     parse_canvas,
-    parse_draw_order,
-    parse_opacity,
     parse_switch_groups,
-    parse_transform_keys,
-    parse_visibility,
 )
 from app.solving.script.material import StiffRegion, parse_material
 from app.solving.script.tracks import check_loop_periods, parse_cycles, parse_springs, parse_tracks
@@ -62,7 +60,7 @@ from engine.maps import Bounds
 SCHEMA = 1
 LARGEST = 32 * 1024 * 1024  # bytes
 SCENE_FIELDS = ("schema", "fps", "loop", "variant", "bounds", "still", "camera", "canvas")
-MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity")
+MOVING_FIELDS = ("keys", "tracks", "springs", "cycles", "movement", "opacity", "channels")
 OWN_FIELDS = ("anchor", "handles", *MOVING_FIELDS, "stiff")
 STAGE_FIELDS = ("layers", "choices")
 LAYER_FIELDS = ("layer", "variant", "bounds", "still", *OWN_FIELDS, "attach", "visible", "order")
@@ -82,7 +80,6 @@ class PoseKey:
     pull: float = inf  # largest force on each of them, over the shape's diameter
     ease: Easing = LINEAR
     passing: TangentMode = TangentMode.SMOOTH
-    fronts: Mapping[str, float] = field(default_factory=dict)
     # Rotation of the shape at handles, in radians; other handles keep theirs.
     turns: Mapping[str, float] = field(default_factory=dict)
 
@@ -118,20 +115,17 @@ class LayerScript:
     parts: tuple[StiffRegion, ...] = ()
     bones: tuple[Bone, ...] = ()
     attach: tuple[ScriptAttachment, ...] = ()
-    # Visibility keys; None keeps the drawing's visibility.
-    visible: tuple[tuple[int, bool], ...] | None = None
-    movement: tuple[TransformKey, ...] = ()
-    opacity: float | tuple[OpacityKey, ...] | None = None  # None keeps the drawing's opacity
-    order: tuple[ScriptDrawOrder, ...] = ()
+    opacity: float | None = None  # None keeps the drawing's opacity
+    # With names of handles and layers. An empty visibility channel shows a hidden layer.
+    channels: ChannelKeys = field(default_factory=dict)
 
     @property
     def last(self) -> int:
-        """The last frame of all keys and repeats."""
+        """The last frame of all repeats and all keys that are interpolated."""
         frames = [self.keys[-1].frame, *(track.keys[-1].frame for track in self.tracks)]
         frames += [cycle.last if cycle.until is None else cycle.until for cycle in self.cycles]
-        frames += [key.frame for key in self.movement]
-        if isinstance(self.opacity, tuple):
-            frames += [key.frame for key in self.opacity]
+        for (name, _part), keys in self.channels.items():
+            frames += [key.frame for key in keys if not LAYER_KINDS[name].is_held]
         return max(frames)
 
 
@@ -143,7 +137,7 @@ class PoseScript:
     fps: float
     loop: bool
     choices: tuple[ScriptSwitchGroup, ...] = ()
-    camera: tuple[CameraKey, ...] = ()
+    camera: tuple[Key[Camera], ...] = ()
     canvas: tuple[int, int] | None = None  # None takes the drawing's size
 
     @property
@@ -181,11 +175,12 @@ def parse_pose_script(content: object) -> PoseScript:
     if schema != SCHEMA or isinstance(schema, bool):
         raise LissomError(_(WRONG_SCHEMA).format(own=SCHEMA, content=repr_for_error(schema)))
     usual = _options(script, "")
-    layers = [] if "layers" in script else [_layer(script, "", usual)]
+    loop = as_flag(script.get("loop", False), "loop")
+    layers = [] if "layers" in script else [_layer(script, "", usual, loop=loop)]
     for index, entry in enumerate(as_list(script.get("layers", []), "layers")):
         where = f"layers[{index}]."
         fields = read_fields(entry, where[:-1], LAYER_FIELDS)
-        layers.append(_layer(fields, where, usual))
+        layers.append(_layer(fields, where, usual, loop=loop))
     names = [layer.layer for layer in layers]
     for name in names:
         if names.count(name) > 1:
@@ -196,11 +191,12 @@ def parse_pose_script(content: object) -> PoseScript:
             )
     if not layers:
         raise LissomError(_("layers must be a list of at least one layer"))
+    switched = [each.layer for each in layers if each.channels.get((VISIBILITY.name, None))]
     parsed = PoseScript(
         layers=tuple(layers),
         fps=as_number(script.get("fps", 24.0), "fps"),
-        loop=as_flag(script.get("loop", False), "loop"),
-        choices=parse_switch_groups(script, [f.layer for f in layers if f.layer and f.visible]),
+        loop=loop,
+        choices=parse_switch_groups(script, switched),
         camera=parse_camera(script["camera"]) if script.get("camera") is not None else (),
         canvas=parse_canvas(script["canvas"]) if script.get("canvas") is not None else None,
     )
@@ -210,7 +206,7 @@ def parse_pose_script(content: object) -> PoseScript:
     return parsed
 
 
-def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScript:
+def _layer(script: JsonObject, where: str, usual: Mapping[str, Any], *, loop: bool) -> LayerScript:
     """Return the script of one layer; `where` begins the names of its fields in errors."""
     own: dict[str, Any] = {**usual, **_options(script, where)}
     if where:
@@ -221,20 +217,16 @@ def _layer(script: JsonObject, where: str, usual: Mapping[str, Any]) -> LayerScr
     }
     keys = script["keys"]
     if not isinstance(keys, list) or not keys:
-        raise LissomError(_("{where}keys must be a list of at least one key").format(where=where))
+        raise LissomError(_(NO_KEYS).format(where=f"{where}keys"))
     parsed = tuple(_key(key, f"{where}keys[{index}]", handles) for index, key in enumerate(keys))
     check_frame_order([key.frame for key in parsed], f"{where}keys")
     if script.get("anchor") is not None:
         own["anchor"] = as_point(script["anchor"], f"{where}anchor")
     if script.get("attach") is not None:
         own["attach"] = parse_attachments(script["attach"], f"{where}attach")
-    if "visible" in script:
-        own["visible"] = parse_visibility(script["visible"], f"{where}visible")
-    if script.get("movement") is not None:
-        own["movement"] = parse_transform_keys(script["movement"], f"{where}movement")
-    if script.get("opacity") is not None:
-        own["opacity"] = parse_opacity(script["opacity"], f"{where}opacity")
-    own["order"] = parse_draw_order(script.get("order", []), f"{where}order")
+    own["opacity"] = parse_opacity(script.get("opacity"), f"{where}opacity")
+    depths = {name: handle.front for name, handle in handles.items()}
+    own["channels"] = parse_channels(script, where, depths, loop=loop)
     own["tracks"] = parse_tracks(script.get("tracks", []), f"{where}tracks", tuple(handles))
     own["springs"] = parse_springs(script.get("springs", []), f"{where}springs", tuple(handles))
     own["cycles"] = parse_cycles(
@@ -286,15 +278,11 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         name: as_point(place, f"{where}.targets.{name}")
         for name, place in as_object(key.get("targets", {}), f"{where}.targets").items()
     }
-    fronts = {
-        name: as_number(front, f"{where}.front.{name}")
-        for name, front in as_object(key.get("front", {}), f"{where}.front").items()
-    }
     turns = {
         name: math.radians(as_number(turn, f"{where}.turn.{name}"))
         for name, turn in as_object(key.get("turn", {}), f"{where}.turn").items()
     }
-    for name in (*targets, *fronts, *turns):
+    for name in (*targets, *turns):
         check_handle_name(name, handles, where)
     pull = as_number(key["pull"], f"{where}.pull") if "pull" in key else inf
     if not pull > 0:
@@ -308,6 +296,5 @@ def _key(content: object, where: str, handles: Mapping[str, ScriptHandle]) -> Po
         pull=pull,
         ease=ease,
         passing=passing,
-        fronts=fronts,
         turns=turns,
     )

@@ -16,14 +16,22 @@ from app.document import (
 )
 from app.errors import LissomError
 from app.solving.script.fields import (
-    build_value,
     check_frame_order,
     check_handle_name,
     read_easing_and_tangent,
     read_fields,
     read_frame,
 )
-from app.storage import JsonObject, as_list, as_number, as_point, as_text, as_whole, repr_for_error
+from app.storage import (
+    JsonObject,
+    as_list,
+    as_number,
+    as_point,
+    as_text,
+    as_whole,
+    located,
+    repr_for_error,
+)
 from app.texts import N_, _
 
 TRACK_FIELDS = ("handle", "handles", "with", "keys", "delay", "reach")
@@ -115,9 +123,9 @@ def _track(content: object, where: str, handles: Mapping[str, int]) -> Track:
         for index, key in enumerate(keys)
     )
     check_frame_order([key.frame for key in parsed], f"{where}.keys")
-    return build_value(
-        Track,
+    return located(
         where,
+        Track,
         handles=_numbers(track, where, handles),
         is_scene_space=goes_with == "picture",
         keys=parsed,
@@ -131,7 +139,7 @@ def _cycle(content: object, where: str) -> Cycle:
     cycle = read_fields(content, where, CYCLE_FIELDS)
     first, last = (read_frame(cycle, where, name) for name in ("from", "to"))
     until = None if cycle.get("until") is None else read_frame(cycle, where, "until")
-    return build_value(Cycle, where, first=first, last=last, until=until)
+    return located(where, Cycle, first=first, last=last, until=until)
 
 
 def _track_key(content: object, where: str, place: str) -> TrackKey:
@@ -152,9 +160,9 @@ def _track_key(content: object, where: str, place: str) -> TrackKey:
     velocity = as_point(key["velocity"], f"{where}.velocity") if "velocity" in key else None
     if velocity is not None and (easing == HOLD or passing is not TangentMode.SMOOTH):
         raise LissomError(_(NEEDLESS_VELOCITY).format(where=where))
-    return build_value(
-        TrackKey,
+    return located(
         where,
+        TrackKey,
         frame=read_frame(key, where),
         place=as_point(key[place], f"{where}.{place}"),
         turn=radians(as_number(key.get("turn", 0.0), f"{where}.turn")),
@@ -184,7 +192,7 @@ def _spring(content: object, where: str, handles: Mapping[str, int]) -> Spring:
         raise LissomError(_(NO_PRESET).format(where=where, presets=", ".join(SPRING_PRESETS)))
     handle = _number(spring["handle"], f"{where}.handle", handles)
     root = _number(spring["root"], f"{where}.root", handles) if "root" in spring else None
-    return build_value(Spring, where, handle=handle, root=root, **given)
+    return located(where, Spring, handle=handle, root=root, **given)
 
 
 def _numbers(track: JsonObject, where: str, handles: Mapping[str, int]) -> tuple[int, ...]:

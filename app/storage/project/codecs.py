@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from operator import attrgetter
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TypeVar
 
 from app.errors import LissomError
 from app.storage.json_values import (
@@ -21,6 +21,7 @@ from app.storage.json_values import (
 from app.texts import _
 
 MISSING: Any = object()  # marks an absent value
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,14 @@ class Codec:
     write: Callable[[Any], Any]
     read: Callable[[object, str], Any]
     known_fields: Mapping[str, Any] = field(default_factory=dict)
+
+
+def located(where: str, make: Callable[..., Made], *values: Any, **fields: Any) -> Made:
+    """Return a value made of others; an error gets its place in the file, if there is one."""
+    try:
+        return make(*values, **fields)
+    except LissomError as error:
+        raise LissomError(f"{where}: {error}" if where else str(error)) from error
 
 
 def verbatim(value: Any, _where: str = "") -> Any:
@@ -159,9 +168,8 @@ def record(
     def read(content: object, where: str) -> Any:
         content = as_object(content, where or "project.json")
         values = {field.name: field.read(content, where) for field in fields}
-        return make(
-            **values, **({"unknown": find_unknown_fields(content, known)} if unknown else {})
-        )
+        more = {"unknown": find_unknown_fields(content, known)} if unknown else {}
+        return located(where, make, **values, **more)
 
     return Codec(write, read, {} if unknown else known)
 

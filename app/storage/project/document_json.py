@@ -10,16 +10,15 @@ from typing import Any, Literal
 
 from app.cut_out import CutLine, CutOut, Stroke
 from app.document import (
+    CAMERA,
     FRAME_NAMES,
     PAIRS,
+    SWITCH,
     AppliedMotion,
     Attachment,
     Bone,
-    CameraKey,
     Cycle,
     Document,
-    DrawOrderKey,
-    Easing,
     ExportSettings,
     FrameRange,
     Group,
@@ -29,20 +28,16 @@ from app.document import (
     LibraryPose,
     Marker,
     Meshing,
-    OpacityKey,
     PictureFile,
     PictureSettings,
     Pose,
     Spring,
     SwitchGroup,
-    SwitchKey,
     TangentMode,
     Target,
     Track,
     TrackKey,
-    TransformKey,
     UnreadMotion,
-    VisibilityKey,
     require_motions,
 )
 from app.errors import EMPTY_IMPORT_LOG, EXPECTED_ERRORS, ImportLog, LissomError
@@ -51,6 +46,7 @@ from app.rigging import Parameters
 from app.storage.json_values import JsonObject, as_list, as_object, as_whole
 from app.storage.pictures.parallel import require_memory
 from app.storage.project.archive import Archive
+from app.storage.project.channel_codecs import CHANNELS, EASING, key_codec
 from app.storage.project.codecs import (
     ANYTHING,
     FLAG,
@@ -67,12 +63,13 @@ from app.storage.project.codecs import (
     record,
     verbatim,
 )
+from app.storage.project.earlier_schemas import update_schema
 from app.storage.project.members import LayerMembers
 from app.texts import N_, _, message_of
 from engine.domain import Domain
 from engine.maps import Boundary, Bounds, Certificate, HarmonicMap, certify
 
-SCHEMA = 3
+SCHEMA = 4
 NO_LAYERS: Mapping[int, Layer] = MappingProxyType({})
 SIZE = pair(WHOLE, WHOLE, N_("two whole numbers"))
 RANGE = pair(WHOLE, WHOLE, N_("two whole numbers"), make=FrameRange, of=astuple)
@@ -135,7 +132,6 @@ HANDLE = record(
     Field("group", TEXT, default=""),
     Field("is_unpinned", FLAG, default=False, legacy_name="free"),
 )
-DEPTH_POINTS = list_of(pair(WHOLE, NUMBER, N_("a handle and a number")))
 TARGETS = list_of(
     record(
         lambda handle, **target: (handle, Target(**target)),
@@ -146,7 +142,6 @@ TARGETS = list_of(
     )
 )
 # Keys and poses are read as fields first; their maps are added later.
-EASING = Codec(Easing.to_json, lambda content, _: Easing.parse(content))
 KEY = record(
     dict,
     Field("frame", WHOLE),
@@ -155,13 +150,7 @@ KEY = record(
     Field("tangent_mode", TEXT, legacy_default=TangentMode.CORNER, legacy_name="passing"),
     Field("revolutions", WHOLE, legacy_name="turns"),
     Field("targets", TARGETS, lambda key: key.pose.targets.items()),
-    Field(
-        "depths",
-        DEPTH_POINTS,
-        lambda key: tuple(key.depths.items()),
-        default=(),
-        legacy_name="fronts",
-    ),
+    Field("motion", optional(WHOLE), default=None),
 )
 LIBRARY_POSE = record(
     dict,
@@ -217,6 +206,7 @@ BONE = record(
 )
 APPLIED_MOTION = record(
     AppliedMotion,
+    Field("id", WHOLE),
     Field("motion", TEXT),
     Field("kind", TEXT),
     Field(
@@ -253,7 +243,7 @@ def _read_motions(content: object, handles: Collection[int]) -> dict[str, Any]:
     for index, each in enumerate(as_list(content, "motions")):
         try:
             motion = APPLIED_MOTION.read(each, f"motions[{index}]")
-            require_motions([*motions[-1:], motion], handles)
+            require_motions([*motions, motion], handles)
         except EXPECTED_ERRORS as error:
             unread.append(UnreadMotion(index=index, content=each, reason=message_of(error)))
         else:
@@ -301,7 +291,6 @@ DOMAIN = nested_record(
     Field("parted", FLAG, lambda layer: layer.domain.closed is not None, default=False),
     Field("stale", FLAG, attrgetter("is_stale"), legacy_default=False),
 )
-VISIBILITY_KEY = pair(WHOLE, FLAG, N_("a frame and true or false"), make=VisibilityKey, of=astuple)
 ATTACHMENT = record(
     Attachment,
     Field("parent", optional(WHOLE), legacy_name="to"),
@@ -313,32 +302,6 @@ ATTACHMENT = record(
     Field("keep_world_transform", FLAG, default=False, legacy_name="keeps"),
     Field("kept_since", optional(WHOLE), default=None, legacy_name="since"),
     Field("blends_to_next", FLAG, default=False, legacy_name="leads"),
-)
-TANGENT_FIELDS = (
-    Field("frame", WHOLE),
-    Field("easing", EASING),
-    Field("tangent_mode", TEXT, legacy_name="passing"),
-)
-CAMERA = list_of(
-    record(
-        CameraKey,
-        *TANGENT_FIELDS,
-        Field("centre", POINT),
-        Field("zoom", NUMBER),
-        Field("turn", NUMBER),
-    )
-)
-TRANSFORM_KEYS = list_of(
-    record(TransformKey, *TANGENT_FIELDS, Field("shift", POINT), Field("turn", NUMBER))
-)
-OPACITY_KEYS = list_of(record(OpacityKey, *TANGENT_FIELDS, Field("opacity", NUMBER)))
-DRAW_ORDER_KEYS = list_of(
-    nested_record(
-        DrawOrderKey,
-        Field("frame", WHOLE),
-        Field("beside", optional(WHOLE)),
-        Field("in_front", FLAG),
-    )
 )
 GROUP = record(
     Group,
@@ -382,11 +345,13 @@ LAYER = record(
     Field("reference", FLAG, default=False),
     Field("locked", FLAG, default=False),
     Field("hidden", FLAG, default=False),
-    Field("visibility_keys", list_of(VISIBILITY_KEY), default=(), legacy_name="switches"),
     Field("opacity", NUMBER, default=1.0),
-    Field("opacity_keys", OPACITY_KEYS, default=(), legacy_name="opacities"),
-    Field("transform_keys", TRANSFORM_KEYS, default=(), legacy_name="movement"),
-    Field("draw_order_keys", DRAW_ORDER_KEYS, default=(), legacy_name="placings"),
+    Field(
+        "channels",
+        CHANNELS,
+        lambda layer: (layer.channels, layer.unread_channels),
+        default=({}, ()),
+    ),
     Field("blend", TEXT, default="normal"),
     Field("clipped", FLAG, default=False),
     Field("group", TEXT, default=""),
@@ -405,11 +370,7 @@ SWITCH_GROUP = record(
     SwitchGroup,
     Field("name", TEXT),
     Field("layers", list_of(WHOLE), legacy_name="figures"),
-    Field(
-        "keys",
-        list_of(pair(WHOLE, WHOLE, N_("a frame and a layer"), make=SwitchKey, of=tuple)),
-        legacy_name="turns",
-    ),
+    Field("keys", list_of(key_codec(SWITCH))),
 )
 DOCUMENT = record(
     dict,
@@ -426,7 +387,7 @@ DOCUMENT = record(
     Field("pairs", list_of(pair(TEXT, TEXT, N_("two words"))), default=PAIRS),
     Field("switch_groups", list_of(SWITCH_GROUP), default=(), legacy_name="choices"),
     Field("groups", list_of(GROUP), default=()),
-    Field("camera", CAMERA, default=()),
+    Field("camera", list_of(key_codec(CAMERA)), default=()),
     Field("import_log", IMPORT_LOG, default=EMPTY_IMPORT_LOG, legacy_name="told"),
 )
 
@@ -447,8 +408,7 @@ def read_document(
     Raises `LissomError` or `EngineError` if a field is missing or of another kind, or the document
     would be invalid.
     """
-    if as_whole(content["schema"], "schema") == 1:
-        _bring_up_to_schema_2(content)
+    update_schema(content)
     if known:
         others = [each for each in content["layers"] if each["id"] not in known]
         content = JsonObject({**content, "layers": others}, content.where)
@@ -463,22 +423,6 @@ def read_document(
     if not archive.is_written:
         require_memory(picture.size for picture in {layer.picture for layer in read})
     return Document(layers=(*known.values(), *read), **fields)
-
-
-def _bring_up_to_schema_2(content: JsonObject) -> None:
-    """Add the fields of schema 2 to schema 1, so that nothing looks different.
-
-    In schema 1 the preview range was exported, unless exports had frames of their own.
-    """
-    work = content.pop("work")
-    content |= {"preview": work, "markers": []}
-    export = as_object(content["export"], "export")
-    if export["frames"] is None:
-        content["export"] = {**export, "frames": work}
-    content["figures"] = [
-        {**as_object(layer, f"figures[{i}]"), "library": [], "mirror": None}
-        for i, layer in enumerate(as_list(content["figures"], "figures"))
-    ]
 
 
 def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, PictureFile]) -> Layer:
@@ -504,9 +448,9 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
 
     motions = _read_motions(fields.pop("motions"), {handle.id for handle in fields["handles"]})
     first, later = fields.pop("attachment"), fields.pop("handovers")
+    fields["channels"], unread_channels = fields["channels"]
     for index, key in enumerate(fields["keys"]):
         key["pose"] = pose("keys", index, key.pop("targets"))
-        key["depths"] = dict(key["depths"])
     for index, kept in enumerate(fields["library"]):
         kept["pose"] = pose("poses", index, kept.pop("targets"))
     return Layer(
@@ -514,6 +458,7 @@ def _read_layer(fields: dict[str, Any], archive: Archive, shared: dict[str, Pict
         | motions
         | {
             "picture": picture,
+            "unread_channels": unread_channels,
             "attachments": (*(() if first is None else (first,)), *later),
             "domain": domain,
             "meshing": Meshing(detail=made.pop("detail"), triangles=made.pop("triangles")),

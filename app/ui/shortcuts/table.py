@@ -5,7 +5,7 @@ from typing import Any
 
 from imgui_bundle import hello_imgui, icons_fontawesome_6 as icons
 
-from app.document import LINEAR, PRESETS
+from app.document import LINEAR, POSE, PRESETS
 from app.editor import Project, Session, do, error_reports, with_project
 from app.editor.actions import editing, playback, tutorials, viewing
 from app.editor.actions.layer_setup import cut_out_editing, handle_editing, stiffness_editing
@@ -14,9 +14,9 @@ from app.editor.actions.posing.motion_presets import apply_motion, joint_placeme
 from app.editor.actions.posing.pose_drag import pin_selected_handles
 from app.editor.actions.project_files import export_settings, exporting, files, recovery, saving
 from app.editor.actions.timing import cycles, keys, timeline_drag, tracks
+from app.editor.actions.timing.channel_keys import key_camera, toggle_camera_view
 from app.editor.actions.tracking.recording import discard_recording, toggle_recording_armed
 from app.editor.actions.viewing import OverlayName
-from app.editor.layering.layer_channels import key_camera, toggle_camera_view
 from app.editor.layering.layer_list import ask_layer_name
 from app.editor.poses import copying, library, paste_destinations, pasting
 from app.editor.tools import move_tool
@@ -127,10 +127,11 @@ def _frees_arrows(session: Session, project: Project) -> bool:
     return not (session.moves or project.selected_handles)
 
 
-def _can_delete(_: Session, project: Project) -> bool:
-    """Return whether keys, handles or a joint of a motion preset are selected."""
+def _can_delete(session: Session, project: Project) -> bool:
+    """Return whether keys, handles, a joint of a motion preset or a channel are selected."""
     joint = project.motion_setup is not None and project.motion_setup.selected_joint
-    return bool(joint or project.selected_handles or project.selected_keys)
+    is_channel = session.is_timeline_focused and project.channel.kind is not POSE
+    return bool(joint or project.selected_handles or project.selected_keys or is_channel)
 
 
 def _can_pose(session: Session, _: Project) -> bool:

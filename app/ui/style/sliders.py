@@ -59,6 +59,7 @@ def slider(
     text: str = "%.2f",
     hint: str = "",
     field: float = FIELD,
+    room: float = 0.0,
 ) -> SliderEdit | None:
     """Draw a track with a knob and a value field, over the rest of the line's width.
 
@@ -72,13 +73,15 @@ def slider(
         Tooltip of both.
     field : float
         Width of the field, in em.
+    room : float
+        Room at the end of the line, in pixels.
     """
     gap = imgui.get_style().item_inner_spacing.x
-    width = imgui.get_content_region_avail().x - field * look.em - gap
+    width = imgui.get_content_region_avail().x - field * look.em - gap - room
     moved = slider_track(look, f"{name} track", value, scale, width, colour=look.palette.accent)
     draw_tooltip(hint)
     imgui.same_line(0, gap)
-    imgui.set_next_item_width(FILL)
+    imgui.set_next_item_width(-room if room else FILL)
     entered = number_field(name, value, text)
     draw_tooltip(hint)
     return moved if entered is None else SliderEdit(scale.clamp(entered), is_final=True)

@@ -2,8 +2,15 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import MAX_REVOLUTIONS, PRESETS, Easing, Keyframe
-from app.editor import Action, KeysByRow, Project, do
+from app.document import (
+    MAX_REVOLUTIONS,
+    PRESETS,
+    Easing,
+    Keyframe,
+    KeysByChannel,
+    pose_channel,
+)
+from app.editor import Action, Project, do
 from app.editor.actions.timing import keys
 from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, Look, colour_u32
@@ -78,7 +85,7 @@ def draw_easing_popup(name: str, look: Look, project: Project, key: Keyframe) ->
     imgui.pop_style_var()
     if not is_open:
         return []
-    taken = project.keys_with(project.active, key.frame)
+    taken = project.keys_with(pose_channel(project.active), key.frame)
     count = sum(map(len, taken.values()))
     bold_text(look, _("Easing"))
     imgui.same_line()
@@ -205,7 +212,7 @@ def _numbers(look: Look, easing: Easing) -> Easing | None:
     return _curve([_unit(value) for value in values], easing.curve) if changed else None
 
 
-def _draw_revolutions(look: Look, key: Keyframe, taken: KeysByRow) -> list[Action]:
+def _draw_revolutions(look: Look, key: Keyframe, taken: KeysByChannel) -> list[Action]:
     label(look, _("Whole turns"))
     changed, turns = imgui.input_int("##turns", key.revolutions, 1, 1)
     draw_tooltip(

@@ -1,19 +1,17 @@
 """Pose keys of all layers, with their tangent marks, and the selection box."""
 
+from typing import Any
+
 from imgui_bundle import ImVec2, ImVec4, icons_fontawesome_6 as icons, imgui
 
-from app.document import Keyframe, TangentMode
-from app.editor import (
-    Action,
-    KeyDrag,
-    KeyRow,
-    KeysByRow,
-    Project,
-    TimeGesture,
-    TrackRow,
-    do,
-    layer_of,
+from app.document import (
+    Channel,
+    Keyframe,
+    KeysByChannel,
+    TangentMode,
+    pose_channel,
 )
+from app.editor import Action, KeyDrag, Project, TimeGesture, do
 from app.editor.actions import editing
 from app.editor.actions.timing import timeline_drag, tracks
 from app.editor.layering.layer_selection import set_active_layer
@@ -21,14 +19,9 @@ from app.texts import _
 from app.ui.shortcuts.keys import CTRL, format_modified
 from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import begin_tooltip, is_hovered_or_held, is_pressed
-from app.ui.timeline.layout import (
-    LayerRow,
-    TimelineLayout,
-    draw_time_tag,
-    find_least_gap,
-    format_seconds,
-)
+from app.ui.timeline.layout import TimelineLayout, draw_time_tag, format_seconds
 from app.ui.timeline.menus import TANGENT_MODES, draw_key_menu
+from app.ui.timeline.row import LayerRow, find_least_gap
 
 REACH, SMALLEST = 0.55, 0.26  # em: half a key's diagonal: normally, and if keys are dense
 SMALLER = 0.7  # size of other layers' keys, relative to the active layer's
@@ -36,12 +29,13 @@ KEY_GESTURES = _("Drag to move, {gesture} to copy, right-click for more")
 GRIP = 1.45  # half the side of a key's hit box, relative to half its diagonal
 
 
-def select_row(row: KeyRow, chosen_of: KeysByRow) -> list[Action]:
-    """Activate the row's layer, and select the row and the given keys."""
+def select_lane(channel: Channel[Any], keys: KeysByChannel) -> list[Action]:
+    """Activate the channel's layer, and select the channel and the given keys."""
+    activate = [] if channel.layer is None else [do(set_active_layer, channel.layer)]
     return [
-        do(set_active_layer, layer_of(row)),
-        do(tracks.select_track, row.handle if isinstance(row, TrackRow) else None),
-        do(editing.select_keys_in_rows, chosen_of),
+        *activate,
+        do(tracks.select_channel, channel),
+        do(editing.select_channel_keys, keys),
     ]
 
 
@@ -62,76 +56,90 @@ def _draw_row(bands: TimelineLayout, row: LayerRow) -> list[Action]:
     actions: list[Action] = []
     radius = _radius(bands, row)
     grip = GRIP * radius
-    gesture, identity = bands.project.timeline.gesture, row.layer.id
+    gesture, channel = bands.project.timeline.gesture, pose_channel(row.layer.id)
     for index in bands.in_view(row.layer.keys):
         key = row.layer.keys[index]
         x = bands.x(key.frame)
         box = ImVec2(x - grip, row.middle - grip), ImVec2(x + grip, row.middle + grip)
-        origin = find_drag_origin(gesture, identity, key.frame)
+        origin = find_drag_origin(gesture, channel, key.frame)
         bands.button(f"key {origin}", *box, right=True)
-        is_large = is_hovered_or_held() or is_key_dragged(gesture, identity, key.frame)
+        is_large = is_hovered_or_held() or is_key_dragged(gesture, channel, key.frame)
         _draw_key(bands, row, key, 1.15 * radius if is_large else radius)
-        actions += begin_key_drag(bands, identity, key.frame)
+        actions += begin_key_drag(bands, channel, key.frame)
         if gesture is None:
             _draw_key_tooltip(bands, row, key)
-        actions += draw_key_menu(bands, identity, key)
+        actions += draw_key_menu(bands, channel, key)
     return actions
 
 
 def _radius(bands: TimelineLayout, row: LayerRow) -> float:
     """Return the keys' radius in pixels: smaller if keys would overlap."""
-    gap = find_least_gap(row.layer, None)
+    gap = find_least_gap(bands.project.document, pose_channel(row.layer.id))
     part = 1.0 if row.is_active else SMALLER
     return part * min(max(0.48 * gap * bands.time_view.scale, SMALLEST), REACH) * bands.look.em
 
 
-def is_key_dragged(gesture: TimeGesture | None, row: KeyRow, frame: int) -> bool:
+def is_key_dragged(gesture: TimeGesture | None, channel: Channel[Any], frame: int) -> bool:
     return (
         isinstance(gesture, KeyDrag)
-        and row == gesture.row
+        and channel == gesture.channel
         and frame == gesture.pressed + gesture.by
     )
 
 
-def find_drag_origin(gesture: TimeGesture | None, row: KeyRow, frame: int) -> int:
+def find_drag_origin(gesture: TimeGesture | None, channel: Channel[Any], frame: int) -> int:
     """Return the key's frame before the drag, so that its button keeps its id."""
     if isinstance(gesture, KeyDrag) and not gesture.copies:
         before = frame - gesture.by
-        return before if before in gesture.keys.get(row, ()) else frame
+        return before if before in gesture.keys.get(channel, ()) else frame
     return frame
 
 
-def begin_key_drag(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
-    """Handle the pointer on a row's key, which is the last item."""
-    actions = _press(bands, row, frame) if is_pressed() else []
+def begin_key_drag(
+    bands: TimelineLayout, channel: Channel[Any], frame: int, alike: KeysByChannel | None = None
+) -> list[Action]:
+    """Handle the pointer on a channel's key, which is the last item.
+
+    `alike` are the keys that the mark stands for, by default only that key.
+    """
+    own = {channel: frozenset({frame})} if alike is None else alike
+    actions = _press(bands, channel, frame, own) if is_pressed() else []
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        chosen_of = bands.project.selected_keys
-        if frame not in chosen_of.get(row, ()):
-            actions += select_row(row, {row: frozenset({frame})})
-        elif row != bands.project.row:
-            actions += select_row(row, chosen_of)
+        chosen = bands.project.selected_keys
+        if not _is_chosen(bands, own):
+            actions += select_lane(channel, own)
+        elif channel != bands.project.channel:
+            actions += select_lane(channel, chosen)
         imgui.open_popup(f"menu of key {frame}")
     return actions
 
 
-def _press(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
-    chosen_of, io = bands.project.selected_keys, imgui.get_io()
-    chosen = chosen_of.get(row, frozenset())
+def _is_chosen(bands: TimelineLayout, keys: KeysByChannel) -> bool:
+    chosen = bands.project.selected_keys
+    return all(frames <= chosen.get(channel, frozenset()) for channel, frames in keys.items())
+
+
+def _press(
+    bands: TimelineLayout, channel: Channel[Any], frame: int, own: KeysByChannel
+) -> list[Action]:
+    chosen, io = bands.project.selected_keys, imgui.get_io()
     if io.key_shift:
-        return [do(editing.select_keys_in_rows, {**chosen_of, row: chosen ^ {frame}})]
-    if frame not in chosen:
-        chosen_of = {row: frozenset({frame})}
+        toggled = {each: chosen.get(each, frozenset()) ^ frames for each, frames in own.items()}
+        return [do(editing.select_channel_keys, {**chosen, **toggled})]
+    if not _is_chosen(bands, own):
+        chosen = own
     drag = KeyDrag(
-        keys=chosen_of,
-        row=row,
+        keys=chosen,
+        channel=channel,
         pressed=frame,
+        mark=own,
         start=bands.pointed,
         copies=io.key_ctrl,
         before=bands.project.document,
         after=bands.project.document,
     )
     return [
-        *select_row(row, chosen_of),
+        *select_lane(channel, chosen),
         do(timeline_drag.begin_timeline_drag, drag, bands.time_view),
     ]
 
@@ -139,7 +147,7 @@ def _press(bands: TimelineLayout, row: KeyRow, frame: int) -> list[Action]:
 def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     x, y = bands.x(key.frame), row.middle
-    chosen = key.frame in bands.project.selected_keys.get(row.layer.id, ())
+    chosen = key.frame in bands.project.selected_keys.get(pose_channel(row.layer.id), ())
     warns = _warning(bands, row, key)
     fill = palette.accent if chosen else warns or (palette.text if row.is_active else palette.dim)
     tangent, centre = key.shown_tangent_mode, ImVec2(x, y)
@@ -147,7 +155,7 @@ def _draw_key(bands: TimelineLayout, row: LayerRow, key: Keyframe, radius: float
         draw_key_mark(tangent, centre, radius + 0.24 * em, colour_u32(palette.accent, 0.35))
     draw_key_mark(tangent, centre, radius + 0.12 * em, colour_u32(palette.desk))
     draw_key_mark(tangent, centre, radius, colour_u32(fill))
-    label_dragged_key(bands, row.layer.id, key.frame, x)
+    label_dragged_key(bands, pose_channel(row.layer.id), key.frame, x)
     if warns and chosen:
         draw_key_mark(tangent, centre, 0.45 * radius, colour_u32(warns))
     if warns and row.is_active:
@@ -163,10 +171,10 @@ def _warning(bands: TimelineLayout, row: LayerRow, key: Keyframe) -> ImVec4 | No
     return palette.warning if row.is_active and describe_target_errors(bands.project, key) else None
 
 
-def label_dragged_key(bands: TimelineLayout, row: KeyRow, frame: int, x: float) -> None:
+def label_dragged_key(bands: TimelineLayout, channel: Channel[Any], frame: int, x: float) -> None:
     """Write the new frame beside a key that is being dragged."""
     gesture = bands.project.timeline.gesture
-    if isinstance(gesture, KeyDrag) and gesture.by and is_key_dragged(gesture, row, frame):
+    if isinstance(gesture, KeyDrag) and gesture.by and is_key_dragged(gesture, channel, frame):
         draw_time_tag(bands, x, f"{frame}  ({gesture.by:+d})")
 
 

@@ -2,17 +2,26 @@
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
-from typing import Protocol, TypeVar
+from typing import Any, TypeVar
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import LAST_FRAME, Layer, Track, TreeRow, memoized_on
-from app.editor import KeyRow, Project, Session, TimeRangeView, display_frame, row_of
+from app.document import (
+    CAMERA,
+    MARKER,
+    SWITCH,
+    Channel,
+    Layer,
+    TreeRow,
+    display_frame,
+    pose_channel,
+    track_in,
+)
+from app.editor import Project, Session, TimeRangeView
 from app.texts import _
 from app.ui.style.drawing import draw_tag, tag_size
 from app.ui.style.theme import Look
+from app.ui.timeline.row import ChannelLane, GroupRow, HasFrame, LayerRow, has_lanes
 
 PREVIEW, RULER, OVERVIEW = 0.7, 1.55, 0.75  # em: heights of the bands above and below the tracks
 MARKS, SMALL_MARKS = 1.25, 0.7  # em: height of the marker band, with names or without
@@ -25,58 +34,7 @@ LEAST_MARK_GAP = 0.4  # em between two marks of a row; closer marks are drawn on
 EVEN, ROOMY = 2.0, 3.4  # em: smallest and largest height of layers' rows
 
 
-class HasFrame(Protocol):
-    """A key, a marker or any other item at a frame."""
-
-    @property
-    def frame(self) -> int:
-        pass
-
-
 Mark = TypeVar("Mark", bound=HasFrame)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class LayerRow:
-    """A layer's row of keys: between two heights, in pixels of the window."""
-
-    layer: Layer
-    top: float
-    bottom: float
-    is_active: bool
-    depth: int = 0  # number of groups and switches around it
-
-    @property
-    def middle(self) -> float:
-        return (self.top + self.bottom) / 2
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class TrackLane:
-    """The row of a layer's track: between two heights, in pixels of the window."""
-
-    layer: Layer
-    track: Track
-    top: float
-    bottom: float
-    is_chosen: bool
-
-    @property
-    def middle(self) -> float:
-        return (self.top + self.bottom) / 2
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class GroupRow:
-    """The row of a group or a switch: between two heights, in pixels of the window."""
-
-    row: TreeRow
-    top: float
-    bottom: float
-
-    @property
-    def middle(self) -> float:
-        return (self.top + self.bottom) / 2
 
 
 class TimelineLayout:
@@ -89,7 +47,7 @@ class TimelineLayout:
         self.corner = imgui.get_cursor_screen_pos()
         room = imgui.get_content_region_avail()
         layers = project.document.layers
-        self.has_names = len(layers) > 1 or any(layer.tracks for layer in layers)
+        self.has_names = len(layers) > 1 or any(map(has_lanes, layers))
         self.has_names |= bool(project.document.camera)
         names = min(NAMES * look.em, NAMES_SHARE * room.x) if self.has_names else 0.0
         self.size = ImVec2(room.x - names, room.y)
@@ -104,7 +62,7 @@ class TimelineLayout:
         is_whole = self.is_cramped or project.timeline.time_range is None
         self.track_bottom = self.bottom - (0 if is_whole else OVERVIEW * look.em)
         self.rows: list[LayerRow] = []
-        self.track_rows: list[TrackLane] = []
+        self.lanes: list[ChannelLane] = []
         self.group_rows: list[GroupRow] = []
         self.overflow = self._lay_rows(project.tree)
         self.row = next(row for row in self.rows if row.is_active)
@@ -117,19 +75,21 @@ class TimelineLayout:
         self.time_view = timing.gesture_time_range or timing.time_range or fitting
 
     def _lay_rows(self, tree: Sequence[TreeRow]) -> float:
-        """Lay a row for each group, switch and layer, and for each track below its layer.
+        """Lay a row for each group, switch and layer, and a lane for each channel below its layer.
 
         The active row has no influence, so no row moves under the pointer that selects it.
         Returns the height in pixels that does not fit.
         """
         em, room = self.look.em, self.track_bottom - self.track_top
-        thin, shown = THIN * em, [self._shown_tracks(row.layer) for row in tree if row.layer]
+        thin, project = THIN * em, self.project
+        shown = [self._other_lanes(row.layer) for row in tree if row.layer]
         others = (len(tree) - len(shown) + sum(map(len, shown))) * thin
         least, most = (EVEN * em, ROOMY * em) if len(tree) > 1 else (min(TALL * em, room), room)
         tall = min(max((room - others) / len(shown), least), most)
         overflow = max(others + len(shown) * tall - room, 0.0)
         top = self.track_top - min(self.project.timeline.scrolled * em, overflow)
-        chosen = self.project.row
+        if project.document.camera:
+            self._lay_lane(Channel(CAMERA), None, self.camera_top, self.track_top)
         for row in tree:
             layer = row.layer
             if layer is None:
@@ -147,30 +107,50 @@ class TimelineLayout:
                 )
             )
             top += tall
-            for track in self._shown_tracks(layer):
-                is_chosen = row_of(layer, track) == chosen
-                lane = TrackLane(
-                    layer=layer, track=track, top=top, bottom=top + thin, is_chosen=is_chosen
-                )
-                self.track_rows.append(lane)
+            for channel in self._other_lanes(layer):
+                self._lay_lane(channel, layer, top, top + thin)
                 top += thin
         return overflow
 
-    def _shown_tracks(self, layer: Layer) -> tuple[Track, ...]:
-        return layer.tracks if layer.id in self.project.timeline.expanded_layers else ()
+    def _other_lanes(self, layer: Layer) -> Sequence[Channel[Any]]:
+        """Return the channels of a layer that have lanes of their own, without its poses."""
+        is_open = layer.id in self.project.timeline.expanded_layers
+        return self.project.lanes_of(layer)[1:] if is_open else ()
+
+    def _lay_lane(
+        self, channel: Channel[Any], layer: Layer | None, top: float, bottom: float
+    ) -> None:
+        lane = ChannelLane(
+            channel=channel,
+            layer=layer,
+            top=top,
+            bottom=bottom,
+            is_chosen=channel == self.project.channel,
+            track=track_in(self.project.document, channel),
+        )
+        self.lanes.append(lane)
 
     @property
-    def pointed_row(self) -> LayerRow | TrackLane:
-        """The row under the pointer, or the nearest visible row."""
-        y = min(max(imgui.get_mouse_pos().y, self.track_top), self.track_bottom - 1)
-        both: list[LayerRow | TrackLane] = [*self.rows, *self.track_rows]
-        rows = sorted(both, key=lambda row: row.bottom)
+    def pointed_row(self) -> LayerRow | ChannelLane | GroupRow:
+        """The row under the pointer, or the nearest visible row with keys."""
+        y = min(imgui.get_mouse_pos().y, self.track_bottom - 1)
+        all_rows: list[LayerRow | ChannelLane | GroupRow] = [*self.rows, *self.lanes]
+        all_rows += [row for row in self.group_rows if row.row.switch_group is not None]
+        shown = [row for row in all_rows if self.shows_row(row)] or all_rows
+        rows = sorted(shown, key=lambda row: row.bottom)
         return next((row for row in rows if y < row.bottom), rows[-1])
 
     @property
-    def pointed_keys(self) -> KeyRow:
+    def pointed_channel(self) -> Channel[Any]:
+        """The channel under the pointer, or the nearest visible one."""
         row = self.pointed_row
-        return row_of(row.layer, row.track if isinstance(row, TrackLane) else None)
+        has_markers = bool(self.project.document.markers)
+        if has_markers and self.markers_top <= imgui.get_mouse_pos().y < self.camera_top:
+            return Channel(MARKER)
+        if isinstance(row, GroupRow):
+            switch = row.row.switch_group
+            return Channel(SWITCH, part="" if switch is None else switch.name)
+        return row.channel if isinstance(row, ChannelLane) else pose_channel(row.layer.id)
 
     def push_track_clip(self) -> None:
         """Clip drawing and hit tests to the tracks, until the clip is popped."""
@@ -200,9 +180,9 @@ class TimelineLayout:
         """Return the frame at an x of the window."""
         return self.time_view.frame((x - self.left) / self.look.em)
 
-    def x_of(self, track: Track | None, frame: int) -> float:
+    def x_of(self, channel: Channel[Any], frame: int) -> float:
         """Return the x of a key. A track's keys are shifted by its delay."""
-        return self.x(display_frame(self.project.document, track, frame))
+        return self.x(display_frame(self.project.document, channel, frame))
 
     @property
     def pointed(self) -> float:
@@ -212,9 +192,10 @@ class TimelineLayout:
         """Return whether a range of x overlaps the visible part."""
         return high > self.left and low < self.right
 
-    def shows_row(self, row: LayerRow | TrackLane | GroupRow) -> bool:
+    def shows_row(self, row: LayerRow | ChannelLane | GroupRow) -> bool:
         """Return whether any of a row is visible."""
-        return row.bottom > self.track_top and row.top < self.track_bottom
+        is_fixed = isinstance(row, ChannelLane) and row.layer is None
+        return is_fixed or (row.bottom > self.track_top and row.top < self.track_bottom)
 
     def in_view(
         self,
@@ -262,14 +243,6 @@ class TimelineLayout:
 
 def _frame(mark: HasFrame) -> int:
     return mark.frame
-
-
-@memoized_on
-def find_least_gap(layer: Layer, handle: int | None) -> int:
-    """Return the smallest distance of a layer's pose keys or of a track's keys, in frames."""
-    track = None if handle is None else layer.track_of(handle)
-    row: Sequence[HasFrame] = layer.keys if track is None else track.keys
-    return min((later.frame - key.frame for key, later in pairwise(row)), default=LAST_FRAME)
 
 
 def draw_time_tag(bands: TimelineLayout, x: float, text: str) -> None:

@@ -1,9 +1,23 @@
 """Menus of keys, tracks and the timeline."""
 
+from typing import Any
+
 from imgui_bundle import imgui
 
-from app.document import PRESETS, Keyframe, TangentMode, TrackKey, track_commands
-from app.editor import Action, KeyRow, Project, Session, TrackRow, display_frame, do, frames_in
+from app.document import (
+    PRESETS,
+    TRACK,
+    BaseKey,
+    Channel,
+    Key,
+    KeysByChannel,
+    TangentMode,
+    display_frame,
+    frames_in,
+    track_commands,
+    track_in,
+)
+from app.editor import Action, Project, Session, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import cycles, keys, tracks
 from app.editor.poses import copying
@@ -14,6 +28,7 @@ from app.ui.style.theme import Look
 from app.ui.style.widgets import draw_tooltip, shorten_text
 from app.ui.timeline.easing_curve import LABELS
 from app.ui.timeline.layout import TimelineLayout
+from app.ui.timeline.value_fields import draw_value_fields
 
 TANGENT_MODES = {
     TangentMode.SMOOTH: (_("Smooth"), _("The motion goes on smoothly, between two other keys")),
@@ -25,13 +40,13 @@ NAME = 9.0  # em: largest width of a layer's name
 FACTORS = ((0.5, _("Half as long")), (2.0, _("Twice as long")))
 
 
-def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) -> list[Action]:
-    """Draw the menu of a row's key, if it is open."""
+def draw_key_menu(bands: TimelineLayout, channel: Channel[Any], key: BaseKey) -> list[Action]:
+    """Draw the menu of a channel's key, if it is open."""
     actions: list[Action] = []
     if not imgui.begin_popup(f"menu of key {key.frame}"):
         return actions
     project = bands.project
-    taken = project.keys_with(row, key.frame)
+    taken = project.keys_with(channel, key.frame)
     count = sum(map(len, taken.values()))
     delete = BINDINGS["delete"]
     text = ngettext("Delete", "Delete {count} keys", count).format(count=count)
@@ -40,11 +55,25 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
     text = ngettext("Copy", "Copy {count} keys", count).format(count=count)
     if imgui.menu_item_simple(f"{text}###Copy", BINDINGS["copy"].shown_keys):
         actions.append(do(copying.copy_keys))
-    seen = display_frame(project.document, project.track_in(row), key.frame)
+    seen = display_frame(project.document, channel, key.frame)
     actions += _paste_items(bands.session, seen)
     imgui.separator()
     if imgui.menu_item_simple(_("Go to this key"), _("Click")):
         actions.append(do(playback.scrub, seen))
+    if isinstance(key, Key):
+        actions += draw_value_fields(bands.look, channel, key)
+    if not channel.kind.is_held:
+        actions += _motion_items(key, taken)
+    actions += _cycle_items(bands, key.frame)
+    imgui.separator()
+    actions += _time_items(bands.session, bands.look, project)
+    imgui.end_popup()
+    return actions
+
+
+def _motion_items(key: BaseKey, taken: KeysByChannel) -> list[Action]:
+    """Draw the tangent modes and easings of keys that are interpolated."""
+    actions: list[Action] = []
     if imgui.begin_menu(_("Tangent")):
         for tangent, (name, hint) in TANGENT_MODES.items():
             chosen = key.shown_tangent_mode is tangent
@@ -57,10 +86,6 @@ def draw_key_menu(bands: TimelineLayout, row: KeyRow, key: Keyframe | TrackKey) 
             if imgui.menu_item(LABELS[name], "", key.easing == preset)[0]:
                 actions.append(do(keys.set_easing, taken, preset))
         imgui.end_menu()
-    actions += _cycle_items(bands, key.frame)
-    imgui.separator()
-    actions += _time_items(bands.session, bands.look, project)
-    imgui.end_popup()
     return actions
 
 
@@ -81,11 +106,10 @@ def draw_track_menu(bands: TimelineLayout) -> list[Action]:
         return actions
     opened = imgui.get_mouse_pos_on_opening_current_popup()
     frame = bands.project.document.frames.clamp(round(bands.frame(opened.x)))
-    row = bands.project.row
     text = _("Insert key at frame {frame}").format(frame=frame)
     if imgui.menu_item_simple(f"{text}###Insert key"):
         actions.append(do(keys.insert_key_in_row_at, frame))
-    track = bands.project.track_in(row)
+    track = track_in(bands.project.document, bands.project.channel)
     if track is not None and not track.is_scene_space:
         if imgui.menu_item_simple(_("Back to body pose") + "###Insert in pose"):
             actions += [
@@ -121,7 +145,7 @@ def draw_time_menu(session: Session, look: Look, project: Project) -> list[Actio
 def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
     actions: list[Action] = []
     cycle = cycles.cycle_at_playhead(bands.session, bands.project, frame)
-    if cycle is None or isinstance(bands.project.row, TrackRow):
+    if cycle is None or bands.project.channel.kind is TRACK:
         return actions
     imgui.separator()
     if imgui.menu_item_simple(_("Bake repeats")):
@@ -139,7 +163,7 @@ def _cycle_items(bands: TimelineLayout, frame: int) -> list[Action]:
 def _time_items(session: Session, look: Look, project: Project) -> list[Action]:
     actions: list[Action] = []
     actions += draw_action_item(session, "repeat")
-    count, chosen = len(frames_in(project.document, project.row)), project.selected_key_count
+    count, chosen = len(frames_in(project.document, project.channel)), project.selected_key_count
     # Scaling changes the whole scene, reversing only the active layer.
     reverse, scale = _("Reverse all keys"), _("Scale time of all keys")
     if chosen > 1:

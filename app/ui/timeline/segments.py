@@ -145,10 +145,10 @@ def _draw_segment(
     if is_pressed():
         actions += begin_key_box(bands)
     if clicked and is_plain_click():
-        actions.append(do(tracks.select_track, None))
+        actions.append(do(tracks.select_channel, None))
         imgui.open_popup(popup)
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        actions.append(do(tracks.select_track, None))
+        actions.append(do(tracks.select_channel, None))
         imgui.open_popup("menu of track")
     is_open = imgui.is_popup_open(popup)
     hot = is_open or (is_hovered_or_held() and bands.project.timeline.gesture is None)

@@ -2,24 +2,10 @@
 
 from imgui_bundle import ImVec2, imgui
 
-from app.editor import (
-    Action,
-    CameraDrag,
-    KeyDrag,
-    MarkerDrag,
-    Project,
-    ScrubDrag,
-    Session,
-    SwitchDrag,
-    TimeDrag,
-    TimeGesture,
-    TurnDrag,
-    display_frame,
-    do,
-)
+from app.document import display_frame
+from app.editor import Action, KeyDrag, Project, ScrubDrag, Session, TimeDrag, TimeGesture, do
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import timeline_drag
-from app.editor.layering.layer_selection import set_active_layer
 from app.editor.tools import tool_pointer
 from app.texts import _, ngettext
 from app.ui.shortcuts.keys import CTRL, format_modified
@@ -27,16 +13,16 @@ from app.ui.style.theme import Look
 from app.ui.timeline.bar import draw_transport_bar
 from app.ui.timeline.dropping import accept_dropped_pose
 from app.ui.timeline.keys import draw_keys
-from app.ui.timeline.layout import THIN, TimelineLayout, TrackLane, format_seconds, was_dragged
+from app.ui.timeline.layout import THIN, TimelineLayout, format_seconds, was_dragged
+from app.ui.timeline.row import ChannelLane
 from app.ui.timeline.rows.background import draw_key_box, draw_track_background
 from app.ui.timeline.rows.cycles import draw_cycle_bars
+from app.ui.timeline.rows.lanes import draw_lane_keys
 from app.ui.timeline.rows.layers import draw_layer_rows
-from app.ui.timeline.ruler.camera import draw_camera_row
 from app.ui.timeline.ruler.edges import draw_range_edges
 from app.ui.timeline.ruler.markers import draw_markers
 from app.ui.timeline.ruler.ruler import draw_overview, draw_playhead, draw_ruler
 from app.ui.timeline.segments import draw_pose_segments
-from app.ui.timeline.tracks import draw_track_keys
 
 ZOOM_STEP = 1.2  # per notch of the wheel
 SCROLL_STEP = 4.0  # em
@@ -64,10 +50,9 @@ def _draw_track(bands: TimelineLayout, frame: int) -> list[Action]:
     actions += draw_cycle_bars(bands)
     actions += draw_range_edges(bands)
     actions += draw_markers(bands)
-    actions += draw_camera_row(bands)
     actions += draw_playhead(bands, frame)
     actions += draw_keys(bands)
-    actions += draw_track_keys(bands)
+    actions += draw_lane_keys(bands)
     draw_key_box(bands)
     actions += draw_overview(bands, frame)
     actions += _go_on(bands)
@@ -113,8 +98,11 @@ def _go_on(bands: TimelineLayout) -> list[Action]:
         return [do(timeline_drag.cancel_timeline_drag)]
     # A press without a drag is a click. Only the playhead moves at once.
     goes_on = isinstance(gesture, ScrubDrag) or was_dragged()
-    keys = bands.pointed_keys
-    moves = [do(timeline_drag.move_timeline_drag, bands.pointed, keys)] if goes_on else []
+    moves = (
+        [do(timeline_drag.move_timeline_drag, bands.pointed, bands.pointed_channel)]
+        if goes_on
+        else []
+    )
     if imgui.is_mouse_down(imgui.MouseButton_.left):
         return [*moves, *_scroll_beyond_edges(bands)] if goes_on else []
     if not was_dragged():
@@ -127,16 +115,11 @@ def _click(bands: TimelineLayout, gesture: TimeGesture) -> list[Action]:
     match gesture:
         case ScrubDrag():
             return [do(editing.deselect_keys)]
-        case KeyDrag(row=row, pressed=frame, copies=False):
-            # Select only this key, and show its frame.
-            track = bands.project.track_in(row)
-            seen = bands.project.document.frames.clamp(display_frame(gesture.before, track, frame))
-            chosen = {row: frozenset({frame})}
-            return [do(editing.select_keys_in_rows, chosen), do(playback.scrub, seen)]
-        case MarkerDrag(marker=frame) | CameraDrag(key=frame) | TurnDrag(turn=frame):
-            return [do(playback.scrub, frame)]
-        case SwitchDrag(layer=layer, switch=frame):
-            return [do(set_active_layer, layer), do(playback.scrub, frame)]
+        case KeyDrag(channel=channel, pressed=frame, mark=keys, copies=False):
+            # Select only the keys of this mark, and show their frame.
+            document = bands.project.document
+            seen = document.frames.clamp(display_frame(gesture.before, channel, frame))
+            return [do(editing.select_channel_keys, keys), do(playback.scrub, seen)]
         case _:
             return []
 
@@ -179,9 +162,9 @@ def _follow(bands: TimelineLayout, frame: int) -> list[Action]:
 def _follow_active(bands: TimelineLayout) -> list[Action]:
     """Scroll to a newly selected row, or to tracks that were added to it."""
     timing, row, em = bands.project.timeline, bands.row, bands.look.em
-    if timing.last_shown_rows == (bands.project.row, timing.expanded_layers):
+    if timing.last_shown_rows == (bands.project.channel, timing.expanded_layers):
         return []
-    own = [lane for lane in bands.track_rows if lane.layer is row.layer]
+    own = [lane for lane in bands.lanes if lane.layer is row.layer]
     chosen = next((lane for lane in own if lane.is_chosen), None)
     top = row.top if chosen is None else chosen.top
     bottom = max((lane.bottom for lane in own), default=row.bottom)
@@ -217,7 +200,8 @@ def _hint(bands: TimelineLayout) -> str:
 def _hint_of_place(bands: TimelineLayout) -> str:
     x, y = imgui.get_mouse_pos()
     if x < bands.left:
-        if isinstance(bands.pointed_row, TrackLane):
+        row = bands.pointed_row
+        if isinstance(row, ChannelLane) and row.track is not None:
             return _(
                 "Click a track to select it: then keys and drags of its handle go to the track"
             )

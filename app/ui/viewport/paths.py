@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from app.document import Track
-from app.editor import Project, display_frame
+from app.document import Track, track_display_frame
+from app.editor import Project
 from app.editor.actions.tracking.track_space import track_target
 from app.render import Colour, Disc, Line
 from engine.arrays import Complexes
@@ -21,7 +21,7 @@ def find_path_keys(project: Project) -> list[tuple[int, Complexes]]:
     if track is None:
         return []
     document = project.document
-    frames = {display_frame(document, track, key.frame) for key in track.keys}
+    frames = {track_display_frame(document, track, key.frame) for key in track.keys}
     return _places(project, track, sorted(frame for frame in frames if frame in document.frames))
 
 

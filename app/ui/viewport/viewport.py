@@ -6,9 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui, imgui_ctx
 
-from app.document import WEIGHT_PRESETS, Handle, handle_commands
+from app.document import (
+    WEIGHT_PRESETS,
+    Handle,
+    handle_commands,
+    value_at,
+)
 from app.editor import Action, Project, Session, do
-from app.editor.actions import editing, viewing
+from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import handle_editing
 from app.editor.actions.posing.handles import remove_handles, toggle_anchor_at_handle
 from app.editor.actions.posing.pose_drag import free_rotation
@@ -275,7 +280,9 @@ def _depth(session: Session, screen: ScreenMapping, handle: Handle) -> list[Acti
     """Draw the handle's depth: in front or behind where the drawing overlaps itself."""
     if not imgui.begin_menu(_("Depth")):
         return []
-    front = handle_editing.depth_at_playhead(session, screen.project, handle)
+    channel = handle_editing.depth_channel(screen.project, handle)
+    frame = playback.current_frame(session, screen.project)
+    front = value_at(screen.project.document, channel, frame)
     actions = [
         do(handle_editing.set_depth, handle.id, depth)
         for word, depth in DEPTHS.items()

@@ -221,7 +221,7 @@ def _state(session: Session) -> tuple[object, ...]:
         *(project.document, project.history.position, project.history.preview_pose, project.active),
         *(
             project.selected_handles,
-            project.track_row,
+            project.selected_channel,
             project.other_selected_layers,
             project.toggled_rows,
             project.solo,

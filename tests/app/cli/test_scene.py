@@ -11,7 +11,7 @@ from messages import says
 from PIL import Image, ImageDraw
 
 from app.cli.main import main
-from app.document import Meshing, is_visible
+from app.document import DEPTH, Meshing, is_visible
 from app.document.model import PARENT_CIRCLE
 from app.errors import LissomError
 from app.motion import ParentTransforms
@@ -116,7 +116,8 @@ def test_a_script_poses_the_layers_that_it_names(project):
     )
     assert [is_visible(document, patch, frame) for frame in (3, 4)] == [True, False]
     head = body.handles[1]
-    assert (head.depth, head.extent, dict(body.keys[1].depths)) == (0.5, 30.0, {head.id: -1.0})
+    assert (head.depth, head.extent) == (0.5, 30.0)
+    assert body.channels == {(DEPTH.name, head.id): (DEPTH.key(8, -1.0),)}
     # The joint of a joint is closed, and the patch keeps its own turn.
     joints = ParentTransforms(document)
     at = np.array([patch.attachments[0].parent_point])
@@ -645,7 +646,7 @@ def test_a_camera_a_fade_an_order_and_a_still_layer_that_moves_are_exported(fold
     capsys.readouterr()
     assert main(["export", str(out), "--out", str(folder / "staged.glb")]) == 0
     notice = capsys.readouterr().err
-    assert "does not animate the opacity of arm, the order of body, the camera" in notice
+    assert "does not animate Draw order of 'body', Opacity of 'arm', the camera" in notice
 
 
 def test_movement_is_reported_as_unseen_when_a_parent_carries(drawing):
@@ -677,4 +678,4 @@ def test_still_layer_is_refused_when_it_has_handles(drawing):
 def test_order_is_refused_beside_a_layer_that_is_not_there(drawing):
     body = {**STAGED["layers"][0], "order": [[4, {"behind": "hat"}]]}
     notice = refused(drawing, {**STAGED, "layers": [body]})
-    assert "layer 'body': order: there is no layer 'hat'" in notice
+    assert "layer 'body': Draw order: there is no layer 'hat'" in notice

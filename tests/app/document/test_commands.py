@@ -17,24 +17,31 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
+    MARKER,
+    Channel,
+    channel_commands as channels,
     handle_commands as handles,
     key_commands as keys,
+    pose_channel,
     pose_commands as poses,
     scene_commands as settings,
     shape_commands as layers,
 )
-from app.document.commands.retime import BAD_TIME_FACTOR, KEYS_COLLIDE, KEYS_MEET
+from app.document.channels.easing import HOLD, LINEAR, PRESETS
+from app.document.commands.keys.retime import BAD_TIME_FACTOR, KEYS_COLLIDE, KEYS_MEET
 from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.keyframe import MAX_REVOLUTIONS, Handle, Keyframe, Target
 from app.document.layer import NO_HANDLE, NO_KEY, POSE_COUNT, PictureFile
 from app.document.model import Document
 from app.document.settings import NATURAL, VARIANTS, ExportSettings, FrameRange, Marker, Meshing
-from app.document.timing.easing import HOLD, LINEAR, PRESETS
 from app.errors import LissomError
 from engine.arrays import NOT_FINITE
 from engine.errors import EngineError
 from engine.maps.bounds import Bounds
 from engine.maps.certificate import Certificate
+
+POSES = pose_channel(0)
+MARKERS = Channel(MARKER)
 
 
 def animated(*frames: int, count: int = 2, seed: int = 3) -> Document:
@@ -162,14 +169,14 @@ def test_posing_and_inserting_keys():
     document = animated(0, 10)
     pose = random_pose(np.random.default_rng(1), document)
     assert keys.replace_key_pose(0, 10, pose)(document).layers[0].key(10).pose is pose
-    document = keys.set_easing(0, {0}, HOLD)(document)
+    document = channels.set_easing({POSES: {0}}, HOLD)(document)
     grown = keys.insert_key(0, 5, pose)(document)
     assert frames_of(grown) == [0, 5, 10]
     assert grown.layers[0].key(5).easing == HOLD
     assert keys.insert_key(0, 15, pose)(document).layers[0].key(15).easing == LINEAR
     eased = keys.insert_key(0, 15, pose, easing=HOLD)(document).layers[0]
     assert [key.easing for key in eased.keys] == [HOLD, HOLD, HOLD]
-    chosen = keys.set_easing(0, {10}, PRESETS["in"])(document)
+    chosen = channels.set_easing({POSES: {10}}, PRESETS["in"])(document)
     eased = keys.insert_key(0, 15, pose, easing=HOLD)(chosen).layers[0]
     assert [key.easing for key in eased.keys] == [HOLD, PRESETS["in"], HOLD]
     assert keys.insert_key(0, 70, pose)(document).frames == FrameRange(0, 70)
@@ -177,28 +184,28 @@ def test_posing_and_inserting_keys():
 
 def test_moving_and_copying_keys():
     document = animated(0, 10, 20)
-    assert frames_of(keys.move_keys(0, {10, 20}, 5)(document)) == [0, 15, 25]
-    assert frames_of(keys.move_keys(0, {10}, 40)(document)) == [0, 20, 50]
-    assert keys.move_keys(0, {10}, 40)(document).frames == FrameRange(0, 50)
-    copied = keys.copy_keys(0, {0, 10}, 25)(document)
+    assert frames_of(channels.move_keys({POSES: {10, 20}}, 5)(document)) == [0, 15, 25]
+    assert frames_of(channels.move_keys({POSES: {10}}, 40)(document)) == [0, 20, 50]
+    assert channels.move_keys({POSES: {10}}, 40)(document).frames == FrameRange(0, 50)
+    copied = channels.copy_keys({POSES: {0, 10}}, 25)(document)
     assert frames_of(copied) == [0, 10, 20, 25, 35]
     assert copied.layers[0].key(35).pose is document.layers[0].key(10).pose
     # Into each other's places, as they move together.
-    assert frames_of(keys.move_keys(0, {0, 10, 20}, 10)(document)) == [10, 20, 30]
+    assert frames_of(channels.move_keys({POSES: {0, 10, 20}}, 10)(document)) == [10, 20, 30]
 
 
 def test_deleting_keys():
     document = animated(0, 10, 20)
-    assert frames_of(keys.delete_keys(0, {0, 20})(document)) == [10]
+    assert frames_of(channels.delete_keys({POSES: {0, 20}})(document)) == [10]
 
 
 def test_reversing_keys_turns_the_motion_round():
     document = animated(0, 10, 30)
-    document = keys.set_easing(0, {0}, PRESETS["in"])(document)
-    document = keys.set_easing(0, {10}, HOLD)(document)
-    document = keys.set_easing(0, {30}, PRESETS["out"])(document)
+    document = channels.set_easing({POSES: {0}}, PRESETS["in"])(document)
+    document = channels.set_easing({POSES: {10}}, HOLD)(document)
+    document = channels.set_easing({POSES: {30}}, PRESETS["out"])(document)
     document = keys.set_revolutions(0, {10, 30}, 1)(document)
-    turned = keys.reverse_keys(0, {0, 10, 30})(document)
+    turned = channels.reverse_keys({POSES: {0, 10, 30}})(document)
     assert [key.revolutions for key in turned.layers[0].keys] == [-1, 0, 1]
     assert frames_of(turned) == [0, 20, 30]
     assert [key.pose for key in turned.layers[0].keys] == [
@@ -209,7 +216,7 @@ def test_reversing_keys_turns_the_motion_round():
         PRESETS["in"].reversed(),
         PRESETS["out"],
     ]
-    twice = keys.reverse_keys(0, {0, 20, 30})(turned)
+    twice = channels.reverse_keys({POSES: {0, 20, 30}})(turned)
     assert [(key.frame, key.pose) for key in twice.layers[0].keys] == [
         (key.frame, key.pose) for key in document.layers[0].keys
     ]
@@ -217,7 +224,7 @@ def test_reversing_keys_turns_the_motion_round():
 
 def test_scaling_time():
     document = settings.set_preview(FrameRange(2, 30))(animated(4, 10, 20))
-    assert frames_of(keys.scale_keys(0, {10, 20}, 1.5)(document)) == [4, 10, 25]
+    assert frames_of(channels.scale_keys({POSES: {10, 20}}, 1.5)(document)) == [4, 10, 25]
     double = settings.scale_time(2.0)(document)
     assert frames_of(double) == [8, 20, 40]
     assert (double.frames, double.preview) == (FrameRange(0, 96), FrameRange(4, 60))
@@ -287,15 +294,17 @@ def test_bounds_and_a_new_domain_come_with_solved_poses():
         handles.remove_handles(0, ()),
         handles.rename_handle(0, 0, "handle 1"),
         handles.set_handle_weight(0, {0}, 1.0),
-        keys.move_keys(0, {0}, 0),
-        keys.move_keys(0, (), 4),
-        keys.copy_keys(0, (), 4),
-        keys.delete_keys(0, ()),
-        keys.reverse_keys(0, {10}),
-        keys.scale_keys(0, {0, 10}, 1.0),
-        keys.scale_keys(0, {10}, 2.0),
+        channels.move_keys({POSES: {0}}, 0),
+        channels.move_keys({POSES: ()}, 4),
+        channels.copy_keys({POSES: ()}, 4),
+        channels.delete_keys({POSES: ()}),
+        channels.reverse_keys({POSES: {10}}),
+        channels.reverse_keys({POSES: ()}),
+        channels.scale_keys({POSES: ()}, 2.0),
+        channels.scale_keys({POSES: {0, 10}}, 1.0),
+        channels.scale_keys({POSES: {10}}, 2.0),
         settings.scale_time(1.0),
-        keys.set_easing(0, {0, 10}, LINEAR),
+        channels.set_easing({POSES: {0, 10}}, LINEAR),
         keys.set_revolutions(0, {0, 10}, 0),
         settings.set_fps(24.0),
         settings.set_frames(FrameRange(0, 48)),
@@ -347,21 +356,21 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (keys.insert_key(0, 10, POSE), KEYS_COLLIDE.format(frame=10)),
         (keys.insert_key(0, -1, POSE), "key must be at a frame from 0"),
         (keys.insert_key(0, 1_000_000, POSE), "key must be at a frame from 0"),
-        (keys.move_keys(0, {0, 10}, 10), KEYS_COLLIDE.format(frame=20)),
-        (keys.move_keys(0, {0}, -1), "key must be at a frame from 0"),
-        (keys.move_keys(0, {3}, 1), says(NO_KEY, frame=3)),
-        (keys.copy_keys(0, {0}, 0), KEYS_COLLIDE.format(frame=0)),
-        (keys.copy_keys(0, {0}, 20), KEYS_COLLIDE.format(frame=20)),
-        (keys.delete_keys(0, {0, 10, 20}), "at least one key"),
-        (keys.delete_keys(0, {0, 11}), says(NO_KEY, frame=11)),
-        (keys.reverse_keys(0, {0, 11}), says(NO_KEY, frame=11)),
-        (keys.scale_keys(0, {0, 10}, 2.0), KEYS_COLLIDE.format(frame=20)),
-        (keys.scale_keys(0, {0, 10}, 0.0), says(BAD_TIME_FACTOR)),
-        (keys.scale_keys(0, {0, 10}, float("nan")), says(BAD_TIME_FACTOR)),
+        (channels.move_keys({POSES: {0, 10}}, 10), KEYS_COLLIDE.format(frame=20)),
+        (channels.move_keys({POSES: {0}}, -1), "key must be at a frame from 0"),
+        (channels.move_keys({POSES: {3}}, 1), says(NO_KEY, frame=3)),
+        (channels.copy_keys({POSES: {0}}, 0), KEYS_COLLIDE.format(frame=0)),
+        (channels.copy_keys({POSES: {0}}, 20), KEYS_COLLIDE.format(frame=20)),
+        (channels.delete_keys({POSES: {0, 10, 20}}), "at least one key"),
+        (channels.delete_keys({POSES: {0, 11}}), says(NO_KEY, frame=11)),
+        (channels.reverse_keys({POSES: {0, 11}}), says(NO_KEY, frame=11)),
+        (channels.scale_keys({POSES: {0, 10}}, 2.0), KEYS_COLLIDE.format(frame=20)),
+        (channels.scale_keys({POSES: {0, 10}}, 0.0), says(BAD_TIME_FACTOR)),
+        (channels.scale_keys({POSES: {0, 10}}, float("nan")), says(BAD_TIME_FACTOR)),
         (settings.scale_time(0.01), says(KEYS_MEET, one=0, other=10, frame=0)),
         (settings.scale_time(-1.0), says(BAD_TIME_FACTOR)),
         (keys.match_loop_ends(0), None),
-        (keys.set_easing(0, {5}, LINEAR), says(NO_KEY, frame=5)),
+        (channels.set_easing({POSES: {5}}, LINEAR), says(NO_KEY, frame=5)),
         (settings.set_fps(0.0), "frames per second"),
         (settings.set_fps(float("nan")), "frames per second"),
         (settings.set_frames(FrameRange(0, 15)), says(KEY_OUTSIDE, frame=20)),
@@ -369,8 +378,8 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
         (layers.set_variant(0, "arap"), "variant"),
         (layers.set_anchor(0, CENTRE + 2 * RADIUS), "The anchor"),
         (layers.set_anchor(0, complex("inf")), "anchor must be within"),
-        (settings.add_marker(-1), "marker must be at a frame from 0"),
-        (settings.delete_marker(3), "no marker at frame 3"),
+        (settings.add_marker(-1), "key must be at a frame from 0"),
+        (channels.delete_keys({MARKERS: {3}}), says(NO_KEY, frame=3)),
         (poses.delete_pose(0, "bow"), "no pose 'bow'"),
         (poses.save_pose(0, POSE, "  "), "needs a name"),
         (poses.save_pose(0, OTHER_CAGE, "bow"), "cage of 13"),
@@ -385,7 +394,7 @@ OTHER_CAGE = random_pose(np.random.default_rng(0), DOCUMENT, disc_domain(13))
 def test_what_is_not_possible_says_why(command, message):
     document = keys.match_loop_ends(0)(DOCUMENT) if message is None else DOCUMENT
     if message is None:
-        document, message = keys.delete_keys(0, {0, 10})(document), "needs two keys"
+        document, message = channels.delete_keys({POSES: {0, 10}})(document), "needs two keys"
     with pytest.raises(LissomError, match=message):
         command(document)
 
@@ -438,7 +447,7 @@ def test_a_domain_that_loses_a_handle_is_refused_by_the_handle_s_name():
         (lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[::-1]), "out of order"),
         (
             lambda: altered(DOCUMENT, keys=DOCUMENT.layers[0].keys[:1] * 2),
-            "Two keys are at frame 0",
+            "keys at frames 0 and 0 are out of order",
         ),
         (lambda: altered(DOCUMENT, next_handle=1), "already belongs to a handle"),
         (lambda: altered(DOCUMENT, frames=FrameRange(0, 19)), "outside the animation"),
@@ -487,13 +496,13 @@ def test_two_pictures_of_one_content_have_one_hash():
 def test_markers_stay_in_order_and_apart():
     document = settings.add_marker(20)(settings.add_marker(6, "beat")(disc_document()))
     assert [(m.frame, m.name) for m in document.markers] == [(6, "beat"), (20, "Marker 2")]
-    moved = settings.move_marker(6, 30)(settings.rename_marker(20, "end")(document))
+    moved = channels.move_keys({MARKERS: {6}}, 24)(settings.rename_marker(20, "end")(document))
     assert [(m.frame, m.name) for m in moved.markers] == [(20, "end"), (30, "beat")]
-    with pytest.raises(LissomError, match="Two markers would be at frame 30"):
-        settings.move_marker(20, 30)(moved)
-    assert settings.delete_marker(20)(moved).markers == (Marker(frame=30, name="beat"),)
+    with pytest.raises(LissomError, match=says(KEYS_COLLIDE, frame=30)):
+        channels.move_keys({MARKERS: {20}}, 10)(moved)
+    assert channels.delete_keys({MARKERS: {20}})(moved).markers == (Marker(frame=30, name="beat"),)
     assert [m.frame for m in settings.scale_time(2.0)(moved).markers] == [40, 60]
-    assert settings.move_marker(6, 6)(document) is document
+    assert channels.move_keys({MARKERS: {6}}, 0)(document) is document
 
 
 def test_poses_of_the_library_follow_handles_as_keys_do():

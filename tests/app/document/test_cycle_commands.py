@@ -9,22 +9,38 @@ from key_rows import row
 from messages import says
 from numpy.testing import assert_allclose
 
-from app.document.commands import cycle_commands, key_commands, scene_commands, track_commands
-from app.document.commands.cycle_commands import TWO_POSES_SHOWN
-from app.document.commands.layers import filming_commands, layer_commands
+from app.document import (
+    DEPTH,
+    DRAW_ORDER,
+    VISIBILITY,
+    Channel,
+    DrawOrder,
+    channel_commands as channels,
+    pose_channel,
+    source_frame,
+)
+from app.document.channels.cycles import Cycle
+from app.document.channels.tracks import Track, TrackKey
+from app.document.commands import (
+    scene_commands,
+)
+from app.document.commands.keys import (
+    cycle_commands,
+    track_commands,
+)
+from app.document.commands.keys.cycle_commands import TWO_POSES_SHOWN
+from app.document.commands.layers import layer_commands
 from app.document.keyframe import Handle, Target
-from app.document.layers.layer_keys import DrawOrderKey
-from app.document.layers.visibility import VisibilityKey
+from app.document.queries.channel_values.tracks_at import track_at
+from app.document.queries.channel_values.values_at import draw_order_key_at
 from app.document.queries.clips import clip_of
 from app.document.queries.layers.depth import depth_points_at
-from app.document.queries.layers.layer_state import draw_order_key_at
 from app.document.queries.layers.visibility import is_visible
-from app.document.queries.tracks import track_at
 from app.document.settings import FrameRange
-from app.document.timing.cycles import Cycle
-from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 from app.motion.inbetweens.animation import Animation
+
+POSES = pose_channel(0)
 
 
 def with_keys(*frames, last=100, **changes):
@@ -104,10 +120,11 @@ def with_handle(document, front):
 
     def keyed(key):
         pose = replace(key.pose, targets={0: Target(position=60 + 45j)})
-        return replace(key, pose=pose, depths={0: 1.0} if key.frame == front else {})
+        return replace(key, pose=pose)
 
     keys = tuple(map(keyed, document.layers[0].keys))
-    return altered(document, handles=(handle,), next_handle=1, keys=keys)
+    depth = {(DEPTH.name, 0): (DEPTH.key(front, 1.0),)}
+    return altered(document, handles=(handle,), next_handle=1, keys=keys, channels=depth)
 
 
 def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
@@ -123,7 +140,13 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
     document = altered(
         document,
         tracks=(wag,),
-        visibility_keys=(VisibilityKey(0, visible=True), VisibilityKey(30, visible=False)),
+        channels={
+            **document.layers[0].channels,
+            (VISIBILITY.name, None): (
+                VISIBILITY.key(0, value=True),
+                VISIBILITY.key(30, value=False),
+            ),
+        },
     )
     keyed = cycle_commands.bake_cycle(0, 20, 92)(document)
     before, after = clip_of(document, 0), clip_of(keyed, 0)
@@ -150,21 +173,21 @@ def test_tracks_what_is_in_front_and_visibility_are_made_into_keys():
 
 def test_cycles_go_with_all_of_their_keys_in_time():
     document = cycle_commands.set_cycle(0, 20, 44, 68)(with_keys(20, 28, 36, 44, 90))
-    later = key_commands.move_keys(0, {20, 28, 36}, 8)(document).layers[0]
+    later = channels.move_keys({POSES: {20, 28, 36}}, 8)(document).layers[0]
     assert later.cycles == (Cycle(first=28, last=52, until=76),)
     # Moved alone, a key is another part of every repeat.
-    alone = key_commands.move_keys(0, {28}, 3)(document).layers[0]
+    alone = channels.move_keys({POSES: {28}}, 3)(document).layers[0]
     assert alone.cycles == document.layers[0].cycles
     with pytest.raises(LissomError, match="key at frame 46 lies where frames 20 to 44 repeat"):
-        key_commands.move_keys(0, {36}, 10)(document)
-    slower = key_commands.scale_keys(0, {20, 28, 36}, 1.25)(document).layers[0]
+        channels.move_keys({POSES: {36}}, 10)(document)
+    slower = channels.scale_keys({POSES: {20, 28, 36}}, 1.25)(document).layers[0]
     assert slower.cycles == (Cycle(first=20, last=50, until=80),)
     twice = scene_commands.scale_time(2.0)(document).layers[0]
     assert twice.cycles == (Cycle(first=40, last=88, until=136),)
-    assert not key_commands.delete_keys(0, {20, 28, 36})(document).layers[0].cycles
-    assert key_commands.delete_keys(0, {28, 90})(document).layers[0].cycles
+    assert not channels.delete_keys({POSES: {20, 28, 36}})(document).layers[0].cycles
+    assert channels.delete_keys({POSES: {28, 90}})(document).layers[0].cycles
     with pytest.raises(LissomError, match="frame 68"):
-        scene_commands.set_frames(FrameRange(0, 60))(key_commands.delete_keys(0, {90})(document))
+        scene_commands.set_frames(FrameRange(0, 60))(channels.delete_keys({POSES: {90}})(document))
 
 
 def test_what_a_frame_shows_is_keyed_where_it_repeats():
@@ -174,19 +197,27 @@ def test_what_a_frame_shows_is_keyed_where_it_repeats():
     ]
 
 
+def deleted(document, kind, frame):
+    """Return the document without the key that takes effect at a frame, in repeats too."""
+    channel = Channel(kind, 0)
+    return channels.delete_keys({channel: {source_frame(document, channel, frame)}})(document)
+
+
 def switched(document, frame, *, to):
+    if to is None:
+        return deleted(document, VISIBILITY, frame)
     return layer_commands.key_visibility(0, frame, visible=to)(document)
 
 
 def placed(document, frame, *, to):
     if to is None:
-        return filming_commands.unplace_at(0, frame)(document)
-    return filming_commands.place_at(0, DrawOrderKey(frame, None, to))(document)
+        return deleted(document, DRAW_ORDER, frame)
+    return channels.set_key(Channel(DRAW_ORDER, 0), frame, DrawOrder(None, to))(document)
 
 
 def is_in_front(document, layer, frame):
     key = draw_order_key_at(document, layer, frame)
-    return key is None or key.in_front
+    return key is None or key.value.in_front
 
 
 @pytest.mark.parametrize(
@@ -212,10 +243,12 @@ def test_changes_in_one_repeat_are_made_in_all(change, is_on):
 
 
 def test_a_repeat_keeps_a_change_of_its_own_until_it_is_edited():
-    switches = tuple(VisibilityKey(at, visible=at % 4 == 0) for at in (0, 30, 40, 50))
+    switches = tuple(VISIBILITY.key(at, value=at % 4 == 0) for at in (0, 30, 40, 50))
     document = cycle_commands.set_cycle(0, 20, 44, 68)(with_keys(0, 20, 28, 36, 44, 80))
-    document = switched(altered(document, visibility_keys=switches), 50, to=None)
-    assert document.layers[0].visibility_keys == switches[:3]
+    document = switched(
+        altered(document, channels={(VISIBILITY.name, None): switches}), 50, to=None
+    )
+    assert document.layers[0].keys_of(VISIBILITY) == switches[:3]
 
 
 def test_cycle_is_refused_in_words_over_another_cycle():

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose
 
-from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
 from app.errors import LissomError
 
 units = st.floats(0, 1)

@@ -5,16 +5,24 @@ from dataclasses import replace
 import pytest
 from documents import altered, disc_document
 
-from app.document.commands import key_commands, scene_commands
+from app.document import channel_commands as channels, pose_channel
+from app.document.channels.cycles import Cycle
+from app.document.commands import scene_commands
 from app.document.keyframe import Keyframe
-from app.document.queries.applied_motion import digest_keys, is_motion_unedited
+from app.document.queries.applied_motion import (
+    digest_motion,
+    is_motion_unedited,
+    keys_of_motion,
+)
 from app.document.rig.applied_motion import AppliedMotion
 from app.document.settings import FrameRange
-from app.document.timing.cycles import Cycle
 from app.rigging import Parameters
+
+POSES = pose_channel(0)
 
 POSE = disc_document().layers[0].keys[0].pose
 BREATHE = AppliedMotion(
+    id=1,
     motion="breathe",
     kind="anything",
     joints={},
@@ -27,16 +35,24 @@ BREATHE = AppliedMotion(
 
 
 def breathing(*frames, motions=(BREATHE,), cycles=()):
-    """Return a document whose layer has keys at some frames, and motions as they were given."""
-    keys = tuple(Keyframe(frame=frame, pose=POSE) for frame in frames)
+    """Return a document whose layer has keys at some frames, and motions that made some of them."""
+    made = {
+        frame: each.id for each in motions for frame in frames if each.first <= frame <= each.last
+    }
+    keys = tuple(Keyframe(frame=frame, pose=POSE, motion=made.get(frame)) for frame in frames)
     document = altered(disc_document(), keys=keys, cycles=cycles, frames=FrameRange(0, 100))
     layer = document.layers[0]
-    given = (replace(each, digest=digest_keys(layer, each.first, each.last)) for each in motions)
+    given = (replace(each, digest=digest_motion(layer, each)) for each in motions)
     return altered(document, motions=tuple(given))
 
 
+def own_frames(layer):
+    """Return the frames of the keys of a layer's first motion."""
+    return [key.frame for key in keys_of_motion(layer, layer.motions[0])]
+
+
 def moved(document, frames, by):
-    return key_commands.move_keys(0, frames, by)(document).layers[0]
+    return channels.move_keys({POSES: frames}, by)(document).layers[0]
 
 
 def ranges(layer):
@@ -59,7 +75,7 @@ def test_a_motion_that_repeats_goes_with_its_cycle():
 
 
 def test_a_motion_that_was_edited_stays_edited_when_it_is_moved():
-    document = key_commands.delete_keys(0, {20})(breathing(10, 20, 30))
+    document = channels.delete_keys({POSES: {20}})(breathing(10, 20, 30))
     layer = moved(document, {10, 30}, 5)
     assert ranges(layer) == [(15, 15, 35)]
     assert not is_motion_unedited(layer, layer.motions[0])
@@ -75,19 +91,24 @@ def test_the_ends_of_a_motion_go_with_the_keys_there(frames, by, expected):
     assert not is_motion_unedited(layer, layer.motions[0])
 
 
-def test_a_motion_is_forgotten_when_it_takes_in_another_key():
-    assert ranges(moved(breathing(10, 20, 30, 40), {30}, 20)) == []
+def test_motion_knows_its_keys_among_others():
+    layer = moved(breathing(10, 20, 30, 40), {30}, 20)
+    assert ranges(layer) == [(10, 10, 50)]
+    assert own_frames(layer) == [10, 20, 50]
+    copied = channels.copy_keys({POSES: {20}}, 3)(breathing(10, 20, 30)).layers[0]
+    assert own_frames(copied) == [10, 20, 30]
 
 
-def test_motions_that_meet_at_a_key_are_both_moved_by_it():
-    later = replace(BREATHE, first=30, start=30, last=50)
-    layer = moved(breathing(10, 20, 30, 40, 50, motions=(BREATHE, later)), {30}, 3)
-    assert ranges(layer) == [(10, 10, 33), (33, 33, 50)]
+def test_motions_may_overlap_after_their_keys_were_moved():
+    later = replace(BREATHE, id=2, first=40, start=40, last=60)
+    layer = moved(breathing(10, 20, 30, 40, 60, motions=(BREATHE, later)), {40, 60}, -15)
+    assert ranges(layer) == [(10, 10, 30), (25, 25, 45)]
+    assert own_frames(layer) == [10, 20, 30]
 
 
 def test_a_motion_is_scaled_with_its_keys():
     document = breathing(0, 10, 20, 30, 80)
-    layer = key_commands.scale_keys(0, {10, 20, 30}, 2.0)(document).layers[0]
+    layer = channels.scale_keys({POSES: {10, 20, 30}}, 2.0)(document).layers[0]
     assert ranges(layer) == [(10, 10, 50)]
     assert not is_motion_unedited(layer, layer.motions[0])
 

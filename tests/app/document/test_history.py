@@ -7,12 +7,14 @@ from hypothesis import given, settings, strategies as st
 
 from app.document.commands import (
     handle_commands,
-    key_commands,
     pose_commands,
     scene_commands,
     shape_commands,
 )
 from app.document.commands.command import Command
+from app.document.commands.keys import (
+    key_commands,
+)
 from app.document.commands.layers import layer_commands
 from app.document.history import History, PreviewPose, _bytes_only_in
 from app.errors import LissomError

@@ -7,18 +7,25 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
+    DEPTH,
+    VISIBILITY,
+    Channel,
+    channel_commands as channels,
     handle_commands as handles,
     layer_commands as layers,
     scene_commands as scenes,
 )
+from app.document.commands.keys.retime import KEYS_COLLIDE
 from app.document.commands.layers.layer_commands import LAST_LAYER
+from app.document.layer import NO_KEY
 from app.document.layers.attachments import Attachment
-from app.document.layers.visibility import VisibilityKey
 from app.document.model import NO_LAYER, PARENT_CIRCLE
 from app.document.queries.clips import clip_of
 from app.document.queries.layers.depth import depth_points_at
 from app.document.queries.layers.visibility import is_visible
 from app.errors import LissomError
+
+SHOWN = Channel(VISIBILITY, 0)
 
 
 def scene(*names):
@@ -104,18 +111,19 @@ def test_detached_poses_are_turned_and_moved_and_as_distorted_as_before():
 
 def test_a_layer_is_seen_as_its_switches_say():
     document = layers.key_visibility(0, 12, visible=False)(disc_document())
-    assert document.layers[0].visibility_keys == (
-        VisibilityKey(0, visible=True),
-        VisibilityKey(12, visible=False),
+    assert document.layers[0].keys_of(VISIBILITY) == (
+        VISIBILITY.key(0, value=True),
+        VISIBILITY.key(12, value=False),
     )
     document = layers.key_visibility(0, 20, visible=True)(document)
     seen = [is_visible(document, document.layers[0], frame) for frame in (0, 11.9, 12, 19, 20, 50)]
     assert seen == [True, True, False, False, True, True]
     hidden = layers.set_hidden(0, hidden=True)(document)
     assert not is_visible(hidden, hidden.layers[0], 0)
-    assert layers.key_visibility(0, 12, visible=None)(document).layers[0].visibility_keys == (
-        VisibilityKey(0, visible=True),
-        VisibilityKey(20, visible=True),
+    left = channels.delete_keys({SHOWN: {12}})(document)
+    assert left.layers[0].keys_of(VISIBILITY) == (
+        VISIBILITY.key(0, value=True),
+        VISIBILITY.key(20, value=True),
     )
     fresh = disc_document()
     assert is_visible(fresh, fresh.layers[0], 5)
@@ -126,17 +134,17 @@ def test_what_is_seen_when_moves_and_is_stretched_with_all_time():
     document = layers.key_visibility(0, 20, visible=True)(document)
 
     def frames(document):
-        return [switch.frame for switch in document.layers[0].visibility_keys]
+        return [switch.frame for switch in document.layers[0].keys_of(VISIBILITY)]
 
-    assert frames(layers.move_visibility_key(0, 12, 15)(document)) == [0, 15, 20]
-    passed = layers.move_visibility_key(0, 12, 30)(document)
+    assert frames(channels.move_keys({SHOWN: {12}}, 3)(document)) == [0, 15, 20]
+    passed = channels.move_keys({SHOWN: {12}}, 18)(document)
     assert frames(passed) == [0, 20, 30]
-    assert [switch.visible for switch in passed.layers[0].visibility_keys] == [True, True, False]
-    assert layers.move_visibility_key(0, 12, 12)(document) is document
-    with pytest.raises(LissomError, match="no visibility key at frame 13"):
-        layers.move_visibility_key(0, 13, 14)(document)
-    with pytest.raises(LissomError, match="visibility keys at frames 20 and 20 are out of order"):
-        layers.move_visibility_key(0, 12, 20)(document)
+    assert [switch.value for switch in passed.layers[0].keys_of(VISIBILITY)] == [True, True, False]
+    assert channels.move_keys({SHOWN: {12}}, 0)(document) is document
+    with pytest.raises(LissomError, match=says(NO_KEY, frame=13)):
+        channels.move_keys({SHOWN: {13}}, 1)(document)
+    with pytest.raises(LissomError, match=says(KEYS_COLLIDE, frame=20)):
+        channels.move_keys({SHOWN: {12}}, 8)(document)
     assert frames(scenes.scale_time(2.0)(document)) == [0, 24, 40]
 
 
@@ -149,8 +157,8 @@ def test_depth_holds_from_a_key_on():
     keys = tuple(replace(layer.keys[0], frame=frame, pose=pose) for frame in (0, 10, 20))
     document = document.with_layer(replace(layer, keys=keys))
     document = layers.set_depth(0, 0, -0.5, 30.0)(document)
-    document = layers.key_depth(0, 10, 0, 1.0)(document)
-    document = layers.key_depth(0, 20, 1, 0.25)(document)
+    document = channels.set_key(Channel(DEPTH, 0, 0), 10, 1.0)(document)
+    document = channels.set_key(Channel(DEPTH, 0, 1), 20, 0.25)(document)
 
     def depths(frame, *, loop=False):
         clip = replace(clip_of(document, 0), loop=loop)
@@ -163,9 +171,14 @@ def test_depth_holds_from_a_key_on():
     fronts = depth_points_at(clip_of(document, 0), 30)
     assert fronts[0].extent == 30.0
     assert fronts[1].extent == pytest.approx(0.15 * 180)
-    assert depths(48 + 9, loop=True) == depths(9)
+    # In a loop, the last keys hold until the first ones.
+    assert depths(48 + 9, loop=True) == depths(9, loop=True) == depths(30)
+    assert depths(48 + 10, loop=True) == [(nose, 1.0), (tail, 0.25)]
     gone = handles.remove_handles(0, {0})(document)
-    assert [dict(key.depths) for key in gone.layers[0].keys] == [{}, {}, {1: 0.25}]
-    assert layers.key_depth(0, 10, 0, None)(document).layers[0].keys[1].depths == {}
+    assert list(gone.layers[0].channels) == [(DEPTH.name, 1)]
+    assert (
+        channels.delete_keys({Channel(DEPTH, 0, 0): {10}})(document).layers[0].keys_of(DEPTH, 0)
+        == ()
+    )
     with pytest.raises(LissomError, match=r"from −1 \(behind\) to 1"):
         layers.set_depth(0, 0, 1.5, None)(document)

@@ -9,25 +9,31 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
+    TRACK,
+    Channel,
+    channel_commands as channels,
     handle_commands,
     key_commands,
     layer_commands,
+    pose_channel,
     scene_commands,
     shape_commands,
     track_commands as tracks,
 )
-from app.document.commands.retime import KEYS_COLLIDE, KEYS_MEET
+from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.channels.springs import Spring
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
+from app.document.commands.keys.retime import KEYS_COLLIDE, KEYS_MEET
 from app.document.commands.scene_commands import KEY_OUTSIDE
 from app.document.history import History
 from app.document.keyframe import Keyframe
 from app.document.layer import NO_HANDLE, NO_KEY
 from app.document.queries.timeline import changed_ranges, export_frame_range
 from app.document.settings import FrameRange
-from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
-from app.document.timing.springs import Spring
-from app.document.timing.tangent_mode import TangentMode
-from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
+
+OF_TRACK = Channel(TRACK, 0, 0)
 
 NAMES = {"arm.L": -40 + 10j, "arm.R": 35 + 12j, "tail": 5 - 50j}
 AXIS = CENTRE.real
@@ -70,7 +76,7 @@ def test_a_handle_is_keyed_by_itself():
     between = tracks.put_track_key(0, 1, 15, 1j)(later)
     # What divides an interval takes its easing; a new last key has none.
     assert [key.easing for key in only(between).keys] == [PRESETS["in"], PRESETS["in"], LINEAR]
-    held = tracks.set_track_passing(0, 1, {15}, TangentMode.STOP)(between)
+    held = channels.set_tangent_mode({Channel(TRACK, 0, 1): {15}}, TangentMode.STOP)(between)
     again = tracks.put_track_key(0, 1, 15, 7)(held)
     assert only(again).keys[1] == replace(only(held).keys[1], place=7)
     assert tracks.put_track_key(0, 1, 10, 9)(again).layers[0].tracks[0].keys[0].turn == 0.5
@@ -81,54 +87,55 @@ def test_a_handle_is_keyed_by_itself():
 
 def test_keys_of_a_track_are_moved_about_in_time_as_those_of_poses_are():
     document = tracked(row(4, 10, 16), row(5, handles=(1,)))
-    assert frames(tracks.move_track_keys(0, 0, {10, 16}, 3)(document)) == [4, 13, 19]
-    assert frames(tracks.copy_track_keys(0, 0, {4, 10}, 20)(document)) == [4, 10, 16, 24, 30]
-    assert frames(tracks.delete_track_keys(0, 0, {10})(document)) == [4, 16]
-    assert frames(tracks.scale_track_keys(0, 0, {4, 10, 16}, 1.5)(document)) == [4, 13, 22]
-    assert frames(tracks.scale_track_keys(0, 0, {10, 16}, 0.5, 4)(document)) == [4, 7, 10]
-    pasted = tracks.put_track_keys(0, 0, row(10, 40).keys[1:])(document)
+    assert frames(channels.move_keys({OF_TRACK: {10, 16}}, 3)(document)) == [4, 13, 19]
+    assert frames(channels.copy_keys({OF_TRACK: {4, 10}}, 20)(document)) == [4, 10, 16, 24, 30]
+    assert frames(channels.delete_keys({OF_TRACK: {10}})(document)) == [4, 16]
+    assert frames(channels.scale_keys({OF_TRACK: {4, 10, 16}}, 1.5)(document)) == [4, 13, 22]
+    assert frames(channels.scale_keys({OF_TRACK: {10, 16}}, 0.5, 4)(document)) == [4, 7, 10]
+    pasted = channels.insert_keys({OF_TRACK: row(10, 40).keys[1:]})(document)
     assert frames(pasted) == [4, 10, 16, 40]
     for command in (
-        tracks.move_track_keys(0, 0, {4}, 6),
-        tracks.copy_track_keys(0, 0, {4}, 6),
-        tracks.scale_track_keys(0, 0, {4, 10, 16}, 0.01),
+        channels.move_keys({OF_TRACK: {4}}, 6),
+        channels.copy_keys({OF_TRACK: {4}}, 6),
     ):
         with pytest.raises(LissomError, match=KEYS_COLLIDE.format(frame=r"\d+")):
             command(document)
+    with pytest.raises(LissomError, match=says(KEYS_MEET, one=4, other=10, frame=4)):
+        channels.scale_keys({OF_TRACK: {4, 10, 16}}, 0.01)(document)
     with pytest.raises(LissomError, match=says(NO_KEY, frame=5)):
-        tracks.move_track_keys(0, 0, {4, 5}, 1)(document)
-    with pytest.raises(LissomError, match="'tail' has no track"):
-        tracks.move_track_keys(0, 2, {4}, 1)(document)
-    assert tracks.move_track_keys(0, 0, {4}, 0)(document) is document
+        channels.move_keys({OF_TRACK: {4, 5}}, 1)(document)
+    with pytest.raises(LissomError, match=says(NO_KEY, frame=4)):
+        channels.move_keys({Channel(TRACK, 0, 2): {4}}, 1)(document)
+    assert channels.move_keys({OF_TRACK: {4}}, 0)(document) is document
 
 
 def test_a_track_goes_with_its_last_key():
     document = tracked(row(4, 10), row(5, handles=(1,)))
-    left = tracks.delete_track_keys(0, 0, {4, 10})(document)
+    left = channels.delete_keys({OF_TRACK: {4, 10}})(document)
     assert only(left) == document.layers[0].tracks[1]
     assert tracks.remove_tracks(0, {0, 1})(document).layers[0].tracks == ()
 
 
 def test_a_track_runs_backwards():
     document = tracked(row(4, 10, 20))
-    document = tracks.set_track_easing(0, 0, {4}, SLOW)(document)
-    document = tracks.set_track_easing(0, 0, {10}, HOLD)(document)
-    back = tracks.reverse_track_keys(0, 0, {4, 10, 20})(document)
+    document = channels.set_easing({OF_TRACK: {4}}, SLOW)(document)
+    document = channels.set_easing({OF_TRACK: {10}}, HOLD)(document)
+    back = channels.reverse_keys({OF_TRACK: {4, 10, 20}})(document)
     assert [(key.frame, key.place) for key in only(back).keys] == [
         (4, 20 + 40j),
         (14, 10 + 20j),
         (20, 4 + 8j),
     ]
     assert [key.easing for key in only(back).keys] == [HOLD, SLOW.reversed(), LINEAR]
-    again = tracks.reverse_track_keys(0, 0, {4, 14, 20})(back)
+    again = channels.reverse_keys({OF_TRACK: {4, 14, 20}})(back)
     assert only(again) == only(document)
 
 
 def test_how_time_runs_between_keys_of_a_track_and_how_they_are_passed():
     document = tracked(row(4, 10, 20))
-    held = tracks.set_track_passing(0, 0, {10}, TangentMode.HOLD)(document)
+    held = channels.set_tangent_mode({OF_TRACK: {10}}, TangentMode.HOLD)(document)
     assert [key.shown_tangent_mode for key in only(held).keys] == ["through", "hold", "through"]
-    stopped = tracks.set_track_passing(0, 0, {4, 10}, TangentMode.STOP)(held)
+    stopped = channels.set_tangent_mode({OF_TRACK: {4, 10}}, TangentMode.STOP)(held)
     assert [key.shown_tangent_mode for key in only(stopped).keys] == ["stop", "stop", "through"]
     assert only(stopped).keys[1].easing == LINEAR
 
@@ -147,8 +154,8 @@ def velocities(document, handle=0):
 def test_keys_keep_their_velocities_wherever_they_go():
     document = led()
     own = [1 + 4j, 1 + 10j, None]
-    assert velocities(tracks.move_track_keys(0, 0, {4, 10, 20}, 3)(document)) == own
-    assert velocities(tracks.copy_track_keys(0, 0, {4, 10}, 30)(document)) == [*own, *own[:2]]
+    assert velocities(channels.move_keys({OF_TRACK: {4, 10, 20}}, 3)(document)) == own
+    assert velocities(channels.copy_keys({OF_TRACK: {4, 10}}, 30)(document)) == [*own, *own[:2]]
     assert velocities(tracks.copy_track(0, 0, 2)(document), 2) == own
     assert velocities(tracks.set_delay(0, 0, 5)(document)) == own
     assert velocities(tracks.put_track_key(0, 0, 10, 99)(document)) == own
@@ -162,36 +169,36 @@ def test_keys_keep_their_velocities_wherever_they_go():
 
 def test_velocities_follow_the_time_that_is_scaled_and_run_backwards():
     document = led()
-    assert velocities(tracks.scale_track_keys(0, 0, {4, 10, 20}, 2)(document)) == [
+    assert velocities(channels.scale_keys({OF_TRACK: {4, 10, 20}}, 2)(document)) == [
         0.5 + 2j,
         0.5 + 5j,
         None,
     ]
-    assert velocities(tracks.scale_track_keys(0, 0, {10, 20}, 0.5, 4)(document)) == [
+    assert velocities(channels.scale_keys({OF_TRACK: {10, 20}}, 0.5, 4)(document)) == [
         1 + 4j,
         2 + 20j,
         None,
     ]
     assert velocities(scene_commands.scale_time(0.5)(document)) == [2 + 8j, 2 + 20j, None]
     assert velocities(scene_commands.set_fps(12.0)(document)) == [1 + 4j, 1 + 10j, None]
-    back = tracks.reverse_track_keys(0, 0, {4, 10, 20})(document)
+    back = channels.reverse_keys({OF_TRACK: {4, 10, 20}})(document)
     assert velocities(back) == [None, -1 - 10j, -1 - 4j]
-    assert only(tracks.reverse_track_keys(0, 0, {4, 14, 20})(back)) == only(document)
+    assert only(channels.reverse_keys({OF_TRACK: {4, 14, 20}})(back)) == only(document)
     # What stays as it is stays the same.
-    assert tracks.scale_track_keys(0, 0, {20}, 3)(document) is document
-    assert key_commands.scale_keys(0, {20}, 3)(document) is document
+    assert channels.scale_keys({OF_TRACK: {20}}, 3)(document) is document
+    assert channels.scale_keys({pose_channel(0): {20}}, 3)(document) is document
 
 
 def test_who_sets_a_passing_or_an_easing_sets_the_velocity_free():
     document = led()
     for command in (
-        tracks.set_track_passing(0, 0, {10}, TangentMode.SMOOTH),
-        tracks.set_track_passing(0, 0, {10}, TangentMode.STOP),
-        tracks.set_track_easing(0, 0, {10, 20}, LINEAR),
-        tracks.set_track_easing(0, 0, {10}, PRESETS["in-out"]),
+        channels.set_tangent_mode({OF_TRACK: {10}}, TangentMode.SMOOTH),
+        channels.set_tangent_mode({OF_TRACK: {10}}, TangentMode.STOP),
+        channels.set_easing({OF_TRACK: {10, 20}}, LINEAR),
+        channels.set_easing({OF_TRACK: {10}}, PRESETS["in-out"]),
     ):
         assert velocities(command(document)) == [1 + 4j, None, None]
-    assert tracks.set_track_passing(0, 0, {20}, TangentMode.SMOOTH)(document) is document
+    assert channels.set_tangent_mode({OF_TRACK: {20}}, TangentMode.SMOOTH)(document) is document
 
 
 @pytest.mark.parametrize("velocity", [complex(np.nan, 0), complex(0, np.inf), 1e8])
@@ -361,12 +368,12 @@ def test_a_deleted_handle_takes_its_track_and_spring_along_in_one_step():
 
 def test_the_animation_grows_for_keys_of_tracks_and_is_not_cut_under_them():
     document = tracked(row(4, 10))
-    grown = tracks.move_track_keys(0, 0, {10}, 60)(document)
+    grown = channels.move_keys({OF_TRACK: {10}}, 60)(document)
     assert grown.frames == FrameRange(0, 70)
     with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=70, first=0, last=48)):
         scene_commands.set_frames(FrameRange(0, 48))(grown)
     with pytest.raises(LissomError):
-        tracks.move_track_keys(0, 0, {4}, -5)(document)
+        channels.move_keys({OF_TRACK: {4}}, -5)(document)
     # A delay moves no key.
     assert tracks.set_delay(0, 0, 45)(document).frames == document.frames
 
@@ -412,7 +419,7 @@ def test_undo_tells_where_tracks_have_changed():
         return [span.first for span in changed_ranges(document, command(document))]
 
     assert changed(tracks.put_track_key(0, 0, 10, 7)) == [13]
-    assert changed(tracks.move_track_keys(0, 0, {10}, 2)) == [13, 15]
+    assert changed(channels.move_keys({OF_TRACK: {10}}, 2)) == [13, 15]
     assert changed(tracks.set_delay(0, 0, 5)) == [7, 9, 13, 15, 23, 25]
     assert changed(tracks.set_reach(0, 0, 0.5)) == [7, 13, 23]
     assert changed(tracks.put_track(0, row(46, handles=(1,), delay=9))) == [48]

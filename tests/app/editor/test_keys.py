@@ -9,13 +9,23 @@ from documents import altered, disc_document
 from messages import says
 from sessions import session_of
 
-from app.document import LAST_FRAME, Spring, Track, TrackKey, handle_commands, track_commands
+from app.document import (
+    LAST_FRAME,
+    TRACK,
+    Channel,
+    Spring,
+    Track,
+    TrackKey,
+    handle_commands,
+    pose_channel,
+    track_commands,
+)
 from app.document.commands.layers import layer_commands
 from app.editor.actions import editing
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import keys
 from app.editor.actions.timing.keys import NO_LAST_FRAME
-from app.editor.timeline_view import TrackRow, measure_key_errors
+from app.editor.timeline_view import measure_key_errors
 from app.editor.work.derived import Derived
 from app.errors import LissomError
 
@@ -37,8 +47,12 @@ def texts(session):
 def test_deleting_all_keys_keeps_the_first_of_each_layer(session):
     project = session.project
     first, second = (layer.id for layer in project.document.layers)
-    everything = {first: {0, 6}, second: {0, 6}, TrackRow(first, 0): {0, 4}}
-    editing.select_keys_in_rows(session, {row: frozenset(at) for row, at in everything.items()})
+    everything = {
+        pose_channel(first): frozenset({0, 6}),
+        pose_channel(second): frozenset({0, 6}),
+        Channel(TRACK, first, 0): frozenset({0, 4}),
+    }
+    editing.select_channel_keys(session, everything)
     editing.delete_selection(session)
     assert [layer.key_frames for layer in project.document.layers] == [{0}, {0}]
     assert not project.document.layer(first).tracks
@@ -51,11 +65,12 @@ def test_deleting_all_keys_keeps_the_first_of_each_layer(session):
 def test_deleting_some_keys_deletes_those_alone(session):
     project = session.project
     first, second = (layer.id for layer in project.document.layers)
-    editing.select_keys_in_rows(session, {first: frozenset({0}), second: frozenset({6})})
+    chosen = {pose_channel(first): frozenset({0}), pose_channel(second): frozenset({6})}
+    editing.select_channel_keys(session, chosen)
     editing.delete_selection(session)
     assert [layer.key_frames for layer in project.document.layers] == [{6}, {0}]
     assert not texts(session)
-    editing.select_keys_in_rows(session, {first: frozenset({6})})
+    editing.select_channel_keys(session, {pose_channel(first): frozenset({6})})
     with pytest.raises(LissomError, match="at least one key"):
         editing.delete_selection(session)
 

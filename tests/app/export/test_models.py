@@ -20,10 +20,10 @@ from still_poses import posed
 
 from app.document import (
     HOLD,
+    VISIBILITY,
     ExportSettings,
     FrameRange,
     Group,
-    VisibilityKey,
     clip_of,
     pinned_handles,
 )
@@ -346,8 +346,8 @@ def test_what_a_model_does_not_composite_is_reported(tmp_path):
 def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
     document, out = two_layers(), tmp_path / "two.glb"
     first, second = document.layers
-    switched = replace(
-        second, visibility_keys=(VisibilityKey(0, visible=False), VisibilityKey(4, visible=True))
+    switched = second.with_keys_of(
+        VISIBILITY, [VISIBILITY.key(0, value=False), VISIBILITY.key(4, value=True)]
     )
     monkeypatch.setattr(
         "app.export.morph_mesh.TriangleOrder.triangles",
@@ -366,8 +366,8 @@ def test_layers_are_seen_when_and_as_much_as_they_should(tmp_path, monkeypatch):
     assert factors == [[1, 1, 1, 0.5], [1, 1, 1, 1]]
     assert maker.meshes[0].texture[..., 3].max() == 255
     assert ["glTF model keeps" in notice for notice in maker.notices] == [True, True]
-    off = (VisibilityKey(0, visible=False),)
-    unseen = tuple(replace(layer, visibility_keys=off) for layer in document.layers)
+    off = [VISIBILITY.key(0, value=False)]
+    unseen = tuple(layer.with_keys_of(VISIBILITY, off) for layer in document.layers)
     exported(replace(document, layers=(first, unseen[1])), out)
     assert [node.name for node in read(out).nodes] == ["layer"]
     with pytest.raises(LissomError, match="no layer is visible"):

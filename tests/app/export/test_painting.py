@@ -12,7 +12,7 @@ from animations import BLOB, PARTED, Sliding, still_document
 from documents import altered
 from numpy.testing import assert_array_equal
 
-from app.document import CameraKey, FrameRange, OpacityKey
+from app.document import CAMERA, OPACITY, Camera, FrameRange, Key
 from app.document.model import Document
 from app.errors import LissomError
 from app.export.frame_renderer import FrameRenderer
@@ -224,14 +224,14 @@ def test_a_frame_is_drawn_in_parts_that_the_machine_holds(gl, document, monkeypa
     assert np.abs(still(gl, document, size=(150, 111)).astype(int) - whole).max() <= 2
 
 
-def with_camera(document: Document, *keys: CameraKey) -> Document:
+def with_camera(document: Document, *keys: Key[Camera]) -> Document:
     return replace(document, camera=keys, frames=FrameRange(0, 12))
 
 
 def test_the_camera_at_twice_the_size_shows_a_part_of_a_frame_twice_as_large(gl, document):
     height, width = BLOB.shape[:2]
     centre = complex(width / 2 - 10, height / 2 + 5)
-    frame = still(gl, with_camera(document, CameraKey(frame=0, centre=centre, zoom=2.0)))
+    frame = still(gl, with_camera(document, CAMERA.key(0, Camera(centre, zoom=2.0))))
     assert frame.shape == BLOB.shape
     large = still(gl, document, size=(2 * width, 2 * height)).astype(int)
     left, top = round(2 * centre.real - width / 2), round(1.5 * height - 2 * centre.imag)
@@ -240,7 +240,7 @@ def test_the_camera_at_twice_the_size_shows_a_part_of_a_frame_twice_as_large(gl,
 
 def test_the_camera_turns_what_is_seen_counter_clockwise(gl, document):
     height, width = BLOB.shape[:2]
-    key = CameraKey(frame=0, centre=complex(width, height) / 2, turn=np.pi / 2)
+    key = CAMERA.key(0, Camera(complex(width, height) / 2, turn=np.pi / 2))
     frame = still(gl, with_camera(document, key), background="#20c040")
     upright = still(gl, document, background="#20c040").astype(int)
     left = (width - height) // 2
@@ -251,7 +251,7 @@ def test_the_camera_turns_what_is_seen_counter_clockwise(gl, document):
 
 def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
     height, width = BLOB.shape[:2]
-    key = CameraKey(frame=0, centre=complex(width, height) / 2, turn=0.3)
+    key = CAMERA.key(0, Camera(complex(width, height) / 2, turn=0.3))
     poses = Sliding(document, 0)
     plan = plan_of(document, poses)
     view = replace(plan.view, turn=complex(np.exp(0.3j)))
@@ -264,8 +264,8 @@ def test_a_view_that_is_turned_shows_what_a_turned_camera_does(gl, document):
 
 
 def test_each_frame_is_what_the_camera_shows_then(gl, document):
-    first = CameraKey(frame=0, centre=60 + 45j)
-    panned = with_camera(document, first, replace(first, frame=12, centre=48 + 51j))
+    first, last = CAMERA.key(0, Camera(60 + 45j)), CAMERA.key(12, Camera(48 + 51j))
+    panned = with_camera(document, first, last)
     with drawing(gl, panned, Sliding(document, 0)) as draw:
         halfway, end = draw(6.0), draw(12.0)
     assert_array_equal(halfway[3:, 6:][SEEN[:-3, :-6]], BLOB[:-3, :-6][SEEN[:-3, :-6]])
@@ -273,7 +273,7 @@ def test_each_frame_is_what_the_camera_shows_then(gl, document):
 
 
 def test_with_a_camera_every_framing_is_its_frame(gl, document):
-    away = with_camera(document, CameraKey(frame=0, centre=500 + 45j, zoom=0.5))
+    away = with_camera(document, CAMERA.key(0, Camera(500 + 45j, zoom=0.5)))
     away = replace(away, size=(64, 48))
     for framing in ("fit", "canvas"):
         assert plan_of(away, Sliding(away, 12), framing=framing).view.size == (64, 48)
@@ -282,8 +282,8 @@ def test_with_a_camera_every_framing_is_its_frame(gl, document):
 
 
 def test_a_fade_is_drawn(gl, document):
-    keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=10, opacity=0.0))
-    faded = replace(altered(document, opacity_keys=keys), frames=FrameRange(0, 12))
+    keys = (OPACITY.key(0, 1.0), OPACITY.key(10, 0.0))
+    faded = altered(document, channels={(OPACITY.name, None): keys}, frames=FrameRange(0, 12))
     with drawing(gl, faded, Sliding(document, 0)) as draw:
         alpha = draw(5.0)[..., 3]
         assert not draw(10.0).any()

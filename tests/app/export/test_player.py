@@ -11,7 +11,7 @@ from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
 
-from app.document import Document, ExportSettings, FrameRange, Group, VisibilityKey, clip_of
+from app.document import VISIBILITY, Document, ExportSettings, FrameRange, Group, clip_of
 from app.export import CachedVertices, ExportRequest, FrameRenderer, MeshExport, plan_export
 from app.motion import Animation
 from app.render.gpu.context import create_context
@@ -40,9 +40,9 @@ def two_blobs() -> Document:
     """Two layers of which one lies faintly over the other until it is hidden, in a loop."""
     document = moving_document()
     (layer,) = document.layers
-    switches = (VisibilityKey(0, visible=True), VisibilityKey(3, visible=False))
+    switches = (VISIBILITY.key(0, value=True), VISIBILITY.key(3, value=False))
     above = replace(layer, id=1, name="above", opacity=0.6, keys=layer.keys[:1])
-    above = replace(above, visibility_keys=switches)
+    above = above.with_keys_of(VISIBILITY, switches)
     return replace(document, layers=(layer, above), frames=FrameRange(0, 8), loop=True)
 
 

@@ -9,20 +9,28 @@ from documents import altered
 from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
-from app.document.commands import cycle_commands, key_commands
-from app.document.commands.layers import filming_commands
-from app.document.keyframe import Handle, TangentMode, Target
-from app.document.layers.layer_keys import DrawOrderKey, OpacityKey, TransformKey
-from app.document.layers.visibility import VisibilityKey
+from app.document.channels.cycles import Cycle
+from app.document.channels.kind import Channel
+from app.document.channels.kinds import DEPTH, DRAW_ORDER, OPACITY, POSE, TRANSFORM, VISIBILITY
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
+from app.document.channels.values import DrawOrder, Transform
+from app.document.commands.keys import (
+    channel_commands,
+    cycle_commands,
+)
+from app.document.keyframe import Handle, Target
+from app.document.queries.channel_values.values_at import (
+    layers_in_draw_order,
+    opacity_at,
+    transform_at,
+)
 from app.document.queries.clips import clip_of
 from app.document.queries.key_segments import segment_keys
 from app.document.queries.layers.depth import depth_points_at
-from app.document.queries.layers.layer_state import layers_in_draw_order, opacity_at, transform_at
 from app.document.queries.layers.visibility import is_visible
 from app.document.queries.timeline import export_frame_range, segment_time_at
 from app.document.settings import FrameRange
-from app.document.timing.cycles import Cycle
-from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 from app.motion.inbetweens.animation import Animation
 from engine.variant import Variant
@@ -70,7 +78,7 @@ def test_every_repeat_is_the_same_motion(variant, after):
 @pytest.mark.parametrize("passing", TangentMode)
 def test_it_is_so_however_keys_are_passed(passing):
     document = cycling(*KEYS, 110, cycle=WALK, last=120)
-    document = key_commands.set_tangent_mode(0, {20, 34}, passing)(document)
+    document = channel_commands.set_tangent_mode({Channel(POSE, 0): {20, 34}}, passing)(document)
     animation = moving(document)
     assert unlike(animation, WALK, [20, 21, 30, 33, 34, 35, 43]) < 1e-9
     if passing is TangentMode.HOLD:
@@ -232,26 +240,26 @@ def test_handles_that_stay_and_tracks_repeat_with_it():
 
 def test_what_is_in_front_and_seen_repeats_with_it():
     document = with_handles(cycling(*KEYS, 110, cycle=WALK, last=120))
-    keys = list(document.layers[0].keys)
-    keys[3] = replace(keys[3], depths={1: 1.0})
-    document = altered(document, keys=tuple(keys))
+    ahead = document.layers[0].with_keys_of(DEPTH, [DEPTH.key(34, 1.0)], 1)
+    document = document.with_layer(ahead)
     clip = clip_of(document, 0)
     ahead = [bool(depth_points_at(clip, frame)) for frame in (33, 34, 43, 44, 57, 58, 91, 92, 110)]
     assert ahead == [False, True, True, False, False, True, True, False, False]
-    switches = (VisibilityKey(0, visible=True), VisibilityKey(30, visible=False))
-    document = altered(document, visibility_keys=switches)
-    layer = document.layers[0]
+    switches = (VISIBILITY.key(0, value=True), VISIBILITY.key(30, value=False))
+    layer = document.layers[0].with_keys_of(VISIBILITY, switches)
+    document = document.with_layer(layer)
     shown = [is_visible(document, layer, frame) for frame in (29, 30, 43, 44, 53, 54, 91, 92, 120)]
     assert shown == [True, False, False, True, True, False, False, True, True]
 
 
 def test_what_moves_fades_and_is_ordered_repeats_with_it():
     wait, end = 2.5, WALK.until
-    bob = tuple(TransformKey(frame=f, shift=s) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
-    blink = tuple(OpacityKey(frame=f, opacity=o) for f, o in ((22, 1.0), (28, 0.2), (40, 1.0)))
-    document = cycling(*KEYS, cycle=WALK, last=120, transform_keys=bob, opacity_keys=blink)
-    behind = replace(document.layers[0], id=1, name="behind", draw_order_keys=())
-    weave = replace(document.layers[0], draw_order_keys=(DrawOrderKey(30, 1),))
+    bob = tuple(TRANSFORM.key(f, Transform(s)) for f, s in ((20, 0j), (30, 9j), (44, 0j)))
+    blink = tuple(OPACITY.key(f, o) for f, o in ((22, 1.0), (28, 0.2), (40, 1.0)))
+    channels = {(TRANSFORM.name, None): bob, (OPACITY.name, None): blink}
+    document = cycling(*KEYS, cycle=WALK, last=120, channels=channels)
+    behind = replace(document.layers[0], id=1, name="behind")
+    weave = document.layers[0].with_keys_of(DRAW_ORDER, [DRAW_ORDER.key(30, DrawOrder(1))])
     document = replace(document, layers=(weave, behind))
 
     def shown(document, frame):
@@ -272,13 +280,14 @@ def test_what_moves_fades_and_is_ordered_repeats_with_it():
     assert abs((after - at) - (at - before)) < 1e-3 * abs(after - before)
     assert shown(document, end) == shown(document, end + 9) == shown(document, 20)
     # Posed in one, all change; made into keys, nothing is seen to.
-    changed = filming_commands.key_movement(0, 44, 5 + 0j, 0.0)(document)
+    changed = channel_commands.set_key(Channel(TRANSFORM, 0), 44, Transform(5 + 0j))(document)
     assert [shown(changed, frame)[0] for frame in (20, 44, 92)] == [5, 5, 5]
     keyed = cycle_commands.bake_cycle(0, 20, 120)(document)
     for frame in (30, 46, 54, 67, 78, 91):
         assert abs(shown(keyed, frame)[0] - shown(document, frame)[0]) < 1.5
         assert shown(keyed, frame)[2] == shown(document, frame)[2]
     # Who goes on beyond the stretch, or comes elsewhere, has a time of their own.
-    for last in (TransformKey(frame=60, shift=9), TransformKey(frame=44, shift=9)):
-        walk = replace(document.layer(0), transform_keys=(TransformKey(frame=20), last))
+    for last in (60, 44):
+        moves = TRANSFORM.key(20, Transform()), TRANSFORM.key(last, Transform(9))
+        walk = document.layer(0).with_keys_of(TRANSFORM, moves)
         assert shown(document.with_layer(walk), 92)[0] == 9

@@ -10,9 +10,12 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
+    PARENT,
+    Channel,
     Cycle,
     FrameRange,
     Spring,
+    channel_commands,
     clip_of,
     cycle_commands,
     layer_commands as layers,
@@ -170,12 +173,11 @@ def test_joints_are_taken_back_moved_and_stretched_in_time(hands):
     document = layers.attach_layer(2, anchor, Attachment(parent=1, parent_point=CENTRE, frame=20))(
         hands
     )
-    moved = layers.move_attachment_key(2, 20, 26)(document)
+    joints = Channel(PARENT, 2)
+    moved = channel_commands.move_keys({joints: {20}}, 6)(document)
     assert [joint.frame for joint in moved.layer(2).attachments] == [0, 26]
-    back = layers.delete_attachment_key(2, 26)(moved)
+    back = channel_commands.delete_keys({joints: {26}})(moved)
     assert back.layer(2).attachments == hands.layer(2).attachments
-    with pytest.raises(LissomError, match="no attachment at frame 21"):
-        layers.move_attachment_key(2, 21, 5)(document)
     longer = scene_commands.scale_time(2.0)(document)
     assert [joint.frame for joint in longer.layer(2).attachments] == [0, 40]
     gone = layers.remove_layer(1)(document)

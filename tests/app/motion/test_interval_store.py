@@ -10,9 +10,12 @@ from numpy.testing import assert_allclose
 from projects import project_of
 from sessions import session_of, settle
 
-from app.document.commands import key_commands
+from app.document.channels.tangent_mode import TangentMode
+from app.document.commands.keys import (
+    channel_commands,
+)
 from app.document.history import History
-from app.document.keyframe import TangentMode
+from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
@@ -127,12 +130,14 @@ def test_what_was_made_once_is_found_wherever_it_comes_again(clip, prepared):
 
 def test_a_copied_key_costs_nothing(document):
     every = document.layers[0].key_frames
-    corners = key_commands.set_tangent_mode(0, every, TangentMode.CORNER)(document)
+    corners = channel_commands.set_tangent_mode({pose_channel(0): every}, TangentMode.CORNER)(
+        document
+    )
     clip = clip_of(corners, 0)
     store = InbetweenCache(mesh=DeformMesh.fine(clip.layer.domain))
     assert prepare(store, clip) == 3
     longer = replace(corners, frames=FrameRange(0, 60))
-    copied = clip_of(key_commands.copy_keys(0, {0, 10}, 40)(longer), 0)
+    copied = clip_of(channel_commands.copy_keys({pose_channel(0): {0, 10}}, 40)(longer), 0)
     # From the last key to the first of the copies is new; between the two it is not.
     assert store.missing_segments(copied, 0) == [3]
 

@@ -6,8 +6,16 @@ from chains import SIZE, VARIANTS, bent, chain, exactly, seen
 from documents import CENTRE, inside
 from numpy.testing import assert_allclose
 
-from app.document import History, clip_of, key_commands, layer_commands as layers, scene_commands
-from app.document.keyframe import TangentMode
+from app.document import (
+    History,
+    TangentMode,
+    channel_commands,
+    clip_of,
+    key_commands,
+    layer_commands as layers,
+    pose_channel,
+    scene_commands,
+)
 from app.errors import LissomError
 from app.motion import (
     Animation,
@@ -160,8 +168,8 @@ def test_joints_stay_closed_when_documents_change_and_are_saved(tmp_path):
     earlier = []
     changes = (
         (layers.duplicate_layer(1), layers.duplicate_layer(2), layers.move_layer(2, 0)),
-        (layers.rename_layer(3, "copy"), key_commands.copy_keys(1, {20}, 7)),
-        (key_commands.move_keys(0, {20}, 5), layers.set_hidden(1, hidden=True)),
+        (layers.rename_layer(3, "copy"), channel_commands.copy_keys({pose_channel(1): {20}}, 7)),
+        (channel_commands.move_keys({pose_channel(0): {20}}, 5), layers.set_hidden(1, hidden=True)),
         (layers.detach_layer(3, *joints.placement(1, 11.5)),),
         (scene_commands.set_loop(loop=True), layers.remove_layer(0)),
     )
@@ -254,7 +262,8 @@ def test_an_edit_costs_the_frames_of_its_intervals_and_undo_none():
     # The last key of one of them: the way to it from the middle one passes through that.
     layer = document.layer(1)
     last = layer.keys[-1]
-    cornered = key_commands.set_tangent_mode(1, layer.key_frames, TangentMode.CORNER)(document)
+    poses = {pose_channel(1): layer.key_frames}
+    cornered = channel_commands.set_tangent_mode(poses, TangentMode.CORNER)(document)
     edited = key_commands.replace_key_pose(1, last.frame, bent(layer, 0.3, 1e-4, 2))(cornered)
     before = ParentTransforms(cornered, earlier=first)
     worked_out(before)

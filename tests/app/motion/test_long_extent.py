@@ -7,15 +7,16 @@ from numpy.testing import assert_allclose
 
 from app.document import (
     LINEAR,
+    TRANSFORM,
     Attachment,
     FrameRange,
     Handle,
     Keyframe,
     Spring,
     Target,
-    TransformKey,
+    Transform,
 )
-from app.document.timing.cycles import Cycle
+from app.document.channels.cycles import Cycle
 from app.motion.extents import long_extent
 from app.motion.extents.long_extent import MOST_MEASURED, farthest_reach
 
@@ -113,8 +114,8 @@ def test_a_spring_that_swings_with_what_carries_it_is_within():
     pose = replace(layer.keys[0].pose, targets={0: Target(position=anchor)})
     keys = (replace(layer.keys[0], pose=pose),)
     spring = Spring(handle=0, frequency=2.0, damping=0.1)
-    moves = tuple(TransformKey(frame=at) for at in (0, kicked, LAST))
-    parent = replace(layer, id=1, name="parent", transform_keys=moves)
+    moves = [TRANSFORM.key(at, Transform()) for at in (0, kicked, LAST)]
+    parent = replace(layer, id=1, name="parent").with_keys_of(TRANSFORM, moves)
     child = replace(
         layer,
         handles=(handle,),

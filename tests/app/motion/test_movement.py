@@ -8,19 +8,26 @@ import pytest
 from chains import chain, seen
 from numpy.testing import assert_allclose
 
-from app.document import Attachment, TransformKey, clip_of, layer_commands as layers, transform_at
+from app.document import (
+    TRANSFORM,
+    Attachment,
+    Transform,
+    clip_of,
+    layer_commands as layers,
+    transform_at,
+)
 from app.motion import Animation, ParentTransforms, placed_animations
 from app.motion.parenting.parent_transforms import find_parent_motion
 
 MOVES = (
-    TransformKey(frame=0),
-    TransformKey(frame=20, shift=40 - 10j, turn=1.2),
-    TransformKey(frame=48),
+    TRANSFORM.key(0, Transform()),
+    TRANSFORM.key(20, Transform(40 - 10j, 1.2)),
+    TRANSFORM.key(48, Transform()),
 )
 
 
 def moving(document, identity, keys=MOVES):
-    return document.with_layer(replace(document.layer(identity), transform_keys=keys))
+    return document.with_layer(document.layer(identity).with_keys_of(TRANSFORM, keys))
 
 
 def test_attached_layers_go_along_when_their_parent_moves():

@@ -7,10 +7,14 @@ from documents import altered, disc_domain
 from key_rows import jump, prepared, row
 from numpy.testing import assert_allclose
 
-from app.document.commands import key_commands
-from app.document.keyframe import TangentMode
+from app.document.channels.easing import LINEAR, PRESETS, Easing
+from app.document.channels.tangent_mode import TangentMode
+from app.document.commands.keys import (
+    channel_commands,
+    key_commands,
+)
+from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
-from app.document.timing.easing import LINEAR, PRESETS, Easing
 from app.errors import LissomError, listen_to_progress
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.pose_sampler import PoseSampler
@@ -20,12 +24,14 @@ from engine.maps import Bounds
 @pytest.mark.parametrize("easing", [LINEAR, PRESETS["in-out"], Easing((0.3, 0.1, 0.6, 0.9))])
 def test_keys_are_passed_at_one_velocity_whatever_the_easings(easing):
     document = row(4, loop=True)
-    document = key_commands.set_easing(0, {10}, easing)(document)
+    document = channel_commands.set_easing({pose_channel(0): {10}}, easing)(document)
     animation = Animation(clip_of(document, 0), points=document.layers[0].domain.outline)
     speeds = [jump(animation, frame) for frame in (0.0, 10.0, 20.0, 30.0)]
     largest = max(speed for _, speed in speeds)
     assert max(change for change, _ in speeds) < 1e-5 * largest
-    cornered = key_commands.set_tangent_mode(0, {20}, TangentMode.CORNER)(document)
+    cornered = channel_commands.set_tangent_mode({pose_channel(0): {20}}, TangentMode.CORNER)(
+        document
+    )
     animation = Animation(clip_of(cornered, 0), points=document.layers[0].domain.outline)
     assert jump(animation, 20.0)[0] > 0.1 * largest
 
@@ -55,7 +61,7 @@ def test_a_key_that_changes_has_four_intervals_prepared_again():
     # Corners and stops blend two keys alike, at another pace.
     every = document.layers[0].key_frames
     cornered, stopped = (
-        key_commands.set_tangent_mode(0, every, passing)(document)
+        channel_commands.set_tangent_mode({pose_channel(0): every}, passing)(document)
         for passing in (TangentMode.CORNER, TangentMode.STOP)
     )
     store, _ = prepared(cornered)

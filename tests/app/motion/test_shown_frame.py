@@ -6,7 +6,12 @@ from documents import CENTRE, disc_document
 from shapes import regular_polygon
 
 from app.document import clip_of
-from app.document.commands import handle_commands, key_commands
+from app.document.commands import (
+    handle_commands,
+)
+from app.document.commands.keys import (
+    key_commands,
+)
 from app.document.commands.layers import layer_commands
 from app.motion import DeformMesh, InbetweenCache, show
 from engine.domain import MeshedDomain

@@ -9,7 +9,7 @@ from animations import still_document
 from drawings import NEEDS_OSMESA
 from PIL import Image, ImageDraw
 
-from app.document import clip_of
+from app.document import DEPTH, clip_of
 from app.document.commands import handle_commands
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import Keyframe
@@ -139,8 +139,9 @@ def star_and_clip(seed):
     document = star.document((star.tip, -1.0, star.extent))
     layer = document.layers[0]
     first = layer.keys[0]
-    keys = (first, Keyframe(frame=CHANGE, pose=first.pose, depths={0: 1.0}))
-    return star, clip_of(document.with_layer(replace(layer, keys=keys)), 0)
+    keys = (first, Keyframe(frame=CHANGE, pose=first.pose))
+    layer = replace(layer, keys=keys).with_keys_of(DEPTH, [DEPTH.key(CHANGE, 1.0)], 0)
+    return star, clip_of(document.with_layer(layer), 0)
 
 
 @pytest.fixture(autouse=True)

@@ -10,7 +10,12 @@ from numpy.testing import assert_allclose
 from sessions import session_of, settle
 
 from app.document import Attachment, FrameRange, Spring, Target, Track, TrackKey
-from app.document.commands import handle_commands, track_commands
+from app.document.commands import (
+    handle_commands,
+)
+from app.document.commands.keys import (
+    track_commands,
+)
 from app.document.commands.layers import layer_commands
 from app.editor.actions.posing.pose_drag import drag_handles, nudge_handles, release_drag
 from app.solving import flip_poses, pose_document

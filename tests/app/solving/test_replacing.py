@@ -8,11 +8,11 @@ from layered import blob, png
 from PIL import Image, ImageDraw
 
 from app.document import handle_commands, key_commands
+from app.document.channels.springs import Spring
+from app.document.channels.tracks import Track, TrackKey
 from app.document.keyframe import Target
 from app.document.model import Document
 from app.document.settings import Meshing
-from app.document.timing.springs import Spring
-from app.document.timing.tracks import Track, TrackKey
 from app.solving.drag_solver import DragSolver, Rig
 from app.solving.replace_picture import start_picture_replacement
 from app.solving.resolve_keys import step_resolver

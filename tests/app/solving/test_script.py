@@ -1,21 +1,33 @@
 import copy
 import json
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from animations import bar_document, bar_picture, still_document
 from messages import says
 
-from app.document.timing.cycles import Cycle
-from app.document.timing.easing import HOLD, LINEAR, PRESETS
-from app.document.timing.springs import Spring
-from app.document.timing.tangent_mode import TangentMode
-from app.document.timing.tracks import Track, TrackKey
+from app.document.channels.cycles import Cycle
+from app.document.channels.easing import HOLD, LINEAR, PRESETS
+from app.document.channels.kind import Quantity
+from app.document.channels.kinds import (
+    CAMERA as CAMERA_KIND,
+    DEPTH,
+    LAYER_KINDS,
+    OPACITY,
+    TRANSFORM,
+    VISIBILITY,
+)
+from app.document.channels.springs import Spring
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
+from app.document.channels.values import Camera, Transform
 from app.errors import LissomError
 from app.solving import pose_document
-from app.solving.script.fields import NOT_A_FRAME, OUT_OF_ORDER
-from app.solving.script.layers import NO_KEYS, ZOOM_NOT_POSITIVE, ScriptAttachment
+from app.solving.script.channels import NO_PAIR, TWICE
+from app.solving.script.fields import NO_KEYS, NOT_A_FRAME, OUT_OF_ORDER
+from app.solving.script.layers import ScriptAttachment
 from app.solving.script.pose_script import (
     NO_VARIANT,
     WRONG_SCHEMA,
@@ -90,7 +102,7 @@ def test_what_is_left_out_has_its_documented_default():
     script = parse_pose_script({"schema": 1, "handles": {}, "keys": [{"frame": 3}]})
     assert (script.fps, script.loop) == (24.0, False)
     (script,) = script.layers
-    assert (script.variant, script.attach, script.visible) == ("metric", (), None)
+    assert (script.variant, script.attach, script.channels) == ("metric", (), {})
     assert script.bounds == Bounds(k=0.5, sigma_a=2.0, sigma_b=0.5)
     assert script.anchor is None
     assert script.keys[0].ease == PRESETS["linear"]
@@ -361,9 +373,14 @@ def test_a_script_of_several_layers():
     assert (body.variant, arm.variant) == ("metric", "nu")
     assert body.bounds == arm.bounds == Bounds(k=0.7, sigma_a=2.0, sigma_b=0.5)
     assert arm.handles["hand"] == ScriptHandle(at=7 + 8j, front=0.5, extent=60.0)
-    assert arm.keys[1].fronts == {"hand": -1.0}
     assert arm.attach == (ScriptAttachment(to="body", at=3 + 4j, turns=False),)
-    assert arm.visible == ((0, True), (12, False))
+    assert arm.channels == {
+        (VISIBILITY.name, None): (VISIBILITY.key(0, value=True), VISIBILITY.key(12, value=False)),
+        (DEPTH.name, "hand"): (DEPTH.key(9, -1.0),),
+    }
+    # In a loop, the last depth holds before the first pose, and the first pose ends it.
+    _, arm = parse_pose_script({**SCENE, "loop": True}).layers
+    assert arm.channels[DEPTH.name, "hand"] == (DEPTH.key(0, 0.5), DEPTH.key(9, -1.0))
 
 
 @pytest.mark.parametrize(
@@ -371,12 +388,12 @@ def test_a_script_of_several_layers():
     [
         ({"layer": 5}, says(NOT_TEXT, where="layers[0].layer")),
         ({"colour": 1}, r"layers\[0\] has an unknown field 'colour'"),
-        ({"keys": []}, says(NO_KEYS, where="layers[0]")),
+        ({"keys": []}, says(NO_KEYS, where="layers[0].keys")),
         ({"keys": [{"frame": 0, "front": {"toe": 1}}]}, r"keys\[0\] names the handle 'toe'"),
         ({"handles": {"hand": {"front": 1}}}, says(LACKS_FIELD, name="at")),
         ({"handles": {"hand": {"at": [1, 2], "depth": 1}}}, "unknown field 'depth'"),
         ({"attach": {"to": "body"}}, says(LACKS_FIELD, name="at")),
-        ({"visible": [[0]]}, "a frame and true or false"),
+        ({"visible": [[0]]}, says(NO_PAIR, where="layers[0].visible[0]")),
         ({"visible": [[0.5, True]]}, "whole number"),
     ],
 )
@@ -470,8 +487,8 @@ CAMERA = {"keys": [{"frame": 0, "centre": [100, 60]}, {"frame": 12, "centre": [1
 
 def test_the_camera_and_movements_are_read():
     (one, two) = parse_pose_script({**WHOLE, "camera": CAMERA, "canvas": [640, 360]}).camera
-    assert (one.frame, one.centre, one.zoom, one.turn) == (0, 100 + 60j, 1.0, 0.0)
-    assert two.turn == np.pi / 2
+    assert one == CAMERA_KIND.key(0, Camera(100 + 60j))
+    assert two.value.turn == np.pi / 2
     eased = changed(("keys", 1, "ease"), "in", CAMERA)
     camera = parse_pose_script({**WHOLE, "camera": eased}).camera
     assert (camera[0].tangent_mode, camera[1].tangent_mode) == (
@@ -481,8 +498,14 @@ def test_the_camera_and_movements_are_read():
     moved = {"keys": [{"frame": 0}, {"frame": 40, "shift": [3, -4], "turn": -180}]}
     script = parse_pose_script({**WHOLE, "movement": moved, "opacity": [[0, 1], [50, 0.5]]})
     (layer,) = script.layers
-    assert (layer.movement[1].shift, layer.movement[1].turn) == (3 - 4j, -np.pi)
-    assert [(key.frame, key.opacity) for key in layer.opacity] == [(0, 1), (50, 0.5)]
+    assert layer.channels == {
+        (TRANSFORM.name, None): (
+            TRANSFORM.key(0, Transform()),
+            TRANSFORM.key(40, Transform(3 - 4j, -np.pi)),
+        ),
+        (OPACITY.name, None): (OPACITY.key(0, 1.0), OPACITY.key(50, 0.5)),
+    }
+    assert layer.opacity is None
     assert script.last == 50
     assert parse_pose_script({**WHOLE, "opacity": 0.25}).layers[0].opacity == 0.25
 
@@ -490,15 +513,15 @@ def test_the_camera_and_movements_are_read():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"camera": {"keys": []}}, says(NO_KEYS, where="camera")),
+        ({"camera": {"keys": []}}, says(NO_KEYS, where="camera.keys")),
         ({"camera": {"key": []}}, "unknown field 'key'"),
         (
             {"camera": changed(("keys", 1, "zoom"), 0, CAMERA)},
-            says(ZOOM_NOT_POSITIVE, where="keys[1]"),
+            r"camera\.keys\[1\]: The zoom must be from 0\.001 to 1000, not 0",
         ),
         (
             {"camera": changed(("keys", 1, "zoom"), -2, CAMERA)},
-            says(ZOOM_NOT_POSITIVE, where="keys[1]"),
+            r"camera\.keys\[1\]: The zoom must be from 0\.001 to 1000, not -2",
         ),
         (
             {"camera": changed(("keys", 1, "zoom"), float("inf"), CAMERA)},
@@ -523,8 +546,14 @@ def test_the_camera_and_movements_are_read():
         ),
         ({"opacity": 2}, "Opacity must be from 0 to 1"),
         ({"opacity": [[0, 1], [0, 0]]}, says(OUT_OF_ORDER, where="opacity")),
-        ({"opacity": [[0]]}, r"opacity\[0\] must be a frame and a number"),
-        ({"opacity": []}, "at least one key"),
+        ({"opacity": [[0]]}, says(NO_PAIR, where="opacity[0]")),
+        ({"opacity": []}, says(NO_KEYS, where="opacity")),
+        ({"opacity": [[0, 1], [4, "much"]]}, says(NOT_NUMBER, where="opacity[1]")),
+        (
+            {"movement": {"keys": [{"frame": 0, "turn": "left"}]}},
+            r"^movement\.keys\[0\]\.turn must",
+        ),
+        ({"movement": {"keys": [{"frame": 0, "ease": "x"}]}}, r"^movement\.keys\[0\]\.ease: There"),
         ({"order": [[0, None]]}, 'order needs "layers"'),
     ],
 )
@@ -538,6 +567,125 @@ def test_an_order_is_in_front_of_a_layer_or_behind_it(place):
     own = {"layer": "arm", "handles": {}, "keys": [{"frame": 0}], "order": [[3, place]]}
     with pytest.raises(LissomError, match=r"layers\[0\]\.order\[0\] must"):
         parse_pose_script({"schema": 1, "layers": [own]})
+
+
+IN_OUT = {"easing": "in-out", "tangent_mode": "stop"}
+MADE = {"easing": PRESETS["in-out"], "tangent_mode": TangentMode.STOP}
+# For each quantity, two values in a script, and what they mean.
+SAMPLES = dict.fromkeys(Quantity, ((0.25, 0.5), (0.25, 0.5))) | {
+    Quantity.POINT: (([3, -4], [0, 1]), (3 - 4j, 1j)),
+    Quantity.ANGLE: ((90, -180), (np.pi / 2, -np.pi)),
+    Quantity.FLAG: ((False, True), (False, True)),
+    Quantity.LAYER: (("bar", "bar"), (0, 0)),
+    Quantity.COLOUR: (([0, 0.5, 1], [1, 0.5, 0]), ((0, 0.5, 1), (1, 0.5, 0))),
+}
+
+
+@pytest.mark.parametrize("kind", LAYER_KINDS.values(), ids=LAYER_KINDS)
+def test_a_channel_of_any_kind_is_read(kind):
+    opened = still_document(bar_picture())
+    bar = replace(opened.layers[0], name="bar")
+    opened = replace(opened, layers=(bar, replace(bar, id=1, name="other")))
+    fields, values = (
+        [[SAMPLES[each.quantity][side][index] for each in kind.fields] for index in (0, 1)]
+        for side in (0, 1)
+    )
+    one, two = (
+        dict(zip((each.name for each in kind.fields), some, strict=True)) for some in fields
+    )
+    keys = [{"frame": 2, **one}, {"frame": 9, **two, **IN_OUT}]
+    other = {"layer": "other", "handles": {"end": [210, 40]}, "keys": [{"frame": 0}]}
+    other["channels"] = {kind.name: {"end": keys} if kind is DEPTH else keys}
+    script = parse_pose_script({"schema": 1, "layers": [other]})
+    assert script.last == (0 if kind.is_held else 9)
+    document, _ = pose_document(opened, script, lambda _: None)
+    layer = document.layer(1)
+    part = layer.handles[0].id if kind is DEPTH else None
+    made = kind.key(2, kind.make(*values[0])), kind.key(9, kind.make(*values[1]), **MADE)
+    assert layer.channels == {(kind.name, part): made}
+
+
+def test_earlier_fields_say_the_same_as_channels():
+    keys = [{"frame": 0}, {"frame": 9, "front": {"hand": -1}}]
+    still = {"layer": "arm", "handles": ARM["handles"], "keys": [{"frame": 0}, {"frame": 9}]}
+    earlier = {
+        "movement": {
+            "keys": [
+                {"frame": 0, "shift": [3, -4], "ease": "in-out", "passing": "stop"},
+                {"frame": 6, "turn": 90, "ease": "in"},
+                {"frame": 9, "passing": "hold"},
+            ]
+        },
+        "opacity": [[0, 1], [5, 0.5]],
+        "visible": [[0, True], [4, False]],
+        "order": [[0, {"behind": "body"}], [4, {"in_front_of": "body"}], [6, None]],
+    }
+    channels = {
+        "transform": [
+            {"frame": 0, "shift": [3, -4], **IN_OUT},
+            {"frame": 6, "turn": 90, "easing": "in", "tangent_mode": "corner"},
+            {"frame": 9, "easing": "hold"},
+        ],
+        "opacity": [{"frame": 0, "opacity": 1}, {"frame": 5, "opacity": 0.5}],
+        "visibility": [{"frame": 0, "visible": True}, {"frame": 4, "visible": False}],
+        "draw_order": [
+            {"frame": 0, "beside": "body", "in_front": False},
+            {"frame": 4, "beside": "body"},
+            {"frame": 6, "beside": None},
+        ],
+        "depth": {"hand": [{"frame": 0, "depth": 0.5}, {"frame": 9, "depth": -1}]},
+    }
+    (old,) = parse_pose_script(
+        {**SCENE, "loop": True, "layers": [{**still, **earlier, "keys": keys}]}
+    ).layers
+    (new,) = parse_pose_script(
+        {**SCENE, "loop": True, "layers": [{**still, "channels": channels}]}
+    ).layers
+    assert old == new
+
+
+@pytest.mark.parametrize(
+    ("channels", "message"),
+    [
+        ([], says(NOT_OBJECT, where="layers[0].channels")),
+        ({"colour": []}, r"layers\[0\]\.channels has an unknown field 'colour'; it may have tra"),
+        ({"opacity": {}}, says(NOT_LIST, where="layers[0].channels.opacity")),
+        ({"opacity": []}, says(NO_KEYS, where="layers[0].channels.opacity")),
+        ({"opacity": [[0, 1]]}, says(NOT_OBJECT, where="channels.opacity[0]")),
+        ({"opacity": [{"opacity": 1}]}, says(NOT_A_FRAME, where="channels.opacity[0]")),
+        ({"opacity": [{"frame": 0, "opacity": 2}]}, r"channels\.opacity\[0\]: Opacity must"),
+        ({"opacity": [{"frame": 0, "opacity": 1, "ease": "in"}]}, "unknown field 'ease'"),
+        (
+            {"opacity": [{"frame": 0, "opacity": 1, "easing": "bouncy"}]},
+            r"channels\.opacity\[0\]\.easing: There is no easing",
+        ),
+        (
+            {"opacity": [{"frame": 0, "opacity": 1, "tangent_mode": "hold"}]},
+            r"channels\.opacity\[0\]: The tangent of a key must be",
+        ),
+        (
+            {"visibility": [{"frame": 3, "visible": True}, {"frame": 3, "visible": True}]},
+            says(OUT_OF_ORDER, where="layers[0].channels.visibility", after=3, before=3),
+        ),
+        ({"draw_order": [{"frame": 0, "beside": 3}]}, says(NOT_TEXT, where="draw_order[0].beside")),
+        ({"depth": []}, says(NOT_OBJECT, where="channels.depth")),
+        ({"depth": {"toe": []}}, r"channels\.depth names the handle 'toe'"),
+        ({"depth": {"hand": [{"frame": 0, "depth": "far"}]}}, r"depth\.hand\[0\]\.depth must be"),
+        ({"depth": {}}, says(TWICE, where="layers[0].front")),
+        (
+            {"visibility": []},
+            says(TWICE, where="layers[0].visible", other="layers[0].channels.visibility"),
+        ),
+    ],
+)
+def test_channels_that_cannot_be_are_refused_with_their_place(channels, message):
+    arm = {**ARM, "channels": channels}
+    if channels != {"depth": {}}:
+        arm["keys"] = [{"frame": 0}]
+    if channels != {"visibility": []}:
+        del arm["visible"]
+    with pytest.raises(LissomError, match=message):
+        parse_pose_script({**SCENE, "layers": [arm]})
 
 
 ROUND = {"schema": 1, "handles": {"end": [210, 40], "start": [30, 40]}, "keys": [{"frame": 0}]}

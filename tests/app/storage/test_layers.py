@@ -1,11 +1,15 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from documents import clocked_document
 from layered import blob, openraster, png
 from PIL import Image
 
+from app.document.channels.kinds import DEPTH
 from app.document.settings import Meshing
 from app.errors import LissomError
-from app.storage.layers import open_layered, open_pictures
+from app.storage.layers import make_still_layer, open_layered, open_pictures
 from app.storage.project_file import load_project, save_project
 from engine.domain import require_domain
 
@@ -99,3 +103,16 @@ def test_bad_drawings_are_reported_in_words(tmp_path):
         open_layered(tmp_path / "sky.ora", MESHING)
     with pytest.raises(LissomError, match="cannot read"):
         open_layered(tmp_path / "none.ora", MESHING)
+
+
+def test_a_layer_that_becomes_still_keeps_all_but_its_handles_and_poses():
+    (layer, _parent) = clocked_document().layers
+    layer = replace(layer, unread_channels=("later",)).with_keys_of(DEPTH, [DEPTH.key(3, 0.5)], 4)
+    still = make_still_layer(layer)
+    assert still.still
+    for name in ("handles", "tracks", "springs", "bones", "library"):
+        assert getattr(still, name) == ()
+    assert still.stiffness is None
+    assert {**still.channels, (DEPTH.name, 4): layer.keys_of(DEPTH, 4)} == layer.channels
+    for name in ("name", "opacity", "blend", "group", "attachments", "unread_channels", "unknown"):
+        assert getattr(still, name) == getattr(layer, name)

@@ -21,22 +21,28 @@ from hypothesis import given, settings, strategies as st
 from pictures import blank_png
 
 from app.document import (
+    CAMERA,
+    DRAW_ORDER,
     FASTEST,
     LAST_FRAME,
+    OPACITY,
     SLOWEST,
+    TRANSFORM,
     AppliedMotion,
     Attachment,
-    CameraKey,
+    Camera,
+    Channel,
     Cycle,
     Document,
-    DrawOrderKey,
+    DrawOrder,
     FrameRange,
     Meshing,
     PictureFile,
     Spring,
     Track,
     TrackKey,
-    filming_commands,
+    Transform,
+    channel_commands,
     group_commands,
     handle_commands,
     key_commands,
@@ -50,11 +56,11 @@ from app.document import (
     switch_group_commands,
     track_commands,
 )
+from app.document.channels.cycles import MAX_CYCLES
 from app.document.checks import MAX_COORDINATE, MAX_ID, MAX_PICTURE_SIDE
 from app.document.keyframe import LARGEST_COEFFICIENT
 from app.document.model import MAX_CHANGES
 from app.document.rig.mirror_names import MAX_PAIRS
-from app.document.timing.cycles import MAX_CYCLES
 from app.errors import LissomError
 from app.rigging import Parameters
 from app.storage import project_file
@@ -107,10 +113,10 @@ def extreme_command(rng, document):
         scene_commands.set_frames(FrameRange(0, LAST_FRAME)),
         scene_commands.add_marker(frame, name),
         scene_commands.set_mirror_names(tuple((f"l{i}", f"r{i}") for i in range(MAX_PAIRS))),
-        filming_commands.key_camera(CameraKey(frame=frame, centre=place, zoom=1e3, turn=turn)),
-        filming_commands.key_movement(identity, frame, place, turn),
-        filming_commands.key_opacity(identity, frame, float(rng.integers(2))),
-        filming_commands.place_at(identity, DrawOrderKey(frame, None)),
+        channel_commands.set_key(Channel(CAMERA), frame, Camera(place, zoom=1e3, turn=turn)),
+        channel_commands.set_key(Channel(TRANSFORM, identity), frame, Transform(place, turn)),
+        channel_commands.set_key(Channel(OPACITY, identity), frame, float(rng.integers(2))),
+        channel_commands.set_key(Channel(DRAW_ORDER, identity), frame, DrawOrder(None)),
         key_commands.insert_pose(identity, frame, pose, layer.keys[0].easing),
         key_commands.insert_key(identity, to, pose),
         pose_commands.save_pose(identity, pose, name),
@@ -271,6 +277,7 @@ def test_a_pose_beyond_all_pixels_is_refused():
 
 
 KNOWN = {
+    "id": 1,
     "motion": "breathe",
     "kind": "anything",
     "joints": {"top": 0},
@@ -289,7 +296,7 @@ KNOWN = {
         "travel": False,
     },
 }
-BETWEEN = KNOWN | {"first": 8, "start": 8, "last": 10}
+BETWEEN = KNOWN | {"id": 2, "first": 8, "start": 8, "last": 10}
 UNKNOWN_MOTIONS = (
     (BETWEEN | {"motion": "nosuch"}, "There is no motion preset 'nosuch'"),
     (BETWEEN | {"kind": "biped-side"}, "'breathe' is not a motion for 'biped-side'"),
@@ -299,14 +306,14 @@ UNKNOWN_MOTIONS = (
     (BETWEEN | {"last": LAST_FRAME + 1}, "A motion must run from a frame to a later frame"),
     (BETWEEN | {"repeat_count": 10**30}, "A motion can play 1 to 1,000 times"),
     (BETWEEN | {"parameters": {"speed": 1e300}}, "needs the field 'size'"),
-    ({"later": [1, 2.5, None, "x"]}, "needs the field 'motion'"),
+    ({"later": [1, 2.5, None, "x"]}, "needs the field 'id'"),
     ("hop", "must be an object"),
 )
 
 
 @pytest.mark.parametrize(("motion", "reason"), UNKNOWN_MOTIONS)
 def test_motion_is_kept_and_reported_when_it_is_not_known(saved, motion, reason):
-    later = KNOWN | {"first": 10, "start": 10, "last": 20}
+    later = KNOWN | {"id": 3, "first": 10, "start": 10, "last": 20}
     with_content(saved, lambda c: c["layers"][0].update(motions=[KNOWN, motion, later]))
     document = load_project(saved)
     layer = document.layers[0]
@@ -319,7 +326,7 @@ def test_motion_is_kept_and_reported_when_it_is_not_known(saved, motion, reason)
     assert read_content(saved)["layers"][0]["motions"] == [KNOWN, motion, later]
 
 
-def test_motion_is_not_shown_when_it_begins_in_another(saved):
+def test_motion_is_not_shown_with_the_id_of_another(saved):
     with_content(saved, lambda c: c["layers"][0].update(motions=[KNOWN, KNOWN]))
     (layer, _) = load_project(saved).layers
     assert (len(layer.motions), len(layer.unread_motions)) == (1, 1)
@@ -333,15 +340,22 @@ def test_motion_keeps_its_other_joints_when_a_handle_goes():
     assert left.layer(0).motions[0].joints == {"foot": 1}
 
 
+def shown_at(frame):
+    return [{"kind": "visibility", "keys": [{"frame": frame, "visible": True}]}]
+
+
 REFUSED = (
     (lambda c: c.update(fps=0.01), "speed must be from 1/60 to 1,000 frames"),
     (lambda c: c.update(fps=5e-324), "speed must be from 1/60 to 1,000 frames"),
     (lambda c: c.update(fps=1000.1), "speed must be from 1/60 to 1,000 frames"),
     (
-        lambda c: c["layers"][0].update(visibility_keys=[[-1, True]]),
+        lambda c: c["layers"][0].update(channels=shown_at(-1)),
         "frame from 0 to 999,999, not at -1",
     ),
-    (lambda c: c["layers"][0].update(visibility_keys=[[10**6, True]]), "frame from 0 to 999,999"),
+    (
+        lambda c: c["layers"][0].update(channels=shown_at(10**6)),
+        "frame from 0 to 999,999",
+    ),
     (lambda c: c["layers"][0].update(id=MAX_ID + 1), "lacks layers/2147483648"),
     (
         lambda c: c["layers"][0].update(next_handle=2**31),
@@ -352,7 +366,9 @@ REFUSED = (
         "A handle must have an id from 0 to",
     ),
     (
-        lambda c: c.update(switch_groups=[{"name": "{", "layers": [0, 1], "keys": [[10**6, 0]]}]),
+        lambda c: c.update(
+            switch_groups=[{"name": "{", "layers": [0, 1], "keys": [{"frame": 10**6, "layer": 0}]}]
+        ),
         "frame from 0 to 999,999",
     ),
     (

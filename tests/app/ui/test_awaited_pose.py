@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from bars import HALF, LAST, bend_bar
 
-from app.document.commands import key_commands
+from app.document.commands.keys import (
+    key_commands,
+)
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_drag import nudge_handles

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from imgui_bundle import ImVec2, imgui
 
-from app.document import HOLD, key_commands
+from app.document import HOLD, channel_commands, pose_channel
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key_at
 from app.editor.layering.layer_list import duplicate_layer
@@ -183,7 +183,7 @@ def test_all_keys_of_all_layers_that_are_posed_are_chosen(window, loose, play):
     assert play(lambda hand: (hand.to_timeline(), hand.press(ALL, COPY))) == [
         KEYS_COPIED.format(count=4)
     ]
-    assert loose.selected_keys == dict.fromkeys(posed, frozenset({0, 24}))
+    assert loose.selected_keys == {pose_channel(each): {0, 24} for each in posed}
 
 
 @pytest.mark.parametrize("item", ["ruler", "ground"])
@@ -215,7 +215,9 @@ def test_a_click_on_the_ruler_or_the_empty_timeline_clears_the_choice_of_keys(
 
 
 def test_the_menu_of_a_key_copies_and_pastes_there(window, loose, play):
-    editing.edit_layer(window.session, key_commands.set_easing, {24}, HOLD)
+    editing.edit_document(
+        window.session, channel_commands.set_easing({pose_channel(loose.active): {24}}, HOLD)
+    )
     before = loose.document
 
     def use(frame, *path):

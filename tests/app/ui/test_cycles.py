@@ -7,20 +7,23 @@ from messages import says
 
 from app.document import (
     LINEAR,
+    OPACITY,
+    Channel,
     FrameRange,
+    channel_commands,
     cycle_commands,
-    filming_commands,
     key_commands,
     layer_commands,
     opacity_at,
+    pose_channel,
     scene_commands,
     track_commands,
 )
-from app.document.commands.cycle_commands import TWO_POSES_SHOWN
-from app.document.timing.cycles import Cycle
-from app.document.timing.tracks import Track, TrackKey
+from app.document.channels.cycles import Cycle
+from app.document.channels.tracks import Track, TrackKey
+from app.document.commands.keys.cycle_commands import TWO_POSES_SHOWN
 from app.editor.actions import editing, playback
-from app.editor.actions.timing import cycles, keys, tracks
+from app.editor.actions.timing import cycles, keys
 from app.editor.layering.layer_selection import select_layers
 from app.editor.layering.pictures import make_still
 from app.errors import LissomError
@@ -42,7 +45,9 @@ def cycling(window):
 
 def swing(window):
     bent = window.again(bend_bar, None, "loose")
-    editing.edit_document(window.session, key_commands.copy_keys(bent.active, {0}, 48))
+    editing.edit_document(
+        window.session, channel_commands.copy_keys({pose_channel(bent.active): {0}}, 48)
+    )
     editing.edit_document(window.session, scene_commands.set_frames(FrameRange(0, 150)))
     editing.select_keys(window.session, frozenset({0, 24, 48}))
     window.settle()
@@ -196,11 +201,13 @@ def test_chosen_layers_repeat_together_in_one_step(window, cycling):
     editing.edit_document(window.session, layer_commands.duplicate_layer(arm))
     editing.edit_document(window.session, cycle_commands.delete_cycle(arm, 0))
     for layer in cycling.document.layers:
-        editing.edit_document(window.session, key_commands.move_keys(layer.id, {24}, layer.id))
+        editing.edit_document(
+            window.session, channel_commands.move_keys({pose_channel(layer.id): {24}}, layer.id)
+        )
     editing.edit_document(window.session, cycle_commands.delete_cycle(body, 0))
     window.settle()
     select_layers(window.session, arm, body)
-    editing.select_keys_in_rows(window.session, {})
+    editing.select_channel_keys(window.session, {})
     before = cycling.document
     window.act(cycles.create_cycle)
     cycle = (Cycle(first=0, last=48),)
@@ -223,12 +230,14 @@ def test_a_still_picture_repeats_with_others_what_it_does_beside_its_pose(window
     make_still(window.session, copy)
     window.settle()
     select_layers(window.session, bar, copy)
-    editing.select_keys_in_rows(window.session, {})
+    editing.select_channel_keys(window.session, {})
     window.act(cycles.create_cycle)
     assert [each.cycles for each in swinging.document.layers] == [(Cycle(first=0, last=48),), ()]
     editing.undo(window.session)
     for frame, opacity in ((0, 1.0), (10, 0.2)):
-        editing.edit_document(window.session, filming_commands.key_opacity(copy, frame, opacity))
+        editing.edit_document(
+            window.session, channel_commands.set_key(Channel(OPACITY, copy), frame, opacity)
+        )
     window.act(cycles.create_cycle)
     cycle = (Cycle(first=0, last=48),)
     assert [each.cycles for each in swinging.document.layers] == [cycle, cycle]
@@ -240,7 +249,7 @@ def test_a_drag_on_a_track_in_a_repeat_keys_it_where_it_repeats(window, cycling)
     own = tuple(TrackKey(frame=f, place=p) for f, p in ((0, 0j), (8, 12 + 6j), (16, 0j)))
     command = track_commands.put_track(cycling.active, Track(handles=(RIGHT,), keys=own))
     editing.edit_document(window.session, command)
-    tracks.select_track(window.session, RIGHT)
+    cycling.selected_track = RIGHT
     playback.seek(window.session, 56)
     window.settle()
     shown = complex(cycling.layer_runtime.shown.handle_positions[RIGHT])

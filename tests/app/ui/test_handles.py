@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from app.document.commands import key_commands
+from app.document.commands.keys import (
+    key_commands,
+)
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup import handle_editing

@@ -11,10 +11,14 @@ from messages import says
 from PIL import Image, ImageDraw
 
 from app.document import (
+    DEPTH,
+    TRANSFORM,
     Attachment,
+    Channel,
     Command,
     FrameRange,
-    TransformKey,
+    Transform,
+    channel_commands,
     clip_of,
     depth_points_at,
     key_commands,
@@ -246,7 +250,7 @@ def test_unsaved_work_comes_back_with_its_joints_and_depths(window, scene, drag,
     turned = replace(pose, phi=90 + (layer.domain.cage - 90) * np.exp(-0.4j))
     window.act(editing.edit_document, key_commands.insert_key(body, 12, turned))
     window.act(editing.edit_document, key_commands.insert_key(arm, 12, scene.layer.keys[0].pose))
-    window.act(editing.edit_document, layer_commands.key_depth(arm, 12, hand, 1.0))
+    window.act(editing.edit_document, channel_commands.set_key(Channel(DEPTH, arm, hand), 12, 1.0))
     window.act(playback.seek, 6)
     window.settle()
     was = {name: on_scene(scene, name) for name in LAYERS}
@@ -306,8 +310,8 @@ def test_a_layer_that_is_let_go_leaves_its_way_on_the_other_one(window, swung):
 
 def test_a_layer_that_is_let_go_stays_where_it_is_though_it_moves_by_itself(window, swung):
     arm = identity(swung, "arm")
-    moves = (TransformKey(frame=0), TransformKey(frame=12, shift=20 + 5j, turn=0.4))
-    moved = replace(swung.document.layer(arm), transform_keys=moves)
+    moves = (TRANSFORM.key(0, Transform()), TRANSFORM.key(12, Transform(shift=20 + 5j, turn=0.4)))
+    moved = replace(swung.document.layer(arm), channels={(TRANSFORM.name, None): moves})
     window.act(editing.edit_document, Command("Move", lambda document: document.with_layer(moved)))
     window.act(playback.seek, 6)
     window.settle()

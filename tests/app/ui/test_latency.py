@@ -5,8 +5,7 @@ from itertools import count
 import numpy as np
 import pytest
 
-from app.document import Pose, segment_keys, segment_time_at
-from app.document.commands import key_commands
+from app.document import Pose, channel_commands, pose_channel, segment_keys, segment_time_at
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import drag_handles, release_drag
@@ -183,7 +182,9 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
             window.frames()
             check()
 
-    window.act(editing.edit_document, key_commands.copy_keys(bent.active, {0}, 48))
+    window.act(
+        editing.edit_document, channel_commands.copy_keys({pose_channel(bent.active): {0}}, 48)
+    )
     window.settle()
     for end in ends:
         playback.scrub(window.session, 24)
@@ -197,5 +198,5 @@ def test_what_is_shown_after_a_drag_is_never_wrong(window, bent, check, variant,
         on(playback.stop_playback)
         on(editing.undo)
         on(editing.redo)
-    on(editing.edit_document, key_commands.delete_keys(bent.active, {48}))
+    on(editing.edit_document, channel_commands.delete_keys({pose_channel(bent.active): {48}}))
     on(playback.scrub, 12)

@@ -9,15 +9,22 @@ from PIL import Image, ImageDraw
 
 from app.cut_out import Stroke
 from app.document import (
+    DRAW_ORDER,
+    OPACITY,
     PRESETS,
+    TRANSFORM,
+    VISIBILITY,
     Attachment,
-    DrawOrderKey,
+    Channel,
+    DrawOrder,
     TangentMode,
+    Transform,
+    channel_commands,
     clip_of,
     cycle_commands,
-    filming_commands,
     key_commands,
     layer_commands,
+    pose_channel,
     shape_commands,
 )
 from app.document.keyframe import Target
@@ -440,10 +447,10 @@ def test_still_layer_keeps_parent_moves_and_fades(window, scene):
     window.act(attach_layer, arm, body)
     window.settle()
     commands = (
-        filming_commands.key_opacity(arm, 12, 0.5),
-        filming_commands.key_movement(body, 0, 0j, 0.0),
-        filming_commands.key_movement(body, 12, 8 + 5j, 0.0),
-        filming_commands.place_at(arm, DrawOrderKey(6, body, in_front=False)),
+        channel_commands.set_key(Channel(OPACITY, arm), 12, 0.5),
+        channel_commands.set_key(Channel(TRANSFORM, body), 0, Transform(0j, 0.0)),
+        channel_commands.set_key(Channel(TRANSFORM, body), 12, Transform(8 + 5j, 0.0)),
+        channel_commands.set_key(Channel(DRAW_ORDER, arm), 6, DrawOrder(body, in_front=False)),
         cycle_commands.set_cycle(arm, 0, 24),
     )
     for command in commands:
@@ -457,8 +464,7 @@ def test_still_layer_keeps_parent_moves_and_fades(window, scene):
         assert abs(ParentTransforms(scene.document).placement(arm, 12).shift - there.shift) < 1e-6
         names = (
             "attachments",
-            "opacity_keys",
-            "draw_order_keys",
+            "channels",
             "cycles",
             "group",
             "blend",
@@ -487,7 +493,7 @@ def test_layers_take_turns(window, scene):
     window.act(playback.seek, 11)
     window.settle()
     assert np.abs(np.asarray(window.picture()).astype(int) - with_arm).max() > 100
-    assert [s.visible for s in scene.document.layer(arm).visibility_keys] == [True, False]
+    assert [s.value for s in scene.document.layer(arm).keys_of(VISIBILITY)] == [True, False]
 
 
 def test_depth_is_set_at_a_handle_and_shown_as_a_tint(window, scene):
@@ -581,7 +587,7 @@ def test_a_key_of_another_row_chooses_its_layer(window, keyed, play):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     play(lambda rows: rows.click("body", "key 18"))
     assert keyed.active == body
-    assert keyed.selected_keys == {body: {18}}
+    assert keyed.selected_keys == {pose_channel(body): {18}}
     assert playback.current_frame(window.session, keyed) == 18
     window.run(lambda robot: robot.item_click(f"###Timeline/**/name {arm}"))
     assert keyed.active == arm
@@ -601,11 +607,11 @@ def test_keys_of_several_rows_are_chosen_by_a_box_and_move_together(window, keye
 
     play(box)
     assert keyed.active == arm
-    assert keyed.selected_keys == {arm: {12}, body: {18}}
+    assert keyed.selected_keys == {pose_channel(arm): {12}, pose_channel(body): {18}}
     # Taken by the one of the row that was not active.
     play(lambda rows: rows.drag("body", "key 18", 22))
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 16, 24), (0, 22))
-    assert keyed.selected_keys == {arm: {16}, body: {22}}
+    assert keyed.selected_keys == {pose_channel(arm): {16}, pose_channel(body): {22}}
     assert keyed.active == body
     window.act(editing.undo)
     assert keyed.document is before
@@ -628,7 +634,7 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
             (8, rows.place("body", "key 18").y), (21, rows.place("body", "key 18").y)
         )
     )
-    assert keyed.selected_keys == {body: {18}}
+    assert keyed.selected_keys == {pose_channel(body): {18}}
     before = keyed.document
 
     def give_up(rows):
@@ -640,9 +646,12 @@ def test_a_box_within_a_row_leaves_the_others_and_esc_takes_it_back(window, keye
 
     play(give_up)
     assert keyed.document is before
-    assert keyed.selected_keys == {body: {18}}
-    window.act(editing.select_keys_in_rows, {arm: frozenset({12, 77}), body: frozenset({5})})
-    assert keyed.selected_keys == {arm: {12}}
+    assert keyed.selected_keys == {pose_channel(body): {18}}
+    window.act(
+        editing.select_channel_keys,
+        {pose_channel(arm): frozenset({12, 77}), pose_channel(body): frozenset({5})},
+    )
+    assert keyed.selected_keys == {pose_channel(arm): {12}}
 
 
 def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
@@ -650,26 +659,26 @@ def test_where_a_layer_is_hidden_is_marked_on_its_row(window, keyed, play):
     window.act(playback.seek, 6)
     window.act(toggle_visibility_key, body)
     window.settle()
-    assert [switch.frame for switch in keyed.document.layer(body).visibility_keys] == [0, 6]
+    assert [switch.frame for switch in keyed.document.layer(body).keys_of(VISIBILITY)] == [0, 6]
     window.act(playback.seek, 20)
-    play(lambda rows: rows.click("body", "switch 6"))
+    play(lambda rows: rows.click("body", "keys 6"))
     assert playback.current_frame(window.session, keyed) == 6
     assert keyed.active == body
     window.act(set_active_layer, arm)
 
     def delete(rows):
-        rows.click("body", "switch 6", 1)
-        rows.robot.item_click("//$FOCUSED/Delete")
+        rows.click("body", "keys 6", 1)
+        rows.robot.item_click("//$FOCUSED/###Delete")
 
     play(delete)
-    assert [switch.frame for switch in keyed.document.layer(body).visibility_keys] == [0]
+    assert [switch.frame for switch in keyed.document.layer(body).keys_of(VISIBILITY)] == [0]
 
 
 def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, keyed, play):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
     before = keyed.document
-    chosen = {arm: frozenset({12, 24}), body: frozenset({0})}
-    window.act(editing.select_keys_in_rows, chosen)
+    chosen = {pose_channel(arm): frozenset({12, 24}), pose_channel(body): frozenset({0})}
+    window.act(editing.select_channel_keys, chosen)
 
     def ease(rows):
         rows.click("arm", "key 12", 1)
@@ -688,13 +697,13 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
 
     eased = values_by_layer(lambda key: key.easing == PRESETS["in-out"])
     assert eased == {"body": [True, False], "arm": [False, True, True]}
-    window.act(keys.set_revolutions, keyed.keys_with(body, 0), 2)
+    window.act(keys.set_revolutions, keyed.keys_with(pose_channel(body), 0), 2)
     assert values_by_layer(lambda key: key.revolutions) == {"body": [2, 0], "arm": [0, 2, 2]}
     window.act(keys.use_next_tangent_mode)
     passed = values_by_layer(lambda key: key.tangent_mode is TangentMode.CORNER)
     assert passed == {"body": [True, False], "arm": [False, True, True]}
     # One that is not chosen is alone.
-    assert keyed.keys_with(body, 18) == {body: {18}}
+    assert keyed.keys_with(pose_channel(body), 18) == {pose_channel(body): {18}}
     for _ in range(3):
         window.act(editing.undo)
     assert keyed.document is before
@@ -702,22 +711,31 @@ def test_what_is_done_to_a_key_is_done_to_all_chosen_ones_of_other_rows(window, 
 
 def test_keys_of_several_rows_run_backwards_and_are_stretched_together(window, keyed):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
-    window.act(editing.select_keys_in_rows, {arm: frozenset({0, 24}), body: frozenset({18})})
+    window.act(
+        editing.select_channel_keys,
+        {pose_channel(arm): frozenset({0, 24}), pose_channel(body): frozenset({18})},
+    )
     window.act(keys.reverse_selected_keys)
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24), (0, 6))
-    assert keyed.selected_keys == {arm: {0, 24}, body: {6}}
+    assert keyed.selected_keys == {pose_channel(arm): {0, 24}, pose_channel(body): {6}}
     window.act(editing.undo)
-    window.act(editing.select_keys_in_rows, {arm: frozenset({12, 24}), body: frozenset({18})})
+    window.act(
+        editing.select_channel_keys,
+        {pose_channel(arm): frozenset({12, 24}), pose_channel(body): frozenset({18})},
+    )
     window.act(keys.scale_selected_keys, 0.5)
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 18), (0, 15))
-    assert keyed.selected_keys == {arm: {12, 18}, body: {15}}
+    assert keyed.selected_keys == {pose_channel(arm): {12, 18}, pose_channel(body): {15}}
 
 
 def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keyed):
     arm, body = identity(keyed, "arm"), identity(keyed, "body")
-    window.act(keys.set_revolutions, {arm: frozenset({12})}, 1)
+    window.act(keys.set_revolutions, {pose_channel(arm): frozenset({12})}, 1)
     before = keyed.document
-    window.act(editing.select_keys_in_rows, {arm: frozenset({12}), body: frozenset({0, 18})})
+    window.act(
+        editing.select_channel_keys,
+        {pose_channel(arm): frozenset({12}), pose_channel(body): frozenset({0, 18})},
+    )
     window.run(lambda robot: robot.key_press(int(window.Key.mod_ctrl) | int(window.Key.c)))
     window.act(set_active_layer, identity(keyed, "wall"))
     window.act(playback.seek, 30)
@@ -725,7 +743,7 @@ def test_keys_of_several_rows_are_copied_and_pasted_each_on_its_own(window, keye
     window.settle()
     assert (frames_of(keyed, "arm"), frames_of(keyed, "body")) == ((0, 12, 24, 42), (0, 18, 30, 48))
     assert keyed.document.layer(arm).key(42).revolutions == 1
-    assert keyed.selected_keys == {arm: {42}, body: {30, 48}}
+    assert keyed.selected_keys == {pose_channel(arm): {42}, pose_channel(body): {30, 48}}
     window.act(editing.undo)
     assert keyed.document is before
     # The rest can be pasted where one of the layers is gone.
@@ -744,31 +762,34 @@ def test_where_a_layer_comes_to_be_seen_is_dragged_in_time(window, keyed, play):
     before = keyed.document
 
     def frames():
-        return [switch.frame for switch in keyed.document.layer(body).visibility_keys]
+        return [switch.frame for switch in keyed.document.layer(body).keys_of(VISIBILITY)]
 
     assert frames() == [0, 6, 20]
-    play(lambda rows: rows.drag("body", "switch 6", 11))
+    play(lambda rows: rows.drag("body", "keys 6", 11))
     assert frames() == [0, 11, 20]
     assert keyed.document.layer(body).key_frames == {0, 18}
     # It is not put where there is another one, but beyond.
-    play(lambda rows: rows.drag("body", "switch 11", 20))
+    window.act(set_active_layer, identity(keyed, "arm"))
+    play(lambda rows: rows.drag("body", "keys 11", 20))
     assert frames() == [0, 19, 20]
-    play(lambda rows: rows.drag("body", "switch 19", 26))
+    window.act(set_active_layer, identity(keyed, "arm"))
+    play(lambda rows: rows.drag("body", "keys 19", 26))
     assert frames() == [0, 20, 26]
-    assert [switch.visible for switch in keyed.document.layer(body).visibility_keys] == [
+    assert [switch.value for switch in keyed.document.layer(body).keys_of(VISIBILITY)] == [
         True,
         True,
         False,
     ]
 
     def give_up(rows):
-        rows.robot.mouse_move(rows.name("body", "switch 20"))
+        rows.robot.mouse_move(rows.name("body", "keys 20"))
         rows.robot.mouse_down(0)
-        rows.go_to(30, rows.place("body", "switch 20").y)
+        rows.go_to(30, rows.place("body", "keys 20").y)
         assert frames() == [0, 26, 30]
         rows.robot.key_press(int(window.Key.escape))
         rows.robot.mouse_up(0)
 
+    window.act(set_active_layer, identity(keyed, "arm"))
     play(give_up)
     assert frames() == [0, 20, 26]
     for _ in range(3):
@@ -1121,6 +1142,8 @@ def test_what_prepares_layers_that_nobody_edits_is_let_go_and_comes_again(
     window.act(set_active_layer, body_id)
     window.settle()
     assert body.store.prepared(keyed.clip) is not None
-    window.act(editing.edit_document, key_commands.move_keys(body_id, [BODY[1]], 1))
+    window.act(
+        editing.edit_document, channel_commands.move_keys({pose_channel(body_id): [BODY[1]]}, 1)
+    )
     window.settle()
     assert body.store.has(clip_of(keyed.document, body_id))

@@ -7,9 +7,9 @@ from bars import BENT
 from harness import FRAME
 from imgui_bundle import ImVec2, hello_imgui, imgui
 
+from app.document import DEPTH, Channel, channel_commands
 from app.document.commands import handle_commands
 from app.document.commands.command import Command
-from app.document.commands.layers import layer_commands
 from app.editor.actions import editing, playback
 from app.storage.assets import sample_images
 from app.ui import panel
@@ -68,9 +68,10 @@ def test_how_firmly_a_handle_holds_is_in_its_menu(window, loose):
 def test_the_depth_of_a_handle_is_in_its_menu(window, loose):
     on_handle(window, loose, "Depth", "Behind")
     assert [handle.depth for handle in loose.layer.handles] == [-1.0, 0.0]
-    window.act(editing.edit_layer, layer_commands.key_depth, BENT, 0, 0.0)
+    channel = Channel(DEPTH, loose.active, 0)
+    window.act(editing.edit_document, channel_commands.set_key(channel, BENT, 0.0))
     on_handle(window, loose, "Depth", "In front")
-    assert dict(loose.layer.key(BENT).depths) == {0: 1.0}
+    assert loose.layer.keys_of(DEPTH, 0) == (DEPTH.key(BENT, 1.0),)
     assert loose.layer.handle(0).depth == -1.0
 
 

@@ -4,7 +4,7 @@ import pytest
 from bars import bend_bar
 
 from app.document import track_commands
-from app.document.timing.tracks import Track, TrackKey
+from app.document.channels.tracks import Track, TrackKey
 from app.editor import Session
 from app.editor.actions import editing, playback
 from app.editor.work.jobs import Jobs

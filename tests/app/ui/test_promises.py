@@ -8,7 +8,8 @@ import pytest
 from bars import check_at_rest, drag_bar
 from PIL import Image
 
-from app.document.commands import key_commands, scene_commands
+from app.document import channel_commands, pose_channel
+from app.document.commands import scene_commands
 from app.document.keyframe import Target
 from app.document.settings import FrameRange
 from app.editor.actions import editing, playback, viewing
@@ -91,8 +92,8 @@ def test_moved_and_copied_keys_come_to_rest_too(window, loose, is_seen):
         with window.session.jobs.held(POSING):
             goal = drag_bar(window, loose)
         assert loose.pulls[-1].kept is None
-    editing.edit_document(window.session, key_commands.copy_keys(0, {24}, 24))
-    editing.edit_document(window.session, key_commands.move_keys(0, {24}, 6))
+    editing.edit_document(window.session, channel_commands.copy_keys({pose_channel(0): {24}}, 24))
+    editing.edit_document(window.session, channel_commands.move_keys({pose_channel(0): {24}}, 6))
     window.settle()
     for frame in (30, 48):
         check_at_rest(loose.document, goal, frame=frame)

@@ -15,13 +15,36 @@ from PIL import Image, ImageDraw
 from unrest import is_shown, unrest
 
 from app.cut_out import Stroke
-from app.document import Document, Layer
-from app.document.commands import handle_commands, key_commands, shape_commands, track_commands
+from app.document import (
+    CAMERA,
+    DEPTH,
+    DRAW_ORDER,
+    OPACITY,
+    TRANSFORM,
+    VISIBILITY,
+    Channel,
+    Document,
+    DrawOrder,
+    KeysByChannel,
+    Layer,
+    Transform,
+    all_keys,
+    channel_commands,
+    frames_in,
+    pose_channel,
+)
+from app.document.channels.easing import PRESETS, Easing
+from app.document.channels.springs import Spring
+from app.document.commands import (
+    handle_commands,
+    shape_commands,
+)
+from app.document.commands.keys import (
+    track_commands,
+)
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.document.timing.easing import PRESETS, Easing
-from app.document.timing.springs import Spring
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import (
     cut_out_editing,
@@ -42,18 +65,8 @@ from app.editor.actions.posing.pose_drag import (
     set_targets,
 )
 from app.editor.actions.project_files import export_settings
-from app.editor.actions.timing import keys, springs, timeline_drag, tracks
-from app.editor.layering.layer_channels import (
-    delete_draw_order_key,
-    delete_opacity_key,
-    delete_transform_key,
-    key_camera,
-    key_draw_order,
-    key_opacity,
-    key_transform,
-)
+from app.editor.actions.timing import channel_keys, keys, springs, timeline_drag, tracks
 from app.editor.layering.layer_list import (
-    delete_visibility_key,
     duplicate_layer,
     move_layer,
     rename_layer,
@@ -457,7 +470,7 @@ class Walk:
         self.act(editing.select_handles, frozenset(chosen))
 
     def choose_keys(self) -> None:
-        self.act(editing.select_keys, self.some_keys())
+        self.act(editing.select_channel_keys, self.some_keys())
 
     def delete(self) -> None:
         self.act(editing.delete_selection)
@@ -470,12 +483,15 @@ class Walk:
         self.act(playback.scrub, int(self.rng.integers(LAST)))
 
     def move_keys(self) -> None:
-        frames = self.some_keys()
+        chosen = self.some_keys()
         by = int(self.rng.integers(-9, 10))
-        if frames and max(frames) + by < LAST:
-            copies = self.chance(0.3) and len(self.project.layer.keys) + len(frames) <= MOST_KEYS
-            verb = key_commands.copy_keys if copies else key_commands.move_keys
-            self.edit(verb(self.project.active, frames, by))
+        if chosen and max(map(max, chosen.values())) + by < LAST:
+            most = max(
+                len(frames_in(self.document, channel) | at) for channel, at in chosen.items()
+            )
+            copies = self.chance(0.3) and 2 * most <= MOST_KEYS
+            verb = channel_commands.copy_keys if copies else channel_commands.move_keys
+            self.edit(verb(chosen, by))
 
     def change_easing(self) -> None:
         easing = (
@@ -483,14 +499,10 @@ class Walk:
             if self.chance(0.5)
             else Easing(tuple(map(float, self.rng.random(4))))
         )
-        self.act(keys.set_easing, {self.project.active: self.some_keys()}, easing)
+        self.act(keys.set_easing, self.some_keys(), easing)
 
     def change_turns(self) -> None:
-        self.act(
-            keys.set_revolutions,
-            {self.project.active: self.some_keys()},
-            int(self.rng.integers(-2, 3)),
-        )
+        self.act(keys.set_revolutions, self.some_keys(), int(self.rng.integers(-2, 3)))
 
     def change_variant(self) -> None:
         # The costlier ones are left again soon.
@@ -618,10 +630,8 @@ class Walk:
                 self.act(rename_layer, layer.id, self.choice(("arm", "leg", "")))
                 self.act(set_layer_opacity, layer.id, float(self.rng.random()))
             case 7:
-                self.act(
-                    self.choice((toggle_visibility_key, delete_visibility_key)),
-                    layer.id,
-                )
+                delete = channel_keys.delete_channel_key, Channel(VISIBILITY, layer.id)
+                self.act(*self.choice(((toggle_visibility_key, layer.id), delete)))
             case 8:
                 self.act(self.choice((make_still, make_posable)), layer.id)
 
@@ -659,29 +669,31 @@ class Walk:
                 remove = self.choice((track_commands.remove_tracks, track_commands.remove_springs))
                 self.act(editing.edit_layer, remove, (handle,))
             case 7:
-                self.act(tracks.select_track, self.choice((handle, None)))
+                self.project.selected_track = self.choice((handle, None))
 
     def change_staging(self) -> None:
         """Let layers fade, move, take turns, or be painted in another order; and the camera."""
         layers = self.document.layers
         layer, other = self.choice(layers).id, self.choice(layers).id
+        opacity, transform, order = (
+            Channel(kind, layer) for kind in (OPACITY, TRANSFORM, DRAW_ORDER)
+        )
         match self.rng.integers(7):
             case 0:
-                self.act(key_opacity, layer, float(self.rng.random()))
+                self.act(channel_keys.set_channel_value, opacity, float(self.rng.random()))
             case 1:
                 shift = complex(*self.rng.normal(0, 0.1 * self.size, 2))
-                self.act(key_transform, layer, shift, float(self.rng.normal()))
+                moved = Transform(shift, float(self.rng.normal()))
+                self.act(channel_keys.set_channel_value, transform, moved)
             case 2:
-                self.act(key_draw_order, layer, None if other == layer else other)
+                placed = DrawOrder(None if other == layer else other, self.chance(0.5))
+                self.act(channel_keys.set_channel_value, order, placed)
             case 3:
-                verbs = (
-                    delete_opacity_key,
-                    delete_transform_key,
-                    delete_draw_order_key,
-                )
-                self.act(self.choice(verbs), layer)
+                verbs = (channel_keys.insert_channel_key, channel_keys.delete_channel_key)
+                channels = (opacity, transform, order, Channel(CAMERA))
+                self.act(self.choice(verbs), self.choice(channels))
             case 4:
-                self.act(key_camera)
+                self.act(channel_keys.key_camera)
             case 5:
                 self.act(create_switch, *{layer, other})
             case 6 if self.document.switch_groups:
@@ -698,8 +710,9 @@ class Walk:
             self.edit(layer_commands.set_depth(layer.id, handle.id, depth, extent))
         else:
             frame = self.choice(layer.keys).frame
-            front = self.choice((None, depth))
-            self.edit(layer_commands.key_depth(layer.id, frame, handle.id, front))
+            channel = Channel(DEPTH, layer.id, handle.id)
+            delete = channel_commands.delete_keys({channel: frozenset({frame})})
+            self.edit(self.choice((channel_commands.set_key(channel, frame, depth), delete)))
         self.act(viewing.set_tint, "depth" if self.chance(0.3) else None)
 
     def change_material(self) -> None:
@@ -783,8 +796,16 @@ class Walk:
         for _ in range(self.rng.integers(1, 4)):
             self.act(editing.redo)
 
-    def some_keys(self) -> frozenset[int]:
-        return frozenset(key.frame for key in self.project.layer.keys if self.chance(0.5))
+    def some_keys(self) -> KeysByChannel:
+        """Choose keys of the active layer's poses, or of all channels."""
+        poses = pose_channel(self.project.active)
+        keyed = all_keys(self.document)
+        keyed = keyed if self.chance(0.5) else {poses: keyed[poses]}
+        chosen = {
+            channel: frozenset(frame for frame in sorted(frames) if self.chance(0.5))
+            for channel, frames in keyed.items()
+        }
+        return {channel: frames for channel, frames in chosen.items() if frames}
 
     @property
     def document(self):

@@ -7,7 +7,10 @@ from imgui_bundle import ImVec2, imgui
 from PIL import Image
 from projects import project_of
 
-from app.document.commands import key_commands
+from app.document import channel_commands, pose_channel
+from app.document.commands.keys import (
+    key_commands,
+)
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
@@ -233,7 +236,9 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
     assert curves.clip == project.clip
     assert curves.k_share.max() <= 1 + 1e-3
     assert curves.k.max() == pytest.approx(largest(project, "k"), rel=0.1)
-    editing.edit_document(window.session, key_commands.move_keys(0, frozenset({24}), 4))
+    editing.edit_document(
+        window.session, channel_commands.move_keys({pose_channel(0): frozenset({24})}, 4)
+    )
     window.settle()
     assert project.curves.follows(project.clip)
     assert project.curves.value.frames[-1] == 28
@@ -242,10 +247,14 @@ def test_heat_map_and_curves_follow_the_document(window, project, tab):
 @pytest.mark.usefixtures("everything")
 def test_curves_of_an_older_document_are_not_kept(window, project, tab):
     tab("Distortion", lambda _: None)
-    editing.edit_document(window.session, key_commands.move_keys(0, frozenset({24}), 4))
+    editing.edit_document(
+        window.session, channel_commands.move_keys({pose_channel(0): frozenset({24})}, 4)
+    )
     older = project.document
     upkeep.maintain(window.session)
-    editing.edit_document(window.session, key_commands.move_keys(0, frozenset({28}), 4))
+    editing.edit_document(
+        window.session, channel_commands.move_keys({pose_channel(0): frozenset({28})}, 4)
+    )
     window.settle()
     assert project.curves.follows(project.clip)
     assert project.document is not older
@@ -440,7 +449,7 @@ def test_extent_follows_undo_and_redo_at_once(window, project, tab):
     assert project.extent.value == second
     editing.undo(window.session)
     tab("Handle", lambda _: None)
-    editing.edit_layer(window.session, key_commands.move_keys, {24}, 3)
+    editing.edit_document(window.session, channel_commands.move_keys({pose_channel(0): {24}}, 3))
     window.settle()
     assert project.extent.follows(extent_key(project.document)), "where the tab is hidden, too"
 

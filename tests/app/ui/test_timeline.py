@@ -8,19 +8,27 @@ from imgui_bundle import ImVec2, imgui
 from projects import project_of
 
 from app.document import (
+    CAMERA,
+    Channel,
     camera_at,
+    channel_commands,
     export_frame_range,
-    filming_commands,
     key_commands,
+    pose_channel,
     shape_commands,
 )
-from app.document.keyframe import Handle, Keyframe, TangentMode, Target
+from app.document.channels.easing import HOLD, LINEAR, PRESETS
+from app.document.channels.tangent_mode import TangentMode
+from app.document.keyframe import Handle, Keyframe, Target
 from app.document.settings import FrameRange
-from app.document.timing.easing import HOLD, LINEAR, PRESETS
 from app.editor.actions import editing, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.timing import keys, timeline_drag
-from app.editor.layering.layer_channels import change_camera_key, key_camera, toggle_camera_view
+from app.editor.actions.timing.channel_keys import (
+    key_camera,
+    set_key_value,
+    toggle_camera_view,
+)
 from app.editor.timeline_view import TimeRangeView
 from app.ui.bars.status import describe_motion_limit
 from app.ui.style.theme import PALETTES
@@ -29,6 +37,7 @@ from app.ui.viewport.marks import mark_all
 from engine.maps import Bounds
 
 FRAMES = (0, 12, 24, 48)
+CAMERA_LANE = "lane camera None None"
 
 
 def waving_document():
@@ -334,7 +343,7 @@ def test_the_paths_of_selected_handles_are_shown_and_follow_the_keys(window, pro
     without, _ = mark_all(window.session, project, shown, PALETTES["dark"])
     assert len(with_path) > len(without)
     # In a corner at frame 12 the path is another one.
-    keys.set_tangent_mode(window.session, {0: frozenset({12})}, TangentMode.CORNER)
+    keys.set_tangent_mode(window.session, {pose_channel(0): frozenset({12})}, TangentMode.CORNER)
     project.selected_handles = frozenset({1})
     window.settle()
     assert np.abs(project.paths.value.positions - paths.positions)[6:20].max() > 0.1
@@ -510,7 +519,7 @@ def test_keys_go_to_the_nearest_place_that_is_free(frames, subset, wanted, copie
         return by == 0 or (min(there) >= 0 and not there & (frames if copies else frames - dragged))
 
     by = timeline_drag.drag_offset(
-        document, {document.layers[0].id: dragged}, wanted, copies=copies
+        document, {pose_channel(document.layers[0].id): dragged}, wanted, copies=copies
     )
     assert is_possible(by)
     nearest = max(wanted, -min(dragged))
@@ -681,7 +690,7 @@ def test_new_keys_get_the_easing_that_was_chosen_for_them(window, project, play)
         hand.robot.item_click("//$FOCUSED/Use for new keys")
         hand.robot.key_press(int(window.Key.escape))
 
-    keys.set_easing(window.session, {0: frozenset({24})}, PRESETS["out"])
+    keys.set_easing(window.session, {pose_channel(0): frozenset({24})}, PRESETS["out"])
     window.frames(2)
     play(choose)
     keys.insert_key_in_row_at(window.session, 60)
@@ -699,8 +708,8 @@ def test_undo_and_redo_name_their_step_and_show_where_it_was(window, project):
     def here():
         return playback.current_frame(session, project)
 
-    keys.set_easing(session, {0: frozenset({24})}, HOLD)
-    editing.edit_layer(session, key_commands.move_keys, frozenset({12}), -2)
+    keys.set_easing(session, {pose_channel(0): frozenset({24})}, HOLD)
+    editing.edit_document(session, channel_commands.move_keys({pose_channel(0): {12}}, -2))
     keys.set_fps(session, 12.0)
     playback.scrub(session, 60)
     for text, frame in (
@@ -738,17 +747,17 @@ def labels(window, monkeypatch):
 @pytest.mark.usefixtures("project")
 def test_only_what_goes_straight_is_called_linear(window, monkeypatch):
     assert labels(window, monkeypatch) == ["smooth"] * 3
-    window.act(keys.set_tangent_mode, {0: {24}}, TangentMode.CORNER)
+    window.act(keys.set_tangent_mode, {pose_channel(0): {24}}, TangentMode.CORNER)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "linear"]
-    window.act(keys.set_tangent_mode, {0: {12}}, TangentMode.STOP)
-    window.act(keys.set_easing, {0: {24}}, HOLD)
+    window.act(keys.set_tangent_mode, {pose_channel(0): {12}}, TangentMode.STOP)
+    window.act(keys.set_easing, {pose_channel(0): {24}}, HOLD)
     window.settle()
     assert labels(window, monkeypatch) == ["smooth", "smooth", "hold"]
 
 
 def camera_of(project):
-    return [(key.frame, round(key.zoom, 6)) for key in project.document.camera]
+    return [(key.frame, round(key.value.zoom, 6)) for key in project.document.camera]
 
 
 def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, project, play):
@@ -774,35 +783,36 @@ def test_the_camera_is_keyed_from_the_viewport_dragged_and_deleted(window, proje
     window.settle()
     assert project.view(window.session.screen).centre == complex(*canvas) / 2
     # A key from there, turned, is what it was; looking elsewhere ends it.
-    change_camera_key(window.session, 0, turn=7.0)
+    turned = replace(project.document.camera[0].value, turn=7.0)
+    set_key_value(window.session, Channel(CAMERA), 0, turned)
     window.settle()
     key_camera(window.session)
-    assert project.document.camera[0].turn == pytest.approx(7.0)
+    assert project.document.camera[0].value.turn == pytest.approx(7.0)
     editing.undo(window.session)
     viewing.set_view(window.session, None)
     assert not project.is_camera_view
     window.settle()
 
-    play(lambda hand: hand.drag("camera key 30", 50, 44))
+    play(lambda hand: hand.drag(f"{CAMERA_LANE}/key 30", 50, 44))
     assert camera_of(project) == [(0, 1), (44, 2)]
     # One key is never dropped on another, and a click goes there.
-    play(lambda hand: hand.drag("camera key 44", 10, 0))
+    play(lambda hand: hand.drag(f"{CAMERA_LANE}/key 44", 10, 0))
     assert camera_of(project)[0] == (0, 1)
     moved = camera_of(project)[1][0]
-    play(lambda hand: hand.click(f"camera key {moved}"))
+    play(lambda hand: hand.click(f"{CAMERA_LANE}/key {moved}"))
     assert playback.current_frame(window.session, project) == moved
 
     def turn(hand):
-        hand.click(f"camera key {moved}", 1)
-        hand.robot.item_input_value("//$FOCUSED/##camera Turn", 90.0)
+        hand.click(f"{CAMERA_LANE}/key {moved}", 1)
+        hand.robot.item_input_value("//$FOCUSED/##camera turn", 90.0)
         hand.robot.key_press(int(window.Key.escape))
 
     play(turn)
-    assert project.document.camera[1].turn == pytest.approx(np.pi / 2)
+    assert project.document.camera[1].value.turn == pytest.approx(np.pi / 2)
 
     def delete(hand):
-        hand.click("camera key 0", 1)
-        hand.robot.item_click("//$FOCUSED/Delete")
+        hand.click(f"{CAMERA_LANE}/key 0", 1)
+        hand.robot.item_click("//$FOCUSED/###Delete")
 
     play(delete)
     assert camera_of(project) == [(moved, 2)]
@@ -820,8 +830,8 @@ def test_what_the_camera_leaves_out_is_dimmed_in_the_viewport(window, project):
 
     before = brightness(inside), brightness(outside)
     key_camera(window.session)
-    key = replace(project.document.camera[0], zoom=2.0)
-    editing.edit_document(window.session, filming_commands.key_camera(key))
+    near = replace(project.document.camera[0].value, zoom=2.0)
+    set_key_value(window.session, Channel(CAMERA), 0, near)
     window.settle()
     assert brightness(inside) == before[0]
     assert abs(brightness(outside) - before[1]) > 20

@@ -5,24 +5,30 @@ import pytest
 from imgui_bundle import ImVec2, imgui
 
 from app.document import (
+    MARKER,
+    TRACK,
+    Channel,
+    all_keys,
+    channel_commands,
     clip_of,
+    frames_in,
     handle_commands,
-    key_commands,
+    pose_channel,
+    scene_commands,
     shape_commands,
     track_at,
     track_commands,
 )
+from app.document.channels.easing import PRESETS
+from app.document.channels.springs import Spring
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
 from app.document.keyframe import Handle
-from app.document.timing.easing import PRESETS
-from app.document.timing.springs import Spring
-from app.document.timing.tangent_mode import TangentMode
-from app.document.timing.tracks import Track, TrackKey
 from app.editor.actions import editing, playback
 from app.editor.actions.timing import keys, springs, timeline_drag, tracks
-from app.editor.timeline_view import TrackRow, frames_in
 from app.motion import Animation
 from app.ui.style.theme import PALETTES
-from app.ui.timeline.track_residuals import describe_residual, find_residuals
+from app.ui.timeline.rows.track_residuals import describe_residual, find_residuals
 from app.ui.viewport.marks import find_auto_pinned, find_off_target, mark_all
 
 LEFT, RIGHT = 0, 1  # ids of the bar's handles
@@ -35,14 +41,14 @@ def with_track(window, project, keys=WAVE, handle=RIGHT, **settings):
     own = tuple(TrackKey(frame=frame, place=complex(place)) for frame, place in keys)
     track = Track(handles=(handle,), keys=own, **settings)
     editing.edit_document(window.session, track_commands.put_track(project.active, track))
-    timeline_drag.toggle_track_rows(window.session, project.active)
-    tracks.select_track(window.session, handle)
+    timeline_drag.toggle_lanes(window.session, project.active)
+    project.selected_track = handle
     window.settle()
     return project.layer.track_of(handle)
 
 
 def row(project, handle=RIGHT):
-    return TrackRow(project.active, handle)
+    return Channel(TRACK, project.active, handle)
 
 
 def frames_of(project, handle=RIGHT):
@@ -81,7 +87,7 @@ class Rows:
         return self.robot.item_info(self.name(place, item)).rect_full.get_center()
 
     def of(self, item, handle=RIGHT):
-        return self.name(f"track {self.project.active} {handle}", item)
+        return self.name(f"lane track {self.project.active} {handle}", item)
 
     def y(self, handle=RIGHT):
         return self.robot.item_info(self.of("name", handle)).rect_full.get_center().y
@@ -219,9 +225,12 @@ def test_keys_of_a_track_are_moved_copied_and_deleted(window, bent, play):
 
 def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(window, bent):
     with_track(window, bent, keys=((2, 0), (12, 5j), (22, 0)), delay=6)
+    everything = all_keys(bent.document)
+    editing.edit_document(window.session, scene_commands.add_marker(30))
     before = bent.document
-    editing.select_keys_in_rows(
-        window.session, {bent.active: frozenset({0, 24}), row(bent): frozenset({2, 12, 22})}
+    editing.select_channel_keys(
+        window.session,
+        {pose_channel(bent.active): frozenset({0, 24}), row(bent): frozenset({2, 12, 22})},
     )
     window.act(keys.scale_selected_keys, 0.5)
     assert bent.layer.key_frames == {0, 12}
@@ -234,8 +243,15 @@ def test_chosen_keys_of_poses_and_of_a_track_are_scaled_and_reversed_together(wi
     window.act(editing.undo)
     window.act(editing.undo)
     assert bent.document is before
+    # All keys together are the animation: its end and the delay are scaled, too.
+    window.act(editing.select_channel_keys, {**everything, Channel(MARKER): frozenset({30})})
+    window.act(keys.scale_selected_keys, 0.5)
+    assert bent.document.frames.last == before.frames.last // 2
+    assert bent.layer.track_of(RIGHT).delay == 3
+    window.act(editing.undo)
+    assert bent.document is before
     # Those of poses alone leave the track, which has its own time, and the other way round.
-    editing.select_keys_in_rows(window.session, {bent.active: frozenset({0, 24})})
+    editing.select_channel_keys(window.session, {pose_channel(bent.active): frozenset({0, 24})})
     window.act(keys.scale_selected_keys, 0.5)
     assert frames_of(bent) == (2, 12, 22)
     assert bent.layer.key_frames == {0, 12}
@@ -289,7 +305,7 @@ def test_a_box_takes_keys_of_poses_and_of_tracks_which_move_together(window, ben
         rows.robot.mouse_up(0)
 
     play(box)
-    assert bent.selected_keys == {bent.active: {24}, row(bent): {8, 16}}
+    assert bent.selected_keys == {pose_channel(bent.active): {24}, row(bent): {8, 16}}
     play(lambda rows: rows.drag("key 8", 14, 15))
     assert frames_of(bent) == (0, 11, 19)
     assert [key.frame for key in bent.layer.keys] == [0, 27]
@@ -347,7 +363,7 @@ def test_what_is_chosen_is_where_keys_come_and_go(window, bent, play):
     assert seen == [9, 17, 17]
     window.session.is_timeline_focused = True
     window.act(editing.select_all)
-    assert bent.selected_keys == {bent.active: {0, 24}, row(bent): {0, 4, 8, 16}}
+    assert bent.selected_keys == {pose_channel(bent.active): {0, 24}, row(bent): {0, 4, 8, 16}}
     # The row of the poses takes it back.
     play(lambda rows: rows.robot.item_click(f"**/name {bent.active}"))
     assert bent.selected_track is None
@@ -370,7 +386,7 @@ def test_a_chosen_track_is_deleted_in_the_timeline_and_its_handle_stays(window, 
     window.act(editing.undo)
     assert bent.document is before
     # Folded away, it is not what is meant any more.
-    tracks.select_track(window.session, RIGHT)
+    bent.selected_track = RIGHT
     play(lambda rows: rows.robot.item_click(f"**/fold {bent.active}"))
     assert bent.selected_track is None
 
@@ -384,13 +400,13 @@ def test_rows_are_scrolled_to_a_track_that_is_chosen(window, bent):
     for handle in bent.layer.handles:
         track = Track(handles=(handle.id,), keys=own)
         editing.edit_document(window.session, track_commands.put_track(bent.active, track))
-    timeline_drag.toggle_track_rows(window.session, bent.active)
+    timeline_drag.toggle_lanes(window.session, bent.active)
     window.settle()
     assert bent.timeline.scrolled == 0, "the row of the poses is to be seen"
-    tracks.select_track(window.session, bent.layer.handles[-1].id)
+    bent.selected_track = bent.layer.handles[-1].id
     window.frames(3)
     assert bent.timeline.scrolled > 0
-    tracks.select_track(window.session, None)
+    bent.selected_track = None
     window.frames(3)
     assert bent.timeline.scrolled == 0
 
@@ -405,7 +421,7 @@ def test_a_row_switches_its_track_off(window, bent, play):
 def test_keys_of_a_track_are_copied_and_pasted(window, bent):
     with_track(window, bent, delay=2)
     before = bent.document
-    window.act(editing.select_keys_in_rows, {row(bent): frozenset({8, 16})})
+    window.act(editing.select_channel_keys, {row(bent): frozenset({8, 16})})
     window.run(lambda robot: robot.mouse_move("//###Timeline"))
     copy, paste = (int(window.Key.mod_ctrl) | int(key) for key in (window.Key.c, window.Key.v))
     window.session.is_timeline_focused = True
@@ -591,7 +607,9 @@ def test_a_spring_becomes_keys_that_swing_as_it_did(window, bent, press):
 
 def test_a_spring_that_nothing_moves_stays_a_spring(window, bent):
     editing.edit_document(window.session, shape_commands.set_auto_pins(bent.active, enabled=False))
-    editing.edit_document(window.session, key_commands.delete_keys(bent.active, {24}))
+    editing.edit_document(
+        window.session, channel_commands.delete_keys({pose_channel(bent.active): {24}})
+    )
     spring = Spring(handle=RIGHT, frequency=2.0, damping=0.3)
     editing.edit_document(window.session, track_commands.put_spring(bent.active, spring))
     window.settle()

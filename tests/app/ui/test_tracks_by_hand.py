@@ -8,10 +8,25 @@ from bars import BENT, HALF, LAST, bend_bar
 from harness import FRAME, MOST_FRAMES
 from numpy.testing import assert_allclose
 
-from app.document import Keyframe, Target, clip_of, track_at, transform_at
-from app.document.commands import key_commands, scene_commands, track_commands
-from app.document.commands.layers import filming_commands
-from app.document.timing.tracks import Track, TrackKey
+from app.document import (
+    TRANSFORM,
+    Channel,
+    Keyframe,
+    Target,
+    Transform,
+    channel_commands,
+    clip_of,
+    pose_channel,
+    track_at,
+    transform_at,
+)
+from app.document.channels.tracks import Track, TrackKey
+from app.document.commands import (
+    scene_commands,
+)
+from app.document.commands.keys import (
+    track_commands,
+)
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import release_drag, set_targets
@@ -225,7 +240,7 @@ def test_escape_takes_a_turn_of_a_track_back(window, keyed):
 
 
 def test_the_ring_turns_the_pose_where_no_row_of_a_track_is_chosen(window, keyed):
-    tracks.select_track(window.session, None)
+    keyed.selected_track = None
     window.settle()
     tracked, poses = keyed.layer.tracks, keyed.layer.keys
     playback.scrub(window.session, LAST)
@@ -240,7 +255,7 @@ def offset_by(window, project, offset, frames):
     keys = tuple(TrackKey(frame=frame, place=offset) for frame in frames)
     track = Track(handles=(END,), keys=keys)
     project.history.do(track_commands.put_track(project.active, track))
-    tracks.select_track(window.session, None)
+    keyed.selected_track = None
     window.settle()
 
 
@@ -455,13 +470,17 @@ def hop_by_keys(project):
     keys = tuple(
         Keyframe(frame=frame, pose=pose) for frame, pose in ((0, rest), (HALF, up), (LAST, rest))
     )
-    project.history.do(key_commands.insert_keys(layer.id, keys))
+    project.history.do(channel_commands.insert_keys({pose_channel(layer.id): keys}))
 
 
 def hop_as_a_layer(project):
     """Let the layer hop, as it is."""
     for frame, shift in ((0, 0j), (HALF, HOP), (LAST, 0j)):
-        project.history.do(filming_commands.key_movement(project.active, frame, shift, 0.0))
+        project.history.do(
+            channel_commands.set_key(
+                Channel(TRANSFORM, project.active), frame, Transform(shift, 0.0)
+            )
+        )
 
 
 def in_scene(window, project, frames):

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 from messages import says
 from walkers import walker
 
-from app.document import layer_commands
+from app.document import layer_commands, pose_channel
 from app.document.rig.mirror_names import NO_PAIR
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import nudge_handles
@@ -97,7 +97,8 @@ def test_the_opposite_step_is_two_keys_away(window, project):
 
 def test_keys_that_are_chosen_in_the_timeline_are_swapped(window):
     ids = [layer(window, name).id for name in ("near leg", "far leg")]
-    editing.select_keys_in_rows(window.session, dict.fromkeys(ids, frozenset({0})))
+    chosen = {pose_channel(each): frozenset({0}) for each in ids}
+    editing.select_channel_keys(window.session, chosen)
 
     def copy(robot):
         robot.mouse_move("###Timeline/**/ruler")

@@ -11,6 +11,8 @@ from messages import says
 from PIL import Image, ImageDraw
 
 from app.document import (
+    DRAW_ORDER,
+    TRANSFORM,
     cycle_commands,
     group_commands,
     is_visible,
@@ -542,13 +544,13 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     before = place(scene, "stick", window)
     use(lambda robot: robot.item_input_value("**/##moved right", 25.0))
     assert abs(place(scene, "stick", window) - before - 25) < 0.5
-    assert [key.frame for key in scene.document.layer(ids["stick"]).transform_keys] == [12]
+    assert [key.frame for key in scene.document.layer(ids["stick"]).keys_of(TRANSFORM)] == [12]
     window.act(playback.seek, 3)
-    window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/change 12"))
+    window.run(lambda robot: robot.item_click(f"###Timeline/**/row {ids['stick']}/keys 12"))
     assert playback.current_frame(window.session, scene) == 12
     window.frames(3)
-    use(lambda robot: robot.item_click("**/Delete transform key"))
-    assert scene.document.layer(ids["stick"]).transform_keys == ()
+    use(lambda robot: robot.item_click("**/key transform"))
+    assert scene.document.layer(ids["stick"]).keys_of(TRANSFORM) == ()
 
     def paint_in_front(robot):
         robot.item_click("##painted")
@@ -557,5 +559,5 @@ def test_a_layer_is_moved_and_ordered_in_time_by_the_tab(window, scene, ids, use
     use(paint_in_front)
     assert [each.id for each in layers_in_draw_order(scene.document, 11)][-1] == ids["oh"]
     assert [each.id for each in layers_in_draw_order(scene.document, 12)][-1] == ids["stick"]
-    use(lambda robot: robot.item_click("**/Delete order key"))
-    assert scene.document.layer(ids["stick"]).draw_order_keys == ()
+    use(lambda robot: robot.item_click("**/key draw_order"))
+    assert scene.document.layer(ids["stick"]).keys_of(DRAW_ORDER) == ()

@@ -8,8 +8,10 @@ import pytest
 from harness import PATIENCE
 from imgui_bundle import ImVec2, imgui
 
-from app.document.commands import handle_commands, key_commands
-from app.document.keyframe import TangentMode, Target
+from app.document import channel_commands, pose_channel
+from app.document.channels.tangent_mode import TangentMode
+from app.document.commands import handle_commands
+from app.document.keyframe import Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
 from app.editor.actions import editing, playback, upkeep, viewing
@@ -199,7 +201,9 @@ def test_deleting_a_key_while_it_is_dragged(window, loose):
     [
         (editing.delete_selection, [0]),
         (
-            lambda session: editing.edit_document(session, key_commands.move_keys(0, {24}, 6)),
+            lambda session: editing.edit_document(
+                session, channel_commands.move_keys({pose_channel(0): {24}}, 6)
+            ),
             [0, 30],
         ),
         (lambda session: keys.scale_selected_keys(session, 0.5), [0, 12]),
@@ -271,12 +275,13 @@ def test_end_of_the_preview_range_before_its_beginning_takes_that_along(window):
 def test_only_what_is_there_is_selected(window, loose):
     editing.select_handles(window.session, frozenset({1, 7}))
     assert loose.selected_handles == {1}
+    poses = pose_channel(loose.active)
     timeline_drag.begin_timeline_drag(
         window.session,
-        KeyBox(start=0.0, row=loose.active, keeps={loose.active: frozenset({24, 31})}),
+        KeyBox(start=0.0, channel=poses, keeps={poses: frozenset({24, 31})}),
         loose.timeline.time_range,
     )
-    timeline_drag.move_timeline_drag(window.session, 10.0, loose.active)
+    timeline_drag.move_timeline_drag(window.session, 10.0, poses)
     assert loose.selected_frames == {0, 24}
     timeline_drag.cancel_timeline_drag(window.session)
     assert loose.selected_frames == {24}
@@ -414,11 +419,14 @@ def test_scrubbing_while_the_worker_builds(window, loose):
 @pytest.mark.usefixtures("everything")
 def test_poses_that_follow_each_other_twice_are_prepared_once(window, loose):
     keys.set_inbetween_method(window.session, "nu")
-    editing.edit_document(window.session, key_commands.copy_keys(0, {0, 24}, 48))
+    editing.edit_document(
+        window.session, channel_commands.copy_keys({pose_channel(0): {0, 24}}, 48)
+    )
     # Passed through, the keys would be met with other velocities at the ends.
     frames = {0, 24, 48, 72}
     editing.edit_document(
-        window.session, key_commands.set_tangent_mode(0, frames, TangentMode.CORNER)
+        window.session,
+        channel_commands.set_tangent_mode({pose_channel(0): frames}, TangentMode.CORNER),
     )
     window.settle()
     assert frames_of(loose) == [0, 24, 48, 72]

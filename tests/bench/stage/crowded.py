@@ -5,12 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.document import (
+    OPACITY,
+    SWITCH,
     Document,
     FrameRange,
     Handle,
     Keyframe,
     SwitchGroup,
-    SwitchKey,
     Target,
     clip_of,
 )
@@ -54,7 +55,8 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
     pose = layer.keys[0].pose
     layers, handles = min(count, LAYERS), min(count, MOST_HANDLES)
     keys = tuple(Keyframe(frame=at, pose=pose) for at in range(count))
-    turns = tuple(SwitchKey(at, at % 2) for at in range(count))
+    fades = tuple(OPACITY.key(at, 0.5) for at in range(count))
+    turns = tuple(SWITCH.key(at, at % 2) for at in range(count))
     vertices = layer.domain.mesh.vertices.tolist()
     spread = [
         Handle(id=each, name=f"handle {each}", position=vertices[each % len(vertices)])
@@ -79,6 +81,10 @@ def _documents(sample: Document, count: int) -> dict[str, Document]:
         ),
         f"{count:,} keys of poses": replace(
             document, layers=(replace(bare, keys=keys), *document.layers[1:])
+        ),
+        f"{count:,} keys of opacity": replace(
+            document,
+            layers=(replace(bare, channels={(OPACITY.name, None): fades}), *document.layers[1:]),
         ),
         f"{count:,} turns of a switch": replace(
             document,

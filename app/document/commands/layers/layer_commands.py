@@ -5,18 +5,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.document.channels.kinds import LAYER_KINDS, VISIBILITY
 from app.document.commands.command import command, layer_command, with_number
 from app.document.commands.handle_commands import with_handles
-from app.document.commands.key_commands import replace_keys
 from app.document.commands.layers import switch_group_commands
 from app.document.commands.layers.hidden import with_layer_shown
 from app.document.keyframe import Pose, Target
 from app.document.layer import Layer
 from app.document.layers.attachments import Attachment
 from app.document.layers.groups import BlendMode, ancestor_paths, common_path
-from app.document.layers.visibility import VisibilityKey
 from app.document.model import Document
-from app.document.queries.layers.visibility import change_frame
+from app.document.queries.channel_values.repeats import keyed_frame
 from app.errors import ImportLog, LissomError
 from app.texts import N_, _
 
@@ -170,45 +169,25 @@ def set_reference(document: Document, identity: int, *, reference: bool) -> Docu
 
 
 @command(_("Set visibility key"))
-def key_visibility(
-    document: Document, identity: int, frame: int, *, visible: bool | None
-) -> Document:
-    """Show or hide a layer from a frame on; None deletes the visibility key at that frame.
+def key_visibility(document: Document, identity: int, frame: int, *, visible: bool) -> Document:
+    """Show or hide a layer from a frame on.
 
     In a cycle, the key repeats. A layer that was hidden at all frames stays hidden before the
     frame.
     """
     layer = document.layer(identity)
-    frame = change_frame(layer.visibility_keys, layer.cycles, frame)
-    switches = layer.visibility_keys
+    keys = layer.keys_of(VISIBILITY)
+    frame = keyed_frame(VISIBILITY, keys, layer.cycles, frame)
     if visible and (layer.hidden or document.is_in_hidden(layer)):
         document = with_layer_shown(document, identity)
         layer = document.layer(identity)
-        switches = switches or (VisibilityKey(0, visible=False),)
-    others = [switch for switch in switches if switch.frame != frame]
-    if visible is not None:
-        if not others and not switches and frame > 0:
-            # The layer keeps its visibility before the frame.
-            others = [VisibilityKey(0, not visible)]
-        others.append(VisibilityKey(frame, visible))
-    switches = tuple(sorted(others, key=lambda switch: switch.frame))
-    return _with(document, identity, visibility_keys=switches)
-
-
-@layer_command(_("Move visibility key"))
-def move_visibility_key(layer: Layer, frame: int, to: int) -> Layer:
-    moved = [switch for switch in layer.visibility_keys if switch.frame == frame]
-    if not moved:
-        raise LissomError(
-            _("{layer!r} has no visibility key at frame {frame}.").format(
-                layer=layer.name, frame=frame
-            )
-        )
-    if to == frame:
-        return layer
-    others = [switch for switch in layer.visibility_keys if switch.frame != frame]
-    switches = sorted([*others, replace(moved[0], frame=to)], key=lambda switch: switch.frame)
-    return replace(layer, visibility_keys=tuple(switches))
+        keys = keys or (VISIBILITY.key(0, value=False),)
+    others = [key for key in keys if key.frame != frame]
+    if not keys and frame > 0:
+        # The layer keeps its visibility before the frame.
+        others = [VISIBILITY.key(0, not visible)]
+    ordered = sorted([*others, VISIBILITY.key(frame, visible)], key=lambda key: key.frame)
+    return document.with_layer(layer.with_keys_of(VISIBILITY, ordered))
 
 
 @command(_("Attach"))
@@ -221,27 +200,6 @@ def attach_layer(document: Document, identity: int, anchor: complex, joint: Atta
     joints = [each for each in document.layer(identity).attachments if each.frame != joint.frame]
     joints = sorted([*joints, joint], key=lambda each: each.frame)
     return _with(document, identity, anchor=anchor, attachments=tuple(joints))
-
-
-@layer_command(_("Delete attachment key"))
-def delete_attachment_key(layer: Layer, frame: int) -> Layer:
-    """Delete the attachment key at a frame; the attachment before it stays in effect."""
-    joints = tuple(joint for joint in layer.attachments if joint.frame != frame)
-    return layer if joints == layer.attachments else replace(layer, attachments=joints)
-
-
-@layer_command(_("Move joint key"))
-def move_attachment_key(layer: Layer, frame: int, to: int) -> Layer:
-    moved = next((joint for joint in layer.attachments if joint.frame == frame), None)
-    if moved is None:
-        raise LissomError(
-            _("{layer!r} has no attachment at frame {frame}.").format(layer=layer.name, frame=frame)
-        )
-    if to == frame:
-        return layer
-    others = [joint for joint in layer.attachments if joint is not moved]
-    joints = sorted([*others, replace(moved, frame=to)], key=lambda joint: joint.frame)
-    return replace(layer, attachments=tuple(joints))
 
 
 @command(_("Detach"))
@@ -261,19 +219,6 @@ def detach_layer(document: Document, identity: int, factor: complex, shift: comp
 def set_depth(layer: Layer, identity: int, front: float, extent: float | None) -> Layer:
     """Set the default depth around a handle and its radius."""
     return with_handles(layer, {identity}, depth=float(front), extent=extent)
-
-
-@layer_command(_("Set depth key"))
-def key_depth(layer: Layer, frame: int, identity: int, front: float | None) -> Layer:
-    """Set the depth around a handle from a key on; None removes it from that key."""
-    key = layer.key(frame)
-    handle = layer.handle(identity)
-    fronts = {i: depth for i, depth in key.depths.items() if i != handle.id}
-    if front is not None:
-        fronts[handle.id] = float(front)
-    if fronts == key.depths:
-        return layer
-    return replace_keys(layer, {frame: replace(key, depths=fronts)})
 
 
 def next_layer_id(document: Document) -> int:
@@ -312,10 +257,17 @@ def group_at(others: Sequence[Layer], index: int, layer: Layer) -> str:
 def _without_references_to(layer: Layer, other: int) -> Layer:
     """Return a layer without attachment and draw order keys that refer to another layer."""
     joints = tuple(joint for joint in layer.attachments if joint.parent != other)
-    order_keys = tuple(key for key in layer.draw_order_keys if key.beside != other)
-    if (joints, order_keys) == (layer.attachments, layer.draw_order_keys):
-        return layer
-    return replace(layer, attachments=joints, draw_order_keys=order_keys)
+    if joints != layer.attachments:
+        layer = replace(layer, attachments=joints)
+    for (name, part), keys in layer.channels.items():
+        kind = LAYER_KINDS[name]
+        left = (
+            key
+            for key in keys
+            if not any(kind.field_of(key.value, each) == other for each in kind.layer_fields)
+        )
+        layer = layer.with_keys_of(kind, left, part)
+    return layer
 
 
 def _with(document: Document, identity: int, **changes: object) -> Document:

@@ -1,18 +1,19 @@
 """Commands on switch groups: layers of which exactly one is visible, such as mouths."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+from app.document.channels.key import Key
+from app.document.channels.kind import Channel
+from app.document.channels.kinds import SWITCH, VISIBILITY
 from app.document.commands.command import command
+from app.document.commands.keys.retime import without_repetitions
 from app.document.commands.layers.hidden import with_layer_shown
-from app.document.layers.visibility import SwitchGroup, SwitchKey
+from app.document.layers.switch_group import SwitchGroup
 from app.document.model import Document
-from app.document.queries.layers.visibility import (
-    is_visible,
-    turn_frame,
-    visibility_keys,
-    with_repeats,
-)
+from app.document.queries.channel_values.channel_keys import source_frame
+from app.document.queries.channel_values.repeats import with_repeats
+from app.document.queries.layers.visibility import is_visible, visibility_keys
 from app.errors import LissomError
 from app.texts import _
 
@@ -25,14 +26,14 @@ def create_switch_group(document: Document, name: str, layers: Sequence[int]) ->
     none is visible, the previous choice stays.
     """
     members = [document.layer(identity) for identity in layers]
-    starts = {switch.frame for layer in members for switch in layer.visibility_keys}
+    starts = {switch.frame for layer in members for switch in layer.keys_of(VISIBILITY)}
     front = [layer for layer in reversed(document.layers) if layer in members]
-    turns: list[SwitchKey] = []
+    turns: list[Key[int]] = []
     for frame in sorted(starts | {document.frames.first}):
         seen = next((each.id for each in front if is_visible(document, each, frame)), None)
-        if seen is not None and (not turns or seen != turns[-1].layer):
-            turns.append(SwitchKey(frame, seen))
-    if [turn.layer for turn in turns] == list(layers[:1]):
+        if seen is not None and (not turns or seen != turns[-1].value):
+            turns.append(SWITCH.key(frame, seen))
+    if [turn.value for turn in turns] == list(layers[:1]):
         turns = []  # the first layer at all frames is the default
     for layer in members:
         document = _without_visibility_keys(document, layer.id)
@@ -46,31 +47,12 @@ def choose_at(document: Document, identity: int, frame: int) -> Document:
     choice = _switch_group_of(document, identity)
     if with_repeats(document, choice).layer_at(frame) == identity:
         return document
-    frame = turn_frame(document, choice, frame)
-    turns = choice.keys or (SwitchKey(min(frame, document.frames.first), choice.layers[0]),)
-    changed = replace(choice, keys=_put(turns, SwitchKey(frame, identity)))
-    return _replace_switch_group(document, choice, changed)
-
-
-@command(_("Delete switch key"))
-def unchoose_at(document: Document, name: str, frame: int) -> Document:
-    """Delete the switch key at a frame; the layer visible before it stays visible."""
-    choice = document.switch_group(name)
-    left = _plain(turn for turn in choice.keys if turn.frame != frame)
-    return _replace_switch_group(document, choice, replace(choice, keys=left))
-
-
-@command(_("Move switch key"))
-def move_turn(document: Document, name: str, frame: int, to: int) -> Document:
-    """Move a switch key to another frame, in place of a key there."""
-    choice = document.switch_group(name)
-    moved = next((turn for turn in choice.keys if turn.frame == frame), None)
-    if moved is None:
-        raise LissomError(
-            _("The switch {name!r} has no key at frame {frame}.").format(name=name, frame=frame)
-        )
-    others = (turn for turn in choice.keys if turn is not moved)
-    changed = replace(choice, keys=_put(others, moved._replace(frame=to)))
+    shown = source_frame(document, Channel(SWITCH, part=choice.name), frame)
+    frame = frame if shown is None else shown
+    keys = choice.keys or (SWITCH.key(min(frame, document.frames.first), choice.layers[0]),)
+    others = [key for key in keys if key.frame != frame]
+    ordered = sorted([*others, SWITCH.key(frame, identity)], key=lambda key: key.frame)
+    changed = replace(choice, keys=without_repetitions(ordered))
     return _replace_switch_group(document, choice, changed)
 
 
@@ -126,16 +108,12 @@ def _without_visibility_keys(document: Document, identity: int) -> Document:
     """Return a document in which only a switch group decides the visibility of the layer."""
     document = with_layer_shown(document, identity)
     layer = document.layer(identity)
-    return (
-        document.with_layer(replace(layer, visibility_keys=()))
-        if layer.visibility_keys
-        else document
-    )
+    return document.with_layer(layer.with_keys_of(VISIBILITY, ()))
 
 
 def _without(choice: SwitchGroup, identity: int) -> SwitchGroup | None:
     layers = tuple(layer for layer in choice.layers if layer != identity)
-    turns = _plain(turn for turn in choice.keys if turn.layer != identity)
+    turns = without_repetitions(key for key in choice.keys if key.value != identity)
     return replace(choice, layers=layers, keys=turns) if len(layers) > 1 else None
 
 
@@ -151,28 +129,13 @@ def _replace_switch_group(
     # Groups that are hidden do not count.
     visible = replace(document, groups=tuple(replace(g, hidden=False) for g in document.groups))
     layers = tuple(
-        replace(each, visibility_keys=visibility_keys(visible, each), hidden=False)
+        replace(each.with_keys_of(VISIBILITY, visibility_keys(visible, each)), hidden=False)
         if each.id in freed
         else each
         for each in document.layers
     )
     choices = (changed if each is choice else each for each in document.switch_groups)
     return replace(document, layers=layers, switch_groups=tuple(filter(None, choices)))
-
-
-def _put(turns: Iterable[SwitchKey], new: SwitchKey) -> tuple[SwitchKey, ...]:
-    """Return switch keys with one key added or replaced."""
-    others = [turn for turn in turns if turn.frame != new.frame]
-    return _plain(sorted([*others, new]))
-
-
-def _plain(turns: Iterable[SwitchKey]) -> tuple[SwitchKey, ...]:
-    """Return switch keys without repetitions of the layer before."""
-    plain: list[SwitchKey] = []
-    for turn in turns:
-        if not plain or turn.layer != plain[-1].layer:
-            plain.append(turn)
-    return tuple(plain)
 
 
 def _switch_group_of(document: Document, identity: int) -> SwitchGroup:

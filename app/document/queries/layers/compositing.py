@@ -2,15 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Generic, NamedTuple, TypeVar
+from types import MappingProxyType
+from typing import Any, Generic, NamedTuple, TypeVar
 
+from app.document.channels.kind import Channel
+from app.document.channels.kinds import LAYER_KINDS
 from app.document.layer import Layer
 from app.document.layers.groups import BlendMode
 from app.document.model import Document
+from app.document.queries.channel_values.values_at import layers_in_draw_order, opacity_at, value_at
 from app.document.queries.layers.clipping import group_runs
-from app.document.queries.layers.layer_state import layers_in_draw_order, opacity_at
 
 Drawn = TypeVar("Drawn")
+NO_EFFECTS: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +27,8 @@ class CompositeGroup(Generic[Drawn]):
     # Whether the group is visible only within the alpha of its backdrop in the outer composite, and
     # blends with that backdrop as if it were opaque.
     clipped: bool = False
+    # Values for the shader of the result, by uniform; other uniforms have their defaults.
+    effects: Mapping[str, Any] = field(default_factory=lambda: NO_EFFECTS)
     # Pass-through group: its parts blend directly with the backdrop; the group's opacity is applied
     # to the result.
     is_pass_through: bool = False
@@ -33,7 +39,7 @@ class CompositeGroup(Generic[Drawn]):
         return (
             self.opacity == 1
             and self.blend == "normal"
-            and not (self.clipped or self.needs_backdrop)
+            and not (self.clipped or self.needs_backdrop or self.effects)
         )
 
     @property
@@ -62,16 +68,24 @@ def composite_layers(
     `drawn` has the visible layers by id. Each run of a group is composited separately. Layers
     clipped to an invisible base are invisible.
     """
-    opacities = {layer.id: opacity_at(document, layer, frame) for layer in document.layers}
-    return _parts(_Painted(document, drawn, opacities), layers_in_draw_order(document, frame), 0)
+    return _parts(_Painted(document, drawn, frame), layers_in_draw_order(document, frame), 0)
+
+
+def _effects(document: Document, layer: Layer, frame: float) -> Mapping[str, Any]:
+    """Return the values of a layer's effects that change how it looks, by uniform."""
+    kinds = (LAYER_KINDS[name] for name, _part in layer.channels)
+    values = {
+        kind: value_at(document, Channel(kind, layer.id), frame) for kind in kinds if kind.uniform
+    }
+    return {kind.uniform: value for kind, value in values.items() if value != kind.default}
 
 
 class _Painted(NamedTuple, Generic[Drawn]):
-    """The drawn layers of a document and their opacities, by id."""
+    """The drawn layers of a document at a frame, by id."""
 
     document: Document
     drawn: Mapping[int, Drawn]
-    opacities: Mapping[int, float]
+    frame: float
 
 
 def _parts(
@@ -89,8 +103,10 @@ def _parts(
         else:
             (layer,) = run
             seen = (given.drawn[layer.id],) if layer.id in given.drawn else ()
-            opacity = given.opacities[layer.id]
-            unit = _ClipUnit(CompositeGroup(seen, opacity, layer.blend, layer.clipped))
+            document, frame = given.document, given.frame
+            opacity, effects = opacity_at(document, layer, frame), _effects(document, layer, frame)
+            whole = CompositeGroup(seen, opacity, layer.blend, layer.clipped, effects)
+            unit = _ClipUnit(whole)
         if unit.whole.clipped and units and not units[-1].whole.clipped:
             units[-1].clipped.append(unit.whole)
         else:
@@ -101,12 +117,15 @@ def _parts(
 def _painted(unit: _ClipUnit[Drawn]) -> tuple[Drawn | CompositeGroup[Drawn], ...]:
     """Return the parts of a unit: its own parts, or one group."""
     # Without a base below, a clipped layer is not clipped.
-    whole = CompositeGroup(unit.whole.parts, unit.whole.opacity, unit.whole.blend)
+    whole = replace(unit.whole, clipped=False)
     cut = [each for each in unit.clipped if each.parts]
     if not whole.parts:
         return ()
     if cut:
-        return (CompositeGroup((*whole.parts, *cut), whole.opacity, whole.blend),)
+        # Effects change the base alone, opacity and blend all that is clipped to it.
+        base = whole.parts
+        base = (CompositeGroup(base, effects=whole.effects),) if whole.effects else base
+        return (CompositeGroup((*base, *cut), whole.opacity, whole.blend),)
     if unit.is_pass_through and whole.opacity == 1:
         return whole.parts
     if unit.is_pass_through and whole.needs_backdrop:

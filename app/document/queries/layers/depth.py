@@ -2,7 +2,9 @@
 
 from typing import NamedTuple
 
-from app.document.layer import Layer
+from app.document.channels.kinds import DEPTH
+from app.document.keyframe import Handle
+from app.document.queries.channel_values.repeats import held_key_at, repeated_keys
 from app.document.queries.clips import Clip
 from engine.geometry import diameter
 
@@ -21,18 +23,14 @@ class DepthPoint(NamedTuple):
 def depth_points_at(clip: Clip, frame: float) -> tuple[DepthPoint, ...]:
     """Return the points with a depth other than 0 at a frame.
 
-    A key's depths hold from its frame on until a later key changes them. Before the first key, the
-    depths of the handles hold, or in a loop the depths after the last key. Each repeat of a cycle
-    begins with the depths before the first one.
+    Before the first key of a handle, its own depth holds, or in a loop the depth of its last key.
     """
     layer = clip.layer
-    depths = {handle.id: handle.depth for handle in layer.handles}
+    if not any(handle.depth for handle in layer.handles) and not layer.channels:
+        return ()
     if clip.loop and clip.period and frame not in clip.frames:
         frame = clip.frames.first + (frame - clip.frames.first) % clip.period
-    is_before_all = clip.loop and frame < clip.keys[0].frame
-    for key in clip.keys:
-        if key.depths and (is_before_all or _has_been(layer, key.frame, frame)):
-            depths.update(key.depths)
+    depths = {handle.id: _depth_at(clip, handle, frame) for handle in layer.handles}
     if not any(depths.values()):
         return ()
     usual = DEFAULT_DEPTH_EXTENT * diameter(layer.domain.outline)
@@ -43,13 +41,12 @@ def depth_points_at(clip: Clip, frame: float) -> tuple[DepthPoint, ...]:
     )
 
 
-def _has_been(layer: Layer, key: int, frame: float) -> bool:
-    """Return whether a key's depths have taken effect at a frame.
-
-    Depths of a key in a cycle hold until the repeat or all repeats end.
-    """
-    cycle = layer.cycle_containing(key)
-    if cycle is None:
-        return key <= frame
-    end = frame if cycle.until is None else min(frame, cycle.until)
-    return key <= frame and key <= cycle.source_frame(end)
+def _depth_at(clip: Clip, handle: Handle, frame: float) -> float:
+    keys, end = clip.layer.keys_of(DEPTH, handle.id), clip.frames.last
+    if not keys:
+        return handle.depth
+    keys = repeated_keys(keys, clip.layer.cycles, end, handle.depth)
+    key = held_key_at(keys, frame)
+    if key is None and clip.loop:
+        key = held_key_at(keys, end)
+    return handle.depth if key is None else key.value

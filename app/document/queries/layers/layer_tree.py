@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from app.document.layer import Layer
 from app.document.layers.groups import Group, ancestor_paths
-from app.document.layers.visibility import SwitchGroup
+from app.document.layers.switch_group import SwitchGroup
 from app.document.model import Document
 from app.texts import _
 

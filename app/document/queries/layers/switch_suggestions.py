@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 
+from app.document.channels.kinds import VISIBILITY
 from app.document.layer import Layer
 from app.document.layers.groups import ancestor_paths
 from app.document.model import Document
@@ -57,4 +58,4 @@ def _place(layer: Layer) -> str:
 
 
 def _is_free(document: Document, layer: Layer) -> bool:
-    return not layer.visibility_keys and document.switch_group_of(layer.id) is None
+    return not layer.keys_of(VISIBILITY) and document.switch_group_of(layer.id) is None

@@ -1,11 +1,18 @@
 """Partners, locks, groups and depth of handles."""
 
-from collections.abc import Mapping
 from itertools import count
 
-from app.document import Handle, handle_commands, layer_commands, mirrored_handles_by_name
-from app.editor.actions import playback
+from app.document import (
+    DEPTH,
+    Channel,
+    Handle,
+    frames_in,
+    handle_commands,
+    layer_commands,
+    mirrored_handles_by_name,
+)
 from app.editor.actions.editing import edit_layer, select_handles
+from app.editor.actions.timing import channel_keys
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.texts import _
@@ -54,23 +61,17 @@ def ungroup_handles(session: Session, project: Project) -> None:
     edit_layer(session, handle_commands.group_handles, fellows, "")
 
 
-def depth_at_playhead(session: Session, project: Project, handle: Handle) -> float:
-    """Return the depth of a handle at the present frame, −1 (back) to 1 (front)."""
-    return _depth_points_at_playhead(session, project).get(handle.id, handle.depth)
+def depth_channel(project: Project, handle: Handle) -> Channel[float]:
+    """Return the channel of a handle's depth in the active layer."""
+    return Channel(DEPTH, project.active, handle.id)
 
 
 @with_project
 def set_depth(session: Session, project: Project, identity: int, front: float) -> None:
-    """Set the depth of a handle: in the present key if that has the depth, or else for all keys."""
-    if identity in _depth_points_at_playhead(session, project):
-        frame = playback.edited_frame(session, project)
-        edit_layer(session, layer_commands.key_depth, frame, identity, front)
+    """Set the depth of a handle: by a key if it has keys, or else for all frames."""
+    handle = project.layer.handle(identity)
+    channel = depth_channel(project, handle)
+    if frames_in(project.document, channel):
+        channel_keys.set_channel_value(session, channel, front)
     else:
-        extent = project.layer.handle(identity).extent
-        edit_layer(session, layer_commands.set_depth, identity, front, extent)
-
-
-def _depth_points_at_playhead(session: Session, project: Project) -> Mapping[int, float]:
-    """Return the depth points of the key at the present frame; empty without one."""
-    frame, layer = playback.edited_frame(session, project), project.layer
-    return layer.key(frame).depths if frame in layer.key_frames else {}
+        edit_layer(session, layer_commands.set_depth, identity, front, handle.extent)

@@ -1,12 +1,19 @@
 """Actions on cycles: create from selected keys, end, and bake into keys."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
-from app.document import Command, Cycle, Document, cycle_commands
+from app.document import (
+    SWITCH,
+    Command,
+    Cycle,
+    Document,
+    cycle_commands,
+    frames_in,
+    pose_channel,
+)
 from app.editor.actions import editing, playback
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import frames_in, layer_of
 from app.errors import LissomError
 from app.texts import _, message_of
 
@@ -18,8 +25,9 @@ def selected_range(project: Project) -> tuple[int, int] | None:
     """
     frames = set[int]().union(*project.selected_keys.values())
     if len(frames) < 2:
-        rows = project.selected_layers if len(project.selected_layers) > 1 else [project.row]
-        frames = set[int]().union(*(frames_in(project.document, row) for row in rows))
+        layers = project.selected_layers
+        channels = map(pose_channel, layers) if len(layers) > 1 else [project.channel]
+        frames = set[int]().union(*(frames_in(project.document, each) for each in channels))
     return (min(frames), max(frames)) if len(frames) > 1 else None
 
 
@@ -80,21 +88,24 @@ def _change(
 def _layers(project: Project) -> list[int]:
     """Return the layers of selected keys and the selected layers, or the active layer."""
     together = project.selected_layers if len(project.selected_layers) > 1 else ()
-    layers = {*together, *map(layer_of, project.selected_keys)} or {project.active}
+    layers = {*together, *_layers_of_keys(project)} or {project.active}
     return sorted(each for each in layers if _may_repeat(project.document, each))
+
+
+def _layers_of_keys(project: Project) -> Iterator[int]:
+    """Yield the layers of the selected keys; a switch stands for its layers."""
+    for channel in project.selected_keys:
+        if channel.layer is not None:
+            yield channel.layer
+        elif channel.kind is SWITCH:
+            yield from project.document.switch_group(str(channel.part)).layers
 
 
 def _may_repeat(document: Document, identity: int) -> bool:
     """Return whether a layer can have a cycle; a still picture only without its pose channel."""
     layer = document.layer(identity)
-    beside = (
-        *layer.attachments[1:],
-        *layer.transform_keys,
-        *layer.opacity_keys,
-        *layer.draw_order_keys,
-    )
-    in_time = beside or layer.visibility_keys or document.switch_group_of(identity) is not None
-    return not layer.still or bool(in_time)
+    in_time = layer.attachments[1:] or layer.channels
+    return not layer.still or bool(in_time) or document.switch_group_of(identity) is not None
 
 
 def _all_of(commands: list[Command], layers: list[int], document: Document) -> Document:

@@ -1,25 +1,37 @@
 """Actions on whole keys, and settings of time."""
 
 from dataclasses import replace
+from typing import Any
 
 from app.document import (
     LAST_FRAME,
+    LINEAR,
+    MARKER,
+    PARENT,
+    POSE,
+    TRACK,
+    Channel,
     Command,
     Easing,
     FrameRange,
+    KeysByChannel,
     TangentMode,
     Variant,
+    channel_commands,
+    combine_commands,
+    frames_in,
     key_commands,
+    keys_in,
     scene_commands,
     shape_commands,
-    track_commands,
+    source_frame,
 )
+from app.editor.action import do
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.inserting import insert_key
-from app.editor.actions.timing import tracks
+from app.editor.actions.timing import channel_keys, tracks
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import KeysByRow, frames_in, keys_in, source_frame
 from app.errors import LissomError
 from app.texts import N_, _
 
@@ -27,11 +39,10 @@ NO_LAST_FRAME = N_(
     "The last frame must be after frame {first} and at most {most:,}, not {last:,}. Type "
     "another number."
 )
-EASE = editing.KeyVerb(key_commands.set_easing, track_commands.set_track_easing)
-PASS = editing.KeyVerb(key_commands.set_tangent_mode, track_commands.set_track_passing)
-REVERSE = editing.KeyVerb(key_commands.reverse_keys, track_commands.reverse_track_keys)
-SCALE = editing.KeyVerb(key_commands.scale_keys, track_commands.scale_track_keys)
-TURN = editing.KeyVerb(key_commands.set_revolutions)  # track keys store whole turns
+GOES_ON_SMOOTHLY = N_(
+    "The key at frame {frame} is smooth, so the motion bends before it. Make it a corner for a "
+    "straight motion."
+)
 
 
 @with_project
@@ -46,31 +57,64 @@ def edit_timing(session: Session, project: Project, command: Command) -> None:
 
 @with_project
 def insert_key_in_row(session: Session, project: Project) -> None:
-    """Insert a key at the present frame into the selected row: of the pose, or of a track."""
-    track = project.selected_track
-    if track is None or project.unkeyed_pose is not None:
+    """Insert a key at the present frame into the selected channel, with its present value."""
+    channel = project.channel
+    if channel.kind is POSE or project.unkeyed_pose is not None:
         insert_key(session)
-    else:
-        tracks.key_handles_at_playhead(session, (track,))
+    elif project.selected_track is not None:
+        tracks.key_handles_at_playhead(session, (project.selected_track,))
+    elif channel.kind not in (MARKER, PARENT):
+        channel_keys.insert_channel_key(session, channel)
 
 
 def insert_key_in_row_at(session: Session, frame: int) -> None:
-    """Put the playhead on a frame, and insert a key into the selected row."""
+    """Put the playhead on a frame, and insert a key into the selected channel."""
     playback.scrub(session, frame)
     insert_key_in_row(session)
 
 
-def set_easing(session: Session, keys: KeysByRow, easing: Easing) -> None:
-    editing.edit_document(session, editing.change_keys(EASE, keys, easing))
+@with_project
+def set_easing(session: Session, project: Project, keys: KeysByChannel, easing: Easing) -> None:
+    """Set the easing after keys; a notice says where a linear motion still bends."""
+    editing.edit_document(session, channel_commands.set_easing(keys, easing))
+    smooth = _smooth_ends(project, keys) if easing == LINEAR else {}
+    if smooth:
+        frame = min(map(min, smooth.values()))
+        session.show_notice(
+            _(GOES_ON_SMOOTHLY).format(frame=frame),
+            topic="easing",
+            label=_("Make it a corner"),
+            action=do(set_tangent_mode, smooth, TangentMode.CORNER),
+        )
 
 
-def set_tangent_mode(session: Session, keys: KeysByRow, passing: TangentMode) -> None:
-    editing.edit_document(session, editing.change_keys(PASS, keys, passing))
+def _smooth_ends(project: Project, keys: KeysByChannel) -> KeysByChannel:
+    """Return the smooth keys, between two others, at which segments after keys end."""
+    found: dict[Channel[Any], frozenset[int]] = {}
+    for channel, frames in keys.items():
+        row = keys_in(project.document, channel)
+        ends = {
+            end.frame
+            for key, end, _after in zip(row, row[1:], row[2:], strict=False)
+            if key.frame in frames and end.shown_tangent_mode is TangentMode.SMOOTH
+        }
+        if ends and not channel.kind.is_held:
+            found[channel] = frozenset(ends)
+    return found
 
 
-def set_revolutions(session: Session, keys: KeysByRow, turns: int) -> None:
+def set_tangent_mode(session: Session, keys: KeysByChannel, mode: TangentMode) -> None:
+    editing.edit_document(session, channel_commands.set_tangent_mode(keys, mode))
+
+
+def set_revolutions(session: Session, keys: KeysByChannel, turns: int) -> None:
     """Set the full turns of the shape after pose keys."""
-    editing.edit_document(session, editing.change_keys(TURN, keys, turns))
+    commands = [
+        key_commands.set_revolutions(channel.layer, frames, turns)
+        for channel, frames in keys.items()
+        if channel.kind is POSE and channel.layer is not None
+    ]
+    editing.edit_document(session, combine_commands(_("Set turns"), commands))
 
 
 @with_project
@@ -78,9 +122,9 @@ def use_next_tangent_mode(session: Session, project: Project) -> None:
     """Set the next tangent mode of the selected keys, or of the key at or before the playhead."""
     keys = _selected_or_at_playhead(session, project)
     passings = list(TangentMode)
-    row = project.row if project.row in keys else next(iter(keys))
-    frame = min(keys[row])
-    first = next(k.shown_tangent_mode for k in keys_in(project.document, row) if k.frame == frame)
+    channel = project.channel if project.channel in keys else next(iter(keys))
+    frame, row = min(keys[channel]), keys_in(project.document, channel)
+    first = next(key.shown_tangent_mode for key in row if key.frame == frame)
     set_tangent_mode(session, keys, passings[(passings.index(first) + 1) % len(passings)])
 
 
@@ -90,17 +134,16 @@ def ease_selected_keys(session: Session, project: Project, easing: Easing) -> No
     set_easing(session, _selected_or_at_playhead(session, project), easing)
 
 
-def _selected_or_at_playhead(session: Session, project: Project) -> KeysByRow:
-    """Return the selected keys, or the selected row's key at or before the playhead."""
+def _selected_or_at_playhead(session: Session, project: Project) -> KeysByChannel:
+    """Return the selected keys, or the selected channel's key at or before the playhead."""
     if project.selected_keys:
         return project.selected_keys
-    here, row = playback.current_frame(session, project), project.row
-    if (track := project.track_in(row)) is not None:
-        own = source_frame(project.document, track, here)
-        here = project.document.frames.first if own is None else own
-    frames = frames_in(project.document, row)
+    here, channel = playback.current_frame(session, project), project.channel
+    own = source_frame(project.document, channel, here) if channel.kind is TRACK else here
+    here = project.document.frames.first if own is None else own
+    frames = frames_in(project.document, channel)
     frame = max((each for each in frames if each <= here), default=min(frames))
-    return {row: frozenset({frame})}
+    return {channel: frozenset({frame})}
 
 
 def set_default_easing(session: Session, easing: Easing) -> None:
@@ -110,37 +153,32 @@ def set_default_easing(session: Session, easing: Easing) -> None:
 
 @with_project
 def reverse_selected_keys(session: Session, project: Project) -> None:
-    """Reverse the selected keys in time, or the whole row if fewer than two are selected."""
+    """Reverse the selected keys in time, or the selected channel if fewer are selected."""
     keys = project.selected_keys
     if project.selected_key_count < 2:
-        keys = {project.row: frames_in(project.document, project.row)}
-    _rearrange(session, project, editing.change_keys(REVERSE, keys, _span(keys)))
+        keys = {project.channel: frames_in(project.document, project.channel)}
+    _rearrange(session, project, channel_commands.reverse_keys(keys))
 
 
 @with_project
 def scale_selected_keys(session: Session, project: Project, factor: float) -> None:
     """Scale the time of the selected keys, or of the animation if fewer than two are selected.
 
-    Tracks without selected keys keep their time.
+    If all keys are selected, the ranges of frames are scaled, too.
     """
-    command = scene_commands.scale_time(factor)
-    if project.selected_key_count >= 2:
-        first, _ = _span(project.selected_keys)
-        command = editing.change_keys(SCALE, project.selected_keys, factor, first)
-    _rearrange(session, project, command)
-
-
-def _span(keys: KeysByRow) -> tuple[int, int]:
-    return min(map(min, keys.values())), max(map(max, keys.values()))
+    keys = project.selected_keys
+    is_all = project.selected_key_count < 2 or keys == editing.movable_keys(project.document)
+    scale = scene_commands.scale_time(factor)
+    _rearrange(session, project, scale if is_all else channel_commands.scale_keys(keys, factor))
 
 
 def _rearrange(session: Session, project: Project, command: Command) -> None:
     """Run a command that moves the selected keys, and select them at their new frames."""
-    chosen_of, everything = project.selected_keys, project.selected_key_count < 2
-    others = {row: frames_in(project.document, row) - chosen_of[row] for row in chosen_of}
+    keys, everything = project.selected_keys, project.selected_key_count < 2
+    others = {channel: frames_in(project.document, channel) - keys[channel] for channel in keys}
     edit_timing(session, command)
-    chosen = {row: frames_in(project.document, row) - others[row] for row in others}
-    editing.select_keys_in_rows(session, {} if everything else chosen)
+    chosen = {channel: frames_in(project.document, channel) - others[channel] for channel in keys}
+    editing.select_channel_keys(session, {} if everything else chosen)
 
 
 def match_loop_ends(session: Session) -> None:
@@ -209,7 +247,8 @@ def rename_marker(session: Session, frame: int, name: str) -> None:
 
 
 def delete_marker(session: Session, frame: int) -> None:
-    editing.edit_document(session, scene_commands.delete_marker(frame))
+    keys = {Channel(MARKER): frozenset({frame})}
+    editing.edit_document(session, channel_commands.delete_keys(keys))
 
 
 def set_inbetween_method(session: Session, variant: Variant) -> None:

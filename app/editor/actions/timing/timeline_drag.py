@@ -1,50 +1,41 @@
 """Pointer gestures in the timeline, and the time range that it shows."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from itertools import count
+from typing import Any
 
 from app.document import (
     LAST_FRAME,
+    POSE,
+    Channel,
     Command,
     Document,
     FrameRange,
+    KeysByChannel,
+    channel_commands,
+    channels_of,
     cycle_commands,
-    filming_commands,
-    key_commands,
-    layer_commands,
+    display_frame,
+    frames_in,
     scene_commands,
-    switch_group_commands,
-    track_commands,
 )
 from app.editor.actions import editing, playback
 from app.editor.actions.timing.keys import edit_timing
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.timeline_view import (
-    CameraDrag,
     CycleDrag,
     EdgeDrag,
     KeyBox,
     KeyDrag,
-    KeyRow,
-    KeysByRow,
-    MarkerDrag,
     ScrubDrag,
-    SwitchDrag,
     TimeDrag,
     TimeGesture,
     TimeRangeView,
-    TurnDrag,
-    display_frame,
-    frames_in,
-    keys_in,
-    layer_of,
 )
 from app.errors import LissomError
 from app.texts import _
-
-MOVE = editing.KeyVerb(key_commands.move_keys, track_commands.move_track_keys)
-COPY = editing.KeyVerb(key_commands.copy_keys, track_commands.copy_track_keys)
 
 
 @with_project
@@ -74,7 +65,7 @@ def scroll_to_playhead(
 def scroll_rows(_: Session, project: Project, to: float) -> None:
     """Scroll the rows to a number of em below the first row; the selected row counts as shown."""
     project.timeline.scrolled = to
-    project.timeline.last_shown_rows = project.row, project.timeline.expanded_layers
+    project.timeline.last_shown_rows = project.channel, project.timeline.expanded_layers
 
 
 @with_project
@@ -86,11 +77,13 @@ def begin_timeline_drag(
 
 
 @with_project
-def move_timeline_drag(session: Session, project: Project, frame: float, row: KeyRow) -> None:
-    """Follow the pointer to another frame and row."""
+def move_timeline_drag(
+    session: Session, project: Project, frame: float, channel: Channel[Any]
+) -> None:
+    """Follow the pointer to another frame and lane."""
     match project.timeline.gesture:
         case KeyBox() as box:
-            editing.select_keys_in_rows(session, _inside(project, box, frame, row))
+            editing.select_channel_keys(session, _inside(project, box, frame, channel))
         case ScrubDrag(offset=offset):
             playback.scrub(session, round(frame + offset))
         case TimeDrag() as drag:
@@ -110,45 +103,53 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
     """End the gesture, and undo its edits."""
     gesture = project.timeline.gesture
     if isinstance(gesture, KeyBox):
-        editing.select_keys_in_rows(session, gesture.keeps)
+        editing.select_channel_keys(session, gesture.keeps)
     elif isinstance(gesture, TimeDrag) and project.document is gesture.after:
         _become(session, gesture.before, _("Drag"))
         if isinstance(gesture, KeyDrag):
-            editing.select_keys_in_rows(session, gesture.keys)
+            editing.select_channel_keys(session, gesture.keys)
     end_timeline_drag(session)
 
 
 @with_project
-def toggle_track_rows(_: Session, project: Project, layer: int) -> None:
-    """Show or hide the track rows of a layer; a hidden row is deselected."""
+def toggle_lanes(_: Session, project: Project, layer: int) -> None:
+    """Show or hide the lanes of a layer's channels; a hidden channel is deselected."""
     project.timeline.expanded_layers ^= {layer}
     if layer == project.active and layer not in project.timeline.expanded_layers:
-        project.selected_track = None
+        project.selected_channel = None
 
 
-def _inside(project: Project, box: KeyBox, frame: float, row: KeyRow) -> KeysByRow:
-    """Return the keys in a box that ends at a frame and a row, and the keys that it keeps."""
-    document = project.document
+def _inside(project: Project, box: KeyBox, frame: float, channel: Channel[Any]) -> KeysByChannel:
+    """Return the keys in a box that ends at a frame and a lane, and the keys that it keeps."""
+    document, order = project.document, project.lanes
     low, high = sorted((box.start, frame))
-    order = project.rows
-    if box.row not in order or row not in order:
+    if box.channel not in order or channel not in order:
         return box.keeps
-    first, last = sorted(map(order.index, (box.row, row)))
+    first, last = sorted(map(order.index, (box.channel, channel)))
     inside = dict(box.keeps)
-    for each in order[first : last + 1]:
-        layer = document.layer(layer_of(each))
-        if layer.still:
-            continue
-        track = project.track_in(each)
-        keys = [key.frame for key in keys_in(document, each)]
-        frames = frozenset(
-            key for key in keys if low <= display_frame(document, track, key) <= high
-        )
-        inside[each] = inside.get(each, frozenset()) | frames
+    for lane in order[first : last + 1]:
+        for each in _boxed_channels(project, lane):
+            frames = frozenset(
+                key
+                for key in frames_in(document, each)
+                if low <= display_frame(document, each, key) <= high
+            )
+            if frames:
+                inside[each] = inside.get(each, frozenset()) | frames
     return inside
 
 
-def drag_offset(document: Document, keys: KeysByRow, wanted: int, *, copies: bool) -> int:
+def _boxed_channels(project: Project, lane: Channel[Any]) -> Iterable[Channel[Any]]:
+    """Return the channels whose keys a lane shows: a folded layer shows all of its channels."""
+    layer = None if lane.layer is None else project.document.layer(lane.layer)
+    if layer is None or lane.kind is not POSE:
+        return (lane,)
+    is_folded = layer.id not in project.timeline.expanded_layers
+    shown = channels_of(layer) if is_folded else (lane,)
+    return [each for each in shown if not (layer.still and each.kind is POSE)]
+
+
+def drag_offset(document: Document, keys: KeysByChannel, wanted: int, *, copies: bool) -> int:
     """Return the number of frames nearest to `wanted` by which keys can be moved.
 
     Parameters
@@ -156,8 +157,8 @@ def drag_offset(document: Document, keys: KeysByRow, wanted: int, *, copies: boo
     copies : bool
         Whether the original keys stay; then 0 means no copies.
     """
-    there = {row: frames_in(document, row) for row in keys}
-    taken = there if copies else {row: there[row] - keys[row] for row in keys}
+    there = {channel: frames_in(document, channel) for channel in keys}
+    taken = there if copies else {channel: there[channel] - keys[channel] for channel in keys}
     low, high = -min(map(min, keys.values())), LAST_FRAME - max(map(max, keys.values()))
     wanted = min(max(wanted, low), high)
     for distance in count():
@@ -166,7 +167,7 @@ def drag_offset(document: Document, keys: KeysByRow, wanted: int, *, copies: boo
             if by == 0 or (
                 low <= by <= high
                 and not any(
-                    key + by in taken[row] for row, frames in keys.items() for key in frames
+                    key + by in taken[channel] for channel, frames in keys.items() for key in frames
                 )
             ):
                 return by
@@ -190,8 +191,10 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
     _become(session, document, command.label)
     if isinstance(drag, KeyDrag):
         by = drag.by
-        chosen = {i: frozenset(key + by for key in frames) for i, frames in drag.keys.items()}
-        editing.select_keys_in_rows(session, chosen)
+        chosen = {
+            channel: frozenset(key + by for key in frames) for channel, frames in drag.keys.items()
+        }
+        editing.select_channel_keys(session, chosen)
     project.timeline.gesture = replace(drag, after=project.document)
 
 
@@ -200,38 +203,19 @@ def _moved(drag: TimeDrag, frame: float) -> tuple[TimeDrag, Command] | None:
 
     The command is for the document before the drag. None if nothing moves.
     """
-    by, before = round(frame - drag.start), drag.before
     match drag:
         case EdgeDrag():
             return drag, _trim(drag, frame)
-        case KeyDrag():
-            by = drag_offset(before, drag.keys, by, copies=drag.copies)
-            command = editing.change_keys(COPY if drag.copies else MOVE, drag.keys, by)
+        case CycleDrag():
+            return drag, _end_cycle(drag, round(frame))
+        case KeyDrag(keys=keys, copies=copies):
+            by = drag_offset(drag.before, keys, round(frame - drag.start), copies=copies)
+            change = channel_commands.copy_keys if copies else channel_commands.move_keys
+            command = change(keys, by)
             if not by:
                 command = Command(command.label, lambda document: document)
             return None if by == drag.by else (replace(drag, by=by), command)
-        case MarkerDrag(marker=marker):
-            at = min(max(marker + by, 0), LAST_FRAME)
-            others = {each.frame for each in before.markers} - {marker}
-            command = scene_commands.move_marker(marker, at)
-        case CameraDrag(key=key):
-            at = before.frames.clamp(key + by)
-            others = {each.frame for each in before.camera} - {key}
-            command = filming_commands.move_camera_key(key, at)
-        case CycleDrag():
-            return drag, _end_cycle(drag, round(frame))
-        case SwitchDrag(layer=layer, switch=switch):
-            at = before.frames.clamp(switch + by)
-            others = {each.frame for each in before.layer(layer).visibility_keys} - {switch}
-            command = layer_commands.move_visibility_key(layer, switch, at)
-        case TurnDrag(choice=choice, turn=turn):
-            at = before.frames.clamp(turn + by)
-            others = {each.frame for each in before.switch_group(choice).keys} - {turn}
-            others.add(before.frames.first)
-            command = switch_group_commands.move_turn(choice, turn, at)
-        case _:
-            raise AssertionError("unreachable: there are no other drags")
-    return None if at in others | {drag.at} else (replace(drag, at=at), command)
+    raise AssertionError("unreachable: there are no other drags")
 
 
 def _end_cycle(drag: CycleDrag, frame: int) -> Command:

@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from app.document import (
+    Channel,
     Command,
     Document,
     Layer,
@@ -15,6 +16,7 @@ from app.document import (
     TrackKey,
     track_at,
     track_commands,
+    track_display_frame,
     velocity_at,
 )
 from app.editor import pending_changes
@@ -23,7 +25,6 @@ from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.actions.tracking.track_space import find_key_frame
 from app.editor.project import Project
 from app.editor.session import Session, with_project
-from app.editor.timeline_view import display_frame
 from app.editor.work.jobs import JobKind
 from app.motion import PoseSampler, find_parent_motion, layer_animation
 from app.texts import _
@@ -34,9 +35,9 @@ CONVERTING_KEYS = JobKind(_("Moving keys of a track"), _("The track's keys could
 
 
 @with_project
-def select_track(_: Session, project: Project, handle: int | None) -> None:
-    """Select the row of a handle's track, which drags then key; None selects the pose row."""
-    project.selected_track = handle
+def select_channel(_: Session, project: Project, channel: Channel[Any] | None) -> None:
+    """Select a channel, by default the poses; drags then key it if it is a track."""
+    project.selected_channel = channel
 
 
 @with_project
@@ -192,7 +193,7 @@ def _frames_around(document: Document, track: Track, key: TrackKey) -> list[floa
 
     Without a velocity of its own, the key needs no nearby frames.
     """
-    seen, frames = display_frame(document, track, key.frame), document.frames
+    seen, frames = track_display_frame(document, track, key.frame), document.frames
     if key.velocity is None:
         return [seen]
     return [seen, max(seen - AROUND, frames.first), min(seen + AROUND, frames.last)]

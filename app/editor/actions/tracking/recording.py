@@ -2,7 +2,13 @@
 
 from dataclasses import replace
 
-from app.document import Track, TrackKey, track_at, track_commands
+from app.document import (
+    Track,
+    TrackKey,
+    track_at,
+    track_commands,
+    track_source_frame,
+)
 from app.editor.actions import editing, playback
 from app.editor.actions.posing.pose_drag import release_drag
 from app.editor.actions.tracking.track_dragging import commit_track_drags, commit_track_key
@@ -10,7 +16,6 @@ from app.editor.actions.tracking.track_space import base_frame_at, handle_index
 from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import CLICK, Session, with_project
-from app.editor.timeline_view import source_frame
 from app.editor.work.track_drag import RecordedSample, Recording, TrackDrag
 from app.errors import LissomError
 from app.motion import BaseMotionFrame, reuse_corrections
@@ -205,7 +210,7 @@ def _write(project: Project, take: Recording) -> None:
     fitted = _fitted(project, take, values)
 
     def own(frame: int) -> int | None:
-        return source_frame(project.document, fresh, _wrapped(project, frame))
+        return track_source_frame(project.document, fresh, _wrapped(project, frame))
 
     start, end = fitted[0][0], fitted[-1][0]
     recorded = {own(frame) for frame in range(start, end + 1)}

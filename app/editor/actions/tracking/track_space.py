@@ -3,17 +3,21 @@
 import cmath
 import math
 
-from app.document import Document, Track, track_at
+from app.document import (
+    Document,
+    Track,
+    track_at,
+    track_source_frame,
+)
 from app.editor.project import Project
 from app.editor.session import Session
-from app.editor.timeline_view import source_frame
 from app.motion import BaseMotionFrame
 from app.texts import ngettext
 
 
 def find_key_frame(session: Session, document: Document, track: Track, frame: int) -> int | None:
     """Return the frame of the track key for a frame; show a notice if none is possible."""
-    own = source_frame(document, track, frame)
+    own = track_source_frame(document, track, frame)
     if own is None:
         session.show_notice(
             ngettext(

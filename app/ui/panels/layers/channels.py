@@ -1,32 +1,31 @@
-"""A layer's opacity, transform and draw order channels."""
+"""A layer's opacity, transform and draw order, each with the button that keys it."""
 
 import math
+from typing import Any
 
 from imgui_bundle import imgui
 
 from app.document import (
+    DRAW_ORDER,
+    LAYER_KINDS,
+    OPACITY,
+    TRANSFORM,
+    Channel,
     Document,
+    DrawOrder,
     Layer,
-    change_frame,
-    draw_order_key_at,
-    keyed_frame,
-    opacity_at,
-    transform_at,
+    Quantity,
+    Transform,
+    value_at,
 )
 from app.editor import Action, do
-from app.editor.layering.layer_channels import (
-    delete_draw_order_key,
-    delete_opacity_key,
-    delete_transform_key,
-    key_draw_order,
-    key_opacity,
-    key_transform,
-)
-from app.editor.layering.layer_list import set_layer_opacity
+from app.editor.actions.timing.channel_keys import set_channel_value
 from app.texts import _
+from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.style.sliders import Scale, number_field, slider
 from app.ui.style.theme import Look
-from app.ui.style.widgets import FILL, draw_tooltip, label, small_text, text_button
+from app.ui.style.values import format_draw_order
+from app.ui.style.widgets import draw_tooltip, label, small_text
 
 PERCENT = Scale(left=0, right=100)
 MOVES = {
@@ -39,25 +38,20 @@ MOVES = {
 
 
 def draw_opacity_channel(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
-    actions, opacity = [], opacity_at(document, layer, frame)
+    channel = Channel(OPACITY, layer.id)
+    opacity = value_at(document, channel, frame)
     label(look, _("Opacity"))
     hint = (
         _("Opacity of the layer. A change sets a key at this frame.")
-        if layer.opacity_keys
+        if layer.keys_of(OPACITY)
         else _("Opacity of the layer")
     )
-    faded = slider(look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint)
+    faded = slider(
+        look, "opacity", 100 * opacity, PERCENT, text="%.0f %%", hint=hint, room=diamond_room(look)
+    )
+    actions = draw_key_diamond(document, look, channel, frame)
     if faded is not None:
-        fade = key_opacity if layer.opacity_keys else set_layer_opacity
-        actions.append(do(fade, layer.id, min(max(faded.value / 100, 0.0), 1.0)))
-    keyed = keyed_frame(layer, layer.opacity_keys, frame)
-    is_keyed = any(key.frame == keyed for key in layer.opacity_keys)
-    changed = imgui.checkbox(_("Key opacity"), is_keyed)[0]
-    draw_tooltip(_("The layer fades evenly from key to key"))
-    if changed and is_keyed:
-        actions.append(do(delete_opacity_key, layer.id))
-    elif changed:
-        actions.append(do(key_opacity, layer.id, opacity))
+        actions.append(do(set_channel_value, channel, min(max(faded.value / 100, 0.0), 1.0)))
     return actions
 
 
@@ -65,40 +59,34 @@ def draw_transform_channel(
     document: Document, look: Look, layer: Layer, frame: int
 ) -> list[Action]:
     """Draw a layer's transform at a frame. A change makes a key there."""
-    if layer.has_parent and not layer.transform_keys:
+    if layer.has_parent and not layer.keys_of(TRANSFORM):
         return []
-    actions: list[Action] = []
-    moved = transform_at(document, layer, frame)
-    turn = math.degrees(math.atan2(moved.factor.imag, moved.factor.real))
-    shift = moved.shift - (1 - moved.factor) * layer.pivot
+    channel = Channel(TRANSFORM, layer.id)
+    transform = value_at(document, channel, frame)
+    turn, shift = math.degrees(transform.turn), transform.shift
     entered: dict[str, float] = {}
     label(look, _("Transform"))
-    each = (imgui.get_content_region_avail().x - 2 * imgui.get_style().item_inner_spacing.x) / 3
+    gap = imgui.get_style().item_inner_spacing.x
+    each = (imgui.get_content_region_avail().x - diamond_room(look) - 2 * gap) / 3
     values = {
         "right": (shift.real, "%.1f px"),
         "up": (shift.imag, "%.1f px"),
         "turn": (turn, "%.1f°"),
     }
-    for name, (value, text) in values.items():
+    for index, (name, (value, text)) in enumerate(values.items()):
+        if index:
+            imgui.same_line(0, gap)
         imgui.set_next_item_width(each)
         found = number_field(f"moved {name}", value, text)
         draw_tooltip(MOVES[name])
         if found is not None:
             entered[name] = found
-        imgui.same_line(0, imgui.get_style().item_inner_spacing.x)
-    imgui.new_line()
+    actions = draw_key_diamond(document, look, channel, frame)
     if entered:
         right, up = entered.get("right", shift.real), entered.get("up", shift.imag)
         radians = math.radians(entered.get("turn", turn))
-        actions.append(do(key_transform, layer.id, complex(right, up), radians))
-    keyed = keyed_frame(layer, layer.transform_keys, frame)
-    if any(key.frame == keyed for key in layer.transform_keys) and text_button(
-        _("Delete transform key"),
-        FILL,
-        _("The layer then moves from the key before to the key after"),
-    ):
-        actions.append(do(delete_transform_key, layer.id))
-    if layer.has_parent and layer.transform_keys:
+        actions.append(do(set_channel_value, channel, Transform(complex(right, up), radians)))
+    if layer.has_parent and layer.keys_of(TRANSFORM):
         small_text(look, _("While the layer has a parent, only the parent moves it."))
     return actions
 
@@ -109,34 +97,50 @@ def draw_order_channel(document: Document, look: Look, layer: Layer, frame: int)
     if not others:
         return []
     actions: list[Action] = []
-    now = draw_order_key_at(document, layer, frame)
-    beside = None if now is None or now.beside is None else document.layer(now.beside)
-    text = _("as in the list")
-    if now is not None and beside is not None:
-        text = _("in front of {name}") if now.in_front else _("behind {name}")
-        text = text.format(name=beside.name)
+    channel = Channel(DRAW_ORDER, layer.id)
+    now = value_at(document, channel, frame)
     label(look, _("Draw order"))
-    if imgui.begin_combo("##painted", text):
-        if imgui.selectable(_("as in the list"), beside is None)[0] and beside is not None:
-            actions.append(do(key_draw_order, layer.id, None))
+    imgui.set_next_item_width(-diamond_room(look))
+    if imgui.begin_combo("##painted", format_draw_order(document, now)):
+        if imgui.selectable(_("as in the list"), now.beside is None)[0] and now.beside is not None:
+            actions.append(do(set_channel_value, channel, DrawOrder(None)))
         for in_front, id_, text in (
             (True, "in front of", _("in front of {name}")),
             (False, "behind", _("behind {name}")),
         ):
             imgui.separator()
             actions += [
-                do(key_draw_order, layer.id, each.id, in_front)
+                do(set_channel_value, channel, DrawOrder(each.id, in_front))
                 for each in others
                 if imgui.selectable(
                     f"{text.format(name=each.name)}###{id_} {each.id}",
-                    each is beside and now is not None and now.in_front == in_front,
+                    each.id == now.beside and now.in_front == in_front,
                 )[0]
             ]
         imgui.end_combo()
     draw_tooltip(_("From frame {frame} to the next order key").format(frame=frame))
-    keyed = change_frame(layer.draw_order_keys, layer.cycles, frame)
-    if any(each.frame == keyed for each in layer.draw_order_keys) and text_button(
-        _("Delete order key"), FILL, _("The previous order key then stays in effect")
-    ):
-        actions.append(do(delete_draw_order_key, layer.id))
+    return actions + draw_key_diamond(document, look, channel, frame)
+
+
+def draw_effect_channels(document: Document, look: Look, layer: Layer, frame: int) -> list[Action]:
+    """Draw the effects of a layer, by what their values measure."""
+    actions: list[Action] = []
+    for kind in LAYER_KINDS.values():
+        if not kind.uniform:
+            continue
+        channel = Channel(kind, layer.id)
+        value = value_at(document, channel, frame)
+        label(look, _(kind.label))
+        changed: Any = None
+        if kind.fields[0].quantity is Quantity.COLOUR:
+            imgui.set_next_item_width(-diamond_room(look))
+            edited, levels = imgui.color_edit3(f"##{kind.name}", list(value))
+            changed = tuple(min(max(level, 0.0), 1.0) for level in levels[:3]) if edited else None
+        else:
+            room = diamond_room(look)
+            faded = slider(look, kind.name, 100 * value, PERCENT, text="%.0f %%", room=room)
+            changed = None if faded is None else min(max(faded.value / 100, 0.0), 1.0)
+        actions += draw_key_diamond(document, look, channel, frame)
+        if changed is not None:
+            actions.append(do(set_channel_value, channel, changed))
     return actions

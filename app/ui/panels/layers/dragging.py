@@ -41,9 +41,8 @@ def drag_layer_row(
     payload = imgui.accept_drag_drop_payload_py_id(
         MOVED, flags.accept_before_delivery | flags.accept_no_draw_default_rect
     )
-    if payload is not None and imgui.is_key_pressed(imgui.Key.escape):
-        imgui.internal.clear_drag_drop()
-    elif payload is not None:
+    is_cancelled = payload is not None and imgui.is_key_pressed(imgui.Key.escape)
+    if payload is not None and not is_cancelled:
         share = (imgui.get_mouse_pos().y - low.y) / max(high.y - low.y, 1.0)
         onto = _onto(project, row, payload.data_id)
         is_onto = onto is not None and (ONTO < share < 1 - ONTO or row.layer is None)
@@ -56,6 +55,9 @@ def drag_layer_row(
             elif row.layer is not None:
                 actions += _beside(project, row.layer.id, payload.data_id, is_above=share < 0.5)
     imgui.end_drag_drop_target()
+    if is_cancelled:
+        # Only after the end of the target, which needs the drag.
+        imgui.internal.clear_drag_drop()
     return actions
 
 

@@ -4,17 +4,17 @@ from imgui_bundle import ImVec2, imgui
 
 from app.document import (
     BLENDS,
+    VISIBILITY,
+    Channel,
     Document,
     Group,
     Layer,
     SwitchGroup,
-    change_frame,
     is_visible,
     with_repeats,
 )
 from app.editor import Action, Project, do
 from app.editor.layering.layer_list import (
-    delete_visibility_key,
     rename_layer,
     set_blend_mode,
     set_group_opacity,
@@ -34,7 +34,9 @@ from app.editor.layering.parenting import (
 from app.editor.layering.pictures import make_posable, make_still
 from app.editor.layering.switches import key_switch, remove_from_switch
 from app.texts import _
+from app.ui.panels.key_diamond import diamond_room, draw_key_diamond
 from app.ui.panels.layers.channels import (
+    draw_effect_channels,
     draw_opacity_channel,
     draw_order_channel,
     draw_transform_channel,
@@ -66,6 +68,7 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     if entered or (imgui.is_item_deactivated_after_edit() and name != layer.name):
         actions.append(do(rename_layer, identity, name))
     actions += draw_opacity_channel(project.document, look, layer, frame)
+    actions += draw_effect_channels(project.document, look, layer, frame)
     label(look, _("Blend"))
     if imgui.begin_combo("##blend", BLEND_NAMES[layer.blend]):
         actions += [
@@ -129,20 +132,9 @@ def _draw_visibility(document: Document, look: Look, layer: Layer, frame: int) -
         if is_put_away
         else _("For props that come and go. Use a switch for layers that replace each other.")
     )
-    if text_button(text.format(frame=frame), FILL, hint):
+    if text_button(text.format(frame=frame), -diamond_room(look), hint):
         actions.append(do(toggle_visibility_key, layer.id))
-    keyed = change_frame(layer.visibility_keys, layer.cycles, frame)
-    is_switched = any(switch.frame == keyed for switch in layer.visibility_keys)
-    if is_switched and imgui.button(_("Delete visibility key"), ImVec2(FILL, 0)):
-        actions.append(do(delete_visibility_key, layer.id))
-    if layer.visibility_keys:
-        keys = (
-            (_("shown from {frame}") if key.visible else _("hidden from {frame}")).format(
-                frame=key.frame
-            )
-            for key in layer.visibility_keys
-        )
-        small_text(look, _("Visibility: {keys}.").format(keys=", ".join(keys)))
+    actions += draw_key_diamond(document, look, Channel(VISIBILITY, layer.id), frame)
     return actions
 
 

@@ -6,10 +6,11 @@ from app.editor import Action, KeyBox, do
 from app.editor.actions.timing import keys, timeline_drag
 from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import draw_tooltip, is_pressed
-from app.ui.timeline.keys import select_row
-from app.ui.timeline.layout import ROUNDING, TimelineLayout, TrackLane, was_dragged
+from app.ui.timeline.keys import select_lane
+from app.ui.timeline.layout import ROUNDING, TimelineLayout, was_dragged
 from app.ui.timeline.menus import draw_track_menu
-from app.ui.timeline.track_residuals import describe_residual
+from app.ui.timeline.row import ChannelLane
+from app.ui.timeline.rows.track_residuals import describe_residual
 
 
 def draw_track_background(bands: TimelineLayout) -> list[Action]:
@@ -25,7 +26,7 @@ def draw_track_background(bands: TimelineLayout) -> list[Action]:
             ImVec2(begin, low.y), ImVec2(end, high.y), colour_u32(palette.panel, alpha)
         )
     draw_list.pop_clip_rect()
-    return _press_background(bands, low, high)
+    return _press_background(bands, ImVec2(bands.left, bands.camera_top), high)
 
 
 def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[Action]:
@@ -34,18 +35,20 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
     if is_pressed():
         actions += begin_key_box(bands)
     if clicked and is_plain_click():
-        actions += select_row(bands.pointed_keys, {})
+        actions += select_lane(bands.pointed_channel, {})
     twice = imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
-    row, lane = bands.pointed_keys, bands.pointed_row
-    if isinstance(lane, TrackLane) and bands.project.timeline.gesture is None:
-        miss = describe_residual(bands.project, lane.layer, lane.track, round(bands.pointed))
-        if miss:
-            draw_tooltip(miss)
+    channel, lane = bands.pointed_channel, bands.pointed_row
+    if isinstance(lane, ChannelLane) and bands.project.timeline.gesture is None:
+        layer, track, frame = lane.layer, lane.track, round(bands.pointed)
+        if layer is not None and track is not None:
+            miss = describe_residual(bands.project, layer, track, frame)
+            if miss:
+                draw_tooltip(miss)
     if twice and round(bands.pointed) in bands.project.document.frames:
         actions.append(do(keys.insert_key_in_row_at, round(bands.pointed)))
     if imgui.is_item_clicked(imgui.MouseButton_.right):
-        if row != bands.project.row:
-            actions += select_row(row, {})
+        if channel != bands.project.channel:
+            actions += select_lane(channel, {})
         imgui.open_popup("menu of track")
     return actions + draw_track_menu(bands)
 
@@ -53,7 +56,7 @@ def _press_background(bands: TimelineLayout, low: ImVec2, high: ImVec2) -> list[
 def begin_key_box(bands: TimelineLayout) -> list[Action]:
     """Begin a box selection of keys. With Shift, it adds to the selected keys."""
     keeps = bands.project.selected_keys if imgui.get_io().key_shift else {}
-    box = KeyBox(start=bands.pointed, row=bands.pointed_keys, keeps=keeps)
+    box = KeyBox(start=bands.pointed, channel=bands.pointed_channel, keeps=keeps)
     return [do(timeline_drag.begin_timeline_drag, box, bands.time_view)]
 
 
@@ -72,7 +75,7 @@ def draw_key_box(bands: TimelineLayout) -> None:
     delta = imgui.get_mouse_drag_delta(imgui.MouseButton_.left)
     top, bottom = sorted((mouse.y - delta.y, mouse.y))
     left, right = sorted((bands.x(gesture.start), mouse.x))
-    low = ImVec2(left, max(top, bands.track_top))
+    low = ImVec2(left, max(top, bands.camera_top))
     high = ImVec2(right, min(bottom, bands.track_bottom))
     draw_list.add_rect_filled(low, high, colour_u32(accent, 0.14), 2.0)
     draw_list.add_rect(low, high, colour_u32(accent, 0.8), 2.0)

@@ -10,7 +10,8 @@ from app.editor.actions.timing import timeline_drag
 from app.texts import _
 from app.ui.style.theme import colour_u32
 from app.ui.style.widgets import begin_tooltip, is_hovered_or_held, is_pressed
-from app.ui.timeline.layout import LEAST_MARK_GAP, LayerRow, TimelineLayout, draw_time_tag
+from app.ui.timeline.layout import LEAST_MARK_GAP, TimelineLayout, draw_time_tag
+from app.ui.timeline.row import LayerRow
 
 HATCH = 0.55  # em: between the lines over repeats
 GRIP = 0.35  # em: half the hit width of the end of repeats

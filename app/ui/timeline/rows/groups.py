@@ -2,21 +2,36 @@
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
-from app.document import SwitchGroup, switch_group_commands, turn_frame, with_repeats
-from app.editor import Action, KeysByRow, TurnDrag, do
+from app.document import (
+    SWITCH,
+    Channel,
+    SwitchGroup,
+    channel_commands,
+    pose_channel,
+    source_frame,
+    switch_group_commands,
+    with_repeats,
+)
+from app.editor import Action, do
 from app.editor.actions import editing, playback
-from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import select_layers, set_active_layer, toggle_tree_row
 from app.texts import _, ngettext
 from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
     is_hovered_or_held,
-    is_pressed,
     push_text_size,
     shorten_text,
 )
-from app.ui.timeline.layout import GroupRow, TimelineLayout, draw_time_tag
+from app.ui.timeline.keys import (
+    begin_key_drag,
+    find_drag_origin,
+    is_key_dragged,
+    label_dragged_key,
+)
+from app.ui.timeline.layout import TimelineLayout
+from app.ui.timeline.menus import draw_key_menu
+from app.ui.timeline.row import GroupRow
 
 INDENT = 0.7  # em of indent for each level
 FOLD = 1.1  # em: width of the triangle that expands a row
@@ -91,12 +106,12 @@ def _keys(bands: TimelineLayout, lane: GroupRow) -> list[Action]:
             at.setdefault(layer.keys[index].frame, []).append(layer.id)
     for frame in sorted(at):
         x = bands.x(frame)
-        keys: KeysByRow = {each: frozenset({frame}) for each in at[frame]}
+        keys = {pose_channel(each): frozenset({frame}) for each in at[frame]}
         box = ImVec2(GRIP * em, GRIP * em)
         middle = ImVec2(x, lane.middle)
         if bands.button(f"keys {frame}", middle - box, middle + box):
-            actions += [do(editing.select_keys_in_rows, keys), do(playback.scrub, frame)]
-        is_chosen = all(frame in chosen_of.get(row, ()) for row in keys)
+            actions += [do(editing.select_channel_keys, keys), do(playback.scrub, frame)]
+        is_chosen = all(frame in chosen_of.get(each, ()) for each in keys)
         if begin_tooltip():
             text = ngettext(
                 "A key at frame {frame}: click to select it",
@@ -176,14 +191,12 @@ def _menu(bands: TimelineLayout, switch: SwitchGroup, start: int) -> list[Action
                 do(editing.edit_document, switch_group_commands.choose_at(identity, start))
             )
     imgui.separator()
-    keyed = turn_frame(
-        bands.project.document, bands.project.document.switch_group(switch.name), start
-    )
-    is_change = any(turn.frame == keyed for turn in switch.keys[1:])
-    if imgui.menu_item_simple(_("Delete"), enabled=is_change):
-        actions.append(
-            do(editing.edit_document, switch_group_commands.unchoose_at(switch.name, keyed))
-        )
+    channel = Channel(SWITCH, part=switch.name)
+    keyed = source_frame(bands.project.document, channel, start)
+    is_change = any(key.frame == keyed for key in switch.keys[1:])
+    if imgui.menu_item_simple(_("Delete"), enabled=is_change) and keyed is not None:
+        command = channel_commands.delete_keys({channel: frozenset({keyed})})
+        actions.append(do(editing.edit_document, command))
     imgui.end_popup()
     return actions
 
@@ -192,29 +205,19 @@ def _edge(bands: TimelineLayout, lane: GroupRow, switch: SwitchGroup, start: int
     em, x = bands.look.em, bands.x(start)
     if not bands.shows(x - EDGE * em, x + EDGE * em):
         return []
-    drag = bands.project.timeline.gesture
-    if not isinstance(drag, TurnDrag) or (drag.choice, drag.at) != (switch.name, start):
-        drag = None
-    origin = start if drag is None else drag.turn
+    channel, gesture = Channel(SWITCH, part=switch.name), bands.project.timeline.gesture
+    origin = find_drag_origin(gesture, channel, start)
     box = ImVec2(x - EDGE * em, lane.top), ImVec2(x + EDGE * em, lane.bottom)
-    bands.button(f"edge {origin}", *box)
-    is_hot = is_hovered_or_held() or drag is not None
-    colour = colour_u32(bands.look.palette.text if is_hot else bands.look.palette.anchor)
+    bands.button(f"edge {origin}", *box, right=True)
+    palette = bands.look.palette
+    is_chosen = start in bands.project.selected_keys.get(channel, ())
+    is_hot = is_hovered_or_held() or is_key_dragged(gesture, channel, start)
+    colour = palette.accent if is_chosen else palette.text if is_hot else palette.anchor
     top, bottom = ImVec2(x, lane.top + 2), ImVec2(x, lane.bottom - 2)
-    imgui.get_window_draw_list().add_line(top, bottom, colour, 1.5)
-    if origin != start:
-        draw_time_tag(bands, x, f"{start}  ({start - origin:+d})")
+    width = 2.5 if is_chosen else 1.5
+    imgui.get_window_draw_list().add_line(top, bottom, colour_u32(colour), width)
+    label_dragged_key(bands, channel, start, x)
     if is_hovered_or_held():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    if not is_pressed():
-        return []
-    document = bands.project.document
-    begun = TurnDrag(
-        choice=switch.name,
-        turn=start,
-        at=start,
-        start=bands.pointed,
-        before=document,
-        after=document,
-    )
-    return [do(timeline_drag.begin_timeline_drag, begun, bands.time_view)]
+    key = switch.keys[switch.count_keys_until(start) - 1]
+    return begin_key_drag(bands, channel, start) + draw_key_menu(bands, channel, key)

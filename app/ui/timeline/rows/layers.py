@@ -1,53 +1,60 @@
-"""The rows of a scene's layers: names, and visibility keys."""
+"""The rows of a scene's layers: names, hidden ranges, and keys of folded channels."""
 
-from bisect import bisect_left
-from collections.abc import Sequence
+from typing import Any
 
 from imgui_bundle import ImVec2, icons_fontawesome_6 as icons, imgui
 
 from app.document import (
+    BaseKey,
+    Channel,
     Layer,
-    VisibilityKey,
+    channels_of,
+    describe_channel,
+    display_frame,
     is_visible,
-    layer_commands,
+    layer_keys,
     parent_label,
+    pose_channel,
     visibility_keys,
 )
-from app.editor import Action, SwitchDrag, do
-from app.editor.actions import editing, playback
-from app.editor.actions.timing import timeline_drag
+from app.editor import Action
 from app.texts import _
 from app.ui.style.theme import CHOSEN, SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
     is_hovered_or_held,
-    is_pressed,
     push_text_size,
     shorten_text,
 )
-from app.ui.timeline.keys import select_row
-from app.ui.timeline.layout import THIN, HasFrame, LayerRow, TimelineLayout, draw_time_tag
+from app.ui.timeline.keys import (
+    begin_key_drag,
+    find_drag_origin,
+    label_dragged_key,
+    select_lane,
+)
+from app.ui.timeline.layout import TimelineLayout
+from app.ui.timeline.menus import draw_key_menu
+from app.ui.timeline.row import LayerRow, has_lanes
 from app.ui.timeline.rows.groups import INDENT, draw_group_names, draw_group_rows
-from app.ui.timeline.tracks import (
+from app.ui.timeline.rows.lanes import (
     EXPANDER_WIDTH,
     draw_expander,
-    draw_track_names,
-    draw_track_segments,
+    draw_lane_backgrounds,
+    draw_lane_names,
 )
 
 HATCH = 0.55  # em between the lines over a hidden range
-EYE = 0.62  # em: half the width of a visibility key
-CHANGE = 0.24  # em: half the size of a transform, opacity or order key
-BESIDE = 0.35  # em: offset beside a pose key at the same frame
+CHANGE = 0.24  # em: half the size of a mark of folded channels
 DEEPEST_INDENT = 5  # deeper rows have the same indent
 LEAST_PARENT_ROOM = 1.8  # em: with less room after the name, only the tooltip names the parent
 
 
 def draw_layer_rows(bands: TimelineLayout, frame: int) -> list[Action]:
-    """Draw the backgrounds of all layers' rows. Handle clicks on names and visibility keys."""
+    """Draw the backgrounds of all layers' rows. Handle clicks on names and folded keys."""
     actions: list[Action] = []
     if bands.has_names:
         actions += _draw_names(bands, frame)
+    draw_lane_backgrounds(bands, [lane for lane in bands.lanes if lane.layer is None])
     bands.push_track_clip()
     actions += draw_group_rows(bands)
     for row in filter(bands.shows_row, bands.rows):
@@ -55,12 +62,10 @@ def draw_layer_rows(bands: TimelineLayout, frame: int) -> list[Action]:
             _draw_ground(bands, row)
         for begin, end in _hidden(bands, row.layer):
             _hatch(bands, row, begin, end)
-    draw_track_segments(bands)
+    draw_lane_backgrounds(bands, [lane for lane in bands.lanes if lane.layer is not None])
     for row in filter(bands.shows_row, bands.rows):
         imgui.push_id(f"row {row.layer.id}")
-        actions += _draw_changes(bands, row)
-        for index in bands.in_view(row.layer.visibility_keys):
-            actions += _draw_visibility_key(bands, row, row.layer.visibility_keys[index])
+        actions += _draw_summary(bands, row)
         imgui.pop_id()
     imgui.pop_clip_rect()
     return actions
@@ -84,7 +89,7 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
     for row in filter(bands.shows_row, bands.rows):
         box = ImVec2(low.x, row.top), ImVec2(high.x - 0.3 * em, row.bottom)
         if bands.button(f"name {row.layer.id}", *box):
-            actions += select_row(row.layer.id, {})
+            actions += select_lane(pose_channel(row.layer.id), {})
         if row.is_active or is_hovered_or_held():
             colour = (
                 colour_u32(palette.accent, CHOSEN) if row.is_active else colour_u32(palette.hovered)
@@ -100,7 +105,7 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
         colour = colour_u32(palette.text if is_visible(document, row.layer, frame) else palette.dim)
         indent = low.x + INDENT * min(row.depth + depth, DEEPEST_INDENT) * em
         with push_text_size(SMALL):
-            left = indent + (1.8 + EXPANDER_WIDTH * bool(row.layer.tracks)) * em
+            left = indent + (1.8 + EXPANDER_WIDTH * has_lanes(row.layer)) * em
             room = box[1].x - left - 0.8 * em
             text = shorten_text(row.layer.name, room)
             top = row.middle - imgui.get_text_line_height() / 2
@@ -112,10 +117,10 @@ def _draw_names(bands: TimelineLayout, frame: int) -> list[Action]:
                 draw_list.add_text(ImVec2(left + taken, top), colour_u32(palette.dim), label)
         actions += draw_expander(bands, row, indent)
     actions += draw_group_names(bands, frame)
-    actions += draw_track_names(bands)
+    actions += draw_lane_names(bands, [lane for lane in bands.lanes if lane.layer is not None])
     _draw_scrolled(bands)
     imgui.pop_clip_rect()
-    return actions
+    return actions + draw_lane_names(bands, [lane for lane in bands.lanes if lane.layer is None])
 
 
 def _draw_scrolled(bands: TimelineLayout) -> None:
@@ -148,11 +153,11 @@ def _hidden(bands: TimelineLayout, layer: Layer) -> list[tuple[int | None, int |
         first = bands.frame(bands.left)
         before = [sum(switch.frame <= first for switch in switches) - 1]
     for index in [*before, *shown]:
-        if index >= 0 and not switches[index].visible:
+        if index >= 0 and not switches[index].value:
             is_last = index + 1 == len(switches)
             end = None if is_last else switches[index + 1].frame
             stretches.append((switches[index].frame, end))
-    if not switches[0].visible:
+    if not switches[0].value:
         # Before its first key, a layer has that key's visibility.
         stretches.append((None, switches[0].frame))
     return stretches
@@ -180,116 +185,47 @@ def _hatch(bands: TimelineLayout, row: LayerRow, begin: int | None, end: int | N
     imgui.pop_clip_rect()
 
 
-def _draw_changes(bands: TimelineLayout, row: LayerRow) -> list[Action]:
+def _draw_summary(bands: TimelineLayout, row: LayerRow) -> list[Action]:
+    """Draw a mark at each frame where a channel without a lane of its own has a key.
+
+    A mark stands for all of these keys: it selects and drags them together.
+    """
+    if row.layer.id in bands.project.timeline.expanded_layers:
+        return []
     actions: list[Action] = []
-    layer, em, palette = row.layer, bands.look.em, bands.look.palette
-    changes: dict[int, list[str]] = {}
-    rows: dict[str, Sequence[HasFrame]] = {
-        _("Transform"): layer.transform_keys,
-        _("Opacity"): layer.opacity_keys,
-        _("Draw order"): layer.draw_order_keys,
-    }
-    for what, row_of_keys in rows.items():
-        for index in bands.in_view(row_of_keys):
-            changes.setdefault(row_of_keys[index].frame, []).append(what)
-    for frame, channels in changes.items():
+    document, em, palette = bands.project.document, bands.look.em, bands.look.palette
+    found: dict[int, dict[Channel[Any], BaseKey]] = {}
+    for channel in [*channels_of(row.layer)][1:]:
+        keys = layer_keys(row.layer, channel)
+        for index in bands.in_view(keys):
+            frame = display_frame(document, channel, keys[index].frame)
+            found.setdefault(frame, {})[channel] = keys[index]
+    gesture = bands.project.timeline.gesture
+    for frame, marked in found.items():
         x, y, half = bands.x(frame), row.bottom - 1.2 * CHANGE * em, CHANGE * em
-        box = ImVec2(x - half, y - half), ImVec2(x + half, y + half)
-        if bands.button(f"change {frame}", *box):
-            actions.append(do(playback.scrub, frame))
+        keys_here = {each: frozenset({key.frame}) for each, key in marked.items()}
+        # The menu offers what an interpolated key has, if there is one.
+        channel = min(marked, key=lambda each: each.kind.is_held)
+        pressed = marked[channel].frame
+        origin = find_drag_origin(gesture, channel, pressed)
+        box = ImVec2(x - 1.4 * half, y - 1.4 * half), ImVec2(x + 1.4 * half, y + 1.4 * half)
+        bands.button(f"keys {origin}", *box, right=True)
+        chosen = bands.project.selected_keys
+        is_chosen = all(at <= chosen.get(each, frozenset()) for each, at in keys_here.items())
+        colour = palette.text if is_hovered_or_held() else palette.anchor
         imgui.get_window_draw_list().add_ngon_filled(
-            ImVec2(x, y),
-            half,
-            colour_u32(palette.text if is_hovered_or_held() else palette.anchor),
-            4,
+            ImVec2(x, y), half, colour_u32(palette.accent if is_chosen else colour), 4
         )
-        if begin_tooltip():
-            imgui.text_unformatted(
-                _("Keys at frame {frame}: {channels}").format(
-                    frame=frame, channels=", ".join(channels)
-                )
-            )
-            imgui.text_disabled(_("Click to go there. Change it in the Layers tab."))
+        # Apart from the menu of a pose key at the same frame.
+        imgui.push_id("channels")
+        actions += begin_key_drag(bands, channel, pressed, keys_here)
+        label_dragged_key(bands, channel, pressed, x)
+        if gesture is None and begin_tooltip():
+            names = ", ".join(describe_channel(document, each) for each in keys_here)
+            text = _("Keys at frame {frame}: {channels}")
+            imgui.text_unformatted(text.format(frame=frame, channels=names))
+            imgui.text_disabled(_("Drag to move them. The triangle shows each channel."))
             imgui.end_tooltip()
-    return actions
-
-
-def _draw_visibility_key(
-    bands: TimelineLayout, row: LayerRow, switch: VisibilityKey
-) -> list[Action]:
-    """Draw a visibility key: an eye, or a struck eye if the layer becomes hidden."""
-    frame, half = switch.frame, EYE * bands.look.em
-    x = bands.x(frame)
-    left = _left_of_eye(bands, row, frame)
-    drag = bands.project.timeline.gesture
-    if not isinstance(drag, SwitchDrag) or (drag.layer, drag.at) != (row.layer.id, frame):
-        drag = None
-    # By its frame before the drag, so that its button keeps its id.
-    origin = frame if drag is None else drag.switch
-    box = left - ImVec2(0, half), left + ImVec2(2 * half, half)
-    bands.button(f"switch {origin}", *box, right=True)
-    _draw_eye(bands, row, switch, left, is_hot=is_hovered_or_held() or drag is not None)
-    if origin != frame:
-        draw_time_tag(bands, x, f"{frame}  ({frame - origin:+d})")
-    return _point(bands, row, switch) + _menu(row, frame)
-
-
-def _left_of_eye(bands: TimelineLayout, row: LayerRow, frame: int) -> ImVec2:
-    """Return the left of an eye: below pose keys of the active layer, beside those of others."""
-    em, x = bands.look.em, bands.x(frame)
-    if row.is_active and row.bottom - row.top > 2 * THIN * em:
-        return ImVec2(x, row.bottom - (0.1 + THIN / 2) * em)
-    at = bisect_left(row.layer.keys, frame, key=lambda key: key.frame)
-    is_at_key = at < len(row.layer.keys) and row.layer.keys[at].frame == frame
-    return ImVec2(x + (BESIDE * em if is_at_key else 0.0), row.middle)
-
-
-def _draw_eye(
-    bands: TimelineLayout, row: LayerRow, switch: VisibilityKey, left: ImVec2, *, is_hot: bool
-) -> None:
-    draw_list, x = imgui.get_window_draw_list(), bands.x(switch.frame)
-    colour = colour_u32(bands.look.palette.text if is_hot else bands.look.palette.anchor)
-    draw_list.add_line(ImVec2(x, row.top + 2), ImVec2(x, row.bottom - 2), colour, 1.5)
-    icon = icons.ICON_FA_EYE if switch.visible else icons.ICON_FA_EYE_SLASH
-    with push_text_size(SMALL * SMALL):
-        top = left.y - imgui.get_text_line_height() / 2
-        draw_list.add_text(ImVec2(left.x + 0.15 * bands.look.em, top), colour, icon)
-
-
-def _point(bands: TimelineLayout, row: LayerRow, switch: VisibilityKey) -> list[Action]:
-    """Handle the pointer on an eye, which is the last item, and show its tooltip."""
-    frame, document = switch.frame, bands.project.document
-    if is_hovered_or_held():
-        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    if imgui.is_item_clicked(imgui.MouseButton_.right):
-        imgui.open_popup(f"menu of switch {frame}")
-    elif is_pressed():
-        drag = SwitchDrag(
-            layer=row.layer.id,
-            switch=frame,
-            at=frame,
-            start=bands.pointed,
-            before=document,
-            after=document,
-        )
-        return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
-    if bands.project.timeline.gesture is None and begin_tooltip():
-        text = (
-            _("Shown from frame {frame} on")
-            if switch.visible
-            else _("Hidden from frame {frame} on")
-        )
-        imgui.text_unformatted(text.format(frame=frame))
-        imgui.text_disabled(_("Click to go there, drag to move it, right-click to delete it"))
-        imgui.end_tooltip()
-    return []
-
-
-def _menu(row: LayerRow, frame: int) -> list[Action]:
-    actions: list[Action] = []
-    if imgui.begin_popup(f"menu of switch {frame}"):
-        if imgui.menu_item_simple(_("Delete")):
-            command = layer_commands.key_visibility(row.layer.id, frame, visible=None)
-            actions.append(do(editing.edit_document, command))
-        imgui.end_popup()
+        actions += draw_key_menu(bands, channel, marked[channel])
+        imgui.pop_id()
     return actions

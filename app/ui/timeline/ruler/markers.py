@@ -4,8 +4,8 @@ from itertools import zip_longest
 
 from imgui_bundle import ImVec2, imgui
 
-from app.document import Marker
-from app.editor import Action, MarkerDrag, TimeGesture, do
+from app.document import MARKER, Channel, Marker
+from app.editor import Action, do
 from app.editor.actions import playback
 from app.editor.actions.timing import keys, timeline_drag
 from app.texts import _
@@ -14,13 +14,14 @@ from app.ui.style.theme import SMALL, colour_u32
 from app.ui.style.widgets import (
     begin_tooltip,
     is_hovered_or_held,
-    is_pressed,
     name_popup,
     push_text_size,
     shorten_text,
 )
-from app.ui.timeline.layout import TimelineLayout, draw_time_tag, format_seconds
+from app.ui.timeline.keys import begin_key_drag, find_drag_origin, label_dragged_key
+from app.ui.timeline.layout import TimelineLayout, format_seconds
 
+MARKERS = Channel(MARKER)
 HALF, GRIP = 0.42, 0.6  # em: half the width of a flag, and of its hit area
 NAME_ROOM = 30.0  # em: longest name that can reach into view from a marker at the left
 LEAST_NAME = 3.0  # em: names are omitted if less room is left
@@ -44,7 +45,7 @@ def draw_markers(bands: TimelineLayout) -> list[Action]:
         width = imgui.calc_text_size(text).x if text else 0.0
         if not bands.shows(x - GRIP * em, x + GRIP * em + width):
             continue
-        name = f"marker {_origin(gesture, marker.frame)}"
+        name = f"marker {find_drag_origin(gesture, MARKERS, marker.frame)}"
         end = x + max(GRIP * em, HALF * em + width)
         bands.button(
             name,
@@ -62,15 +63,11 @@ def draw_markers(bands: TimelineLayout) -> list[Action]:
     return actions
 
 
-def _origin(gesture: TimeGesture | None, frame: int) -> int:
-    """Return the marker's frame before the drag, so that its button keeps its id."""
-    return gesture.marker if isinstance(gesture, MarkerDrag) and gesture.at == frame else frame
-
-
 def _draw(bands: TimelineLayout, marker: Marker, x: float, text: str) -> None:
     palette, draw_list, em = bands.look.palette, imgui.get_window_draw_list(), bands.look.em
     hot = is_hovered_or_held()
-    colour = palette.accent if hot else palette.anchor
+    is_chosen = marker.frame in bands.project.selected_keys.get(MARKERS, ())
+    colour = palette.accent if hot or is_chosen else palette.anchor
     top, bottom = bands.markers_top + 0.15 * em, bands.camera_top - 0.1 * em
     waist = top + 0.55 * (bottom - top)
     half = HALF * em
@@ -89,9 +86,7 @@ def _draw(bands: TimelineLayout, marker: Marker, x: float, text: str) -> None:
         with push_text_size(SMALL):
             place = ImVec2(x + half + 0.3 * em, (top + bottom - imgui.get_text_line_height()) / 2)
             draw_list.add_text(place, colour_u32(palette.text if hot else palette.dim), text)
-    gesture = bands.project.timeline.gesture
-    if isinstance(gesture, MarkerDrag) and gesture.at == marker.frame != gesture.marker:
-        draw_time_tag(bands, x, f"{marker.frame}")
+    label_dragged_key(bands, MARKERS, marker.frame, x)
 
 
 def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
@@ -99,24 +94,16 @@ def _point(bands: TimelineLayout, marker: Marker) -> list[Action]:
     if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
         imgui.open_popup(f"name of marker {marker.frame}")
         return [do(timeline_drag.end_timeline_drag)]
-    if is_pressed():
-        drag = MarkerDrag(
-            marker=marker.frame,
-            at=marker.frame,
-            start=bands.pointed,
-            before=document,
-            after=document,
-        )
-        return [do(timeline_drag.begin_timeline_drag, drag, bands.time_view)]
     if imgui.is_item_clicked(imgui.MouseButton_.right):
         imgui.open_popup(f"menu of marker {marker.frame}")
+        return []
     if bands.project.timeline.gesture is None and begin_tooltip():
         imgui.text_unformatted(marker.name)
         imgui.same_line()
         imgui.text_disabled(f"{marker.frame}, {format_seconds(marker.frame, document.fps)}")
         imgui.text_disabled(_("Click to go there, drag to move it, double-click to name it"))
         imgui.end_tooltip()
-    return []
+    return begin_key_drag(bands, MARKERS, marker.frame)
 
 
 def _menu(bands: TimelineLayout, marker: Marker) -> list[Action]:

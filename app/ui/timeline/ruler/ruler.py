@@ -26,7 +26,7 @@ def draw_ruler(bands: TimelineLayout, frame: int) -> list[Action]:
     if is_pressed():
         actions += [
             do(timeline_drag.begin_timeline_drag, ScrubDrag(), bands.time_view),
-            do(timeline_drag.move_timeline_drag, bands.pointed, bands.row.layer.id),
+            do(timeline_drag.move_timeline_drag, bands.pointed, bands.pointed_channel),
         ]
     if imgui.is_item_hovered():
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)

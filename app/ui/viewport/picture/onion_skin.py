@@ -3,7 +3,14 @@
 from functools import partial
 from itertools import takewhile
 
-from app.document import CompositeGroup, Layer, composite_layers, is_visible, segment_time_at
+from app.document import (
+    TRANSFORM,
+    CompositeGroup,
+    Layer,
+    composite_layers,
+    is_visible,
+    segment_time_at,
+)
 from app.editor import Project, Session
 from app.render import Ghost
 from app.render.gpu.mesh import PosedMesh
@@ -79,7 +86,7 @@ def count_meshes_behind(session: Session, project: Project, meshes: int) -> int:
     document, shows = project.document, project.layer_runtimes
     frame = max((each.shown.frame for each in shows.values() if each.shown), default=0)
     still = {
-        each.id: each.still and not each.transform_keys
+        each.id: each.still and not each.keys_of(TRANSFORM)
         for each in document.layers
         if (shown := shows[each.id].shown) is not None
         and is_visible(document, each, shown.frame)

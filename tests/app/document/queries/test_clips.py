@@ -6,15 +6,19 @@ import numpy as np
 import pytest
 from documents import altered, disc_document
 
+from app.document import (
+    DEPTH,
+    LAYER_KINDS,
+    TRANSFORM,
+    Transform,
+)
+from app.document.channels.springs import Spring
 from app.document.commands import handle_commands
 from app.document.keyframe import LibraryPose
 from app.document.layers.groups import Group
-from app.document.layers.layer_keys import DrawOrderKey, OpacityKey
-from app.document.layers.visibility import VisibilityKey
 from app.document.queries.clips import UNMOVING, UNMOVING_OF_HANDLES, clip_of, motion_source
 from app.document.rig.applied_motion import UnreadMotion
 from app.document.rig.stiffness import Bone
-from app.document.timing.springs import Spring
 from app.motion.extents.extent import extent_key
 from engine.maps.bounds import Bounds
 
@@ -33,14 +37,19 @@ UNSEEN = {
     "reference": True,
     "locked": True,
     "hidden": True,
-    "visibility_keys": (VisibilityKey(4, visible=False),),
     "opacity": 0.5,
-    "opacity_keys": (OpacityKey(frame=3, opacity=0.5),),
     "blend": "multiply",
     "clipped": True,
     "group": "all",
-    "draw_order_keys": (DrawOrderKey(4, None),),
+    "unread_channels": ({"kind": "later"},),
     "unknown": {"later": 1},
+}
+STILL_CHANNELS = {
+    kind: (kind.key(4, kind.default),) for kind in LAYER_KINDS.values() if not kind.moves_layer
+}
+MOVING_CHANNELS = {
+    (TRANSFORM, None): (TRANSFORM.key(4, Transform(shift=3j)),),
+    (DEPTH, 0): (DEPTH.key(4, 0.5),),
 }
 SEEN = {
     "bones": (Bone(ends=(0, 1)),),
@@ -63,6 +72,25 @@ def test_clips_are_equal_where_only_other_things_change(field):
     assert hash(clip_of(changed, 0)) == hash(clip_of(DOCUMENT, 0))
     if field not in {"reference", "hidden"}:  # which is not exported
         assert extent_key(changed) == extent_key(DOCUMENT)
+
+
+def test_every_channel_of_a_layer_is_tried():
+    tried = {*STILL_CHANNELS, *(kind for kind, _ in MOVING_CHANNELS)}
+    assert tried == set(LAYER_KINDS.values())
+
+
+@pytest.mark.parametrize("kind", STILL_CHANNELS, ids=lambda kind: kind.name)
+def test_clips_are_equal_where_channels_without_motion_differ(kind):
+    changed = altered(DOCUMENT, channels={(kind.name, None): STILL_CHANNELS[kind]})
+    assert clip_of(changed, 0) == clip_of(DOCUMENT, 0)
+    assert hash(clip_of(changed, 0)) == hash(clip_of(DOCUMENT, 0))
+    assert extent_key(changed) == extent_key(DOCUMENT)
+
+
+@pytest.mark.parametrize(("kind", "part"), MOVING_CHANNELS)
+def test_clips_differ_where_channels_with_motion_differ(kind, part):
+    changed = altered(DOCUMENT, channels={(kind.name, part): MOVING_CHANNELS[kind, part]})
+    assert clip_of(changed, 0) != clip_of(DOCUMENT, 0)
 
 
 @pytest.mark.parametrize("field", SEEN)

@@ -10,13 +10,16 @@ from messages import says
 from numpy.testing import assert_allclose
 
 from app.document import (
+    CAMERA,
+    DRAW_ORDER,
     HOLD,
-    CameraKey,
-    DrawOrderKey,
+    OPACITY,
+    TRANSFORM,
+    Camera,
+    DrawOrder,
     FrameRange,
-    OpacityKey,
     TangentMode,
-    TransformKey,
+    Transform,
     camera_at,
     export_frame_range,
     layer_commands,
@@ -33,10 +36,10 @@ from app.errors import LissomError
 
 EMPTY = replace(disc_document(), frames=FrameRange(0, 48))
 KEYS = (
-    CameraKey(frame=4, centre=100 + 100j),
-    CameraKey(frame=10, centre=130 + 80j, zoom=3.0, turn=pi / 2),
-    CameraKey(frame=30, centre=90 + 160j, zoom=0.4, turn=-pi),
-    CameraKey(frame=40, centre=70 + 10j, zoom=2.0, turn=3 * pi),
+    CAMERA.key(4, Camera(centre=100 + 100j)),
+    CAMERA.key(10, Camera(centre=130 + 80j, zoom=3.0, turn=pi / 2)),
+    CAMERA.key(30, Camera(centre=90 + 160j, zoom=0.4, turn=-pi)),
+    CAMERA.key(40, Camera(centre=70 + 10j, zoom=2.0, turn=3 * pi)),
 )
 STEP = 1e-5  # frames, for slopes
 
@@ -60,8 +63,8 @@ def test_a_key_is_given_to_the_bit_and_held_outside():
     document = with_camera()
     for key in KEYS:
         shot = camera_at(document, key.frame)
-        assert (shot.centre, shot.turn) == (key.centre, key.turn)
-        assert shot.zoom == pytest.approx(key.zoom, rel=1e-14)
+        assert (shot.centre, shot.turn) == (key.value.centre, key.value.turn)
+        assert shot.zoom == pytest.approx(key.value.zoom, rel=1e-14)
     assert camera_at(document, 0) == camera_at(document, 4)
     assert camera_at(document, 48) == camera_at(document, 40)
     assert camera_at(EMPTY, 7) is None
@@ -76,7 +79,7 @@ def test_the_camera_passes_its_keys_and_the_ends_of_its_motion_without_a_jerk():
 
 
 def test_zoom_is_blended_by_its_logarithm():
-    two = (CameraKey(frame=0, centre=0j), CameraKey(frame=24, centre=0j, zoom=4.0))
+    two = (CAMERA.key(0, Camera(centre=0j)), CAMERA.key(24, Camera(centre=0j, zoom=4.0)))
     assert camera_at(with_camera(two), 12).zoom == pytest.approx(2.0, rel=1e-12)
     even = with_camera(replace(key, tangent_mode=TangentMode.CORNER) for key in two)
     for frame in (3, 6, 17.5):
@@ -84,7 +87,7 @@ def test_zoom_is_blended_by_its_logarithm():
 
 
 def test_what_is_seen_is_zoomed_and_turned_counter_clockwise_around_the_centre():
-    document = with_camera([CameraKey(frame=0, centre=30 + 40j, zoom=2.0, turn=pi / 2)])
+    document = with_camera([CAMERA.key(0, Camera(centre=30 + 40j, zoom=2.0, turn=pi / 2))])
     seen = camera_at(document, 0).canvas_motion((200, 100))
     # What lies to the right of the centre is seen above it.
     places = seen.apply(np.array([30 + 40j, 35 + 40j]))
@@ -112,10 +115,18 @@ def test_the_last_frame_of_a_loop_is_left_out_only_where_all_of_it_is_the_first_
     panned = (replace(KEYS[0], frame=0), replace(KEYS[1], frame=48))
     assert export_frame_range(with_camera(panned, loop=True)).last == 48
     # A wheel that has turned round is where it was.
-    wheel = (TransformKey(frame=0), TransformKey(frame=48, turn=2 * pi))
-    assert export_frame_range(altered(EMPTY, transform_keys=wheel, loop=True)).last == 47
-    rolled = (TransformKey(frame=0), TransformKey(frame=48, shift=1, turn=2 * pi))
-    assert export_frame_range(altered(EMPTY, transform_keys=rolled, loop=True)).last == 48
+    wheel = (TRANSFORM.key(0, Transform()), TRANSFORM.key(48, Transform(turn=2 * pi)))
+    assert (
+        export_frame_range(altered(EMPTY, loop=True, channels={(TRANSFORM.name, None): wheel})).last
+        == 47
+    )
+    rolled = (TRANSFORM.key(0, Transform()), TRANSFORM.key(48, Transform(shift=1, turn=2 * pi)))
+    assert (
+        export_frame_range(
+            altered(EMPTY, loop=True, channels={(TRANSFORM.name, None): rolled})
+        ).last
+        == 48
+    )
 
 
 def test_a_held_camera_jumps():
@@ -124,8 +135,8 @@ def test_a_held_camera_jumps():
 
 
 def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
-    keys = (TransformKey(frame=0), TransformKey(frame=8, shift=10 + 5j, turn=pi / 2))
-    document = altered(EMPTY, transform_keys=keys)
+    keys = (TRANSFORM.key(0, Transform()), TRANSFORM.key(8, Transform(shift=10 + 5j, turn=pi / 2)))
+    document = altered(EMPTY, channels={(TRANSFORM.name, None): keys})
     layer = document.layers[0]
     motion = transform_at(document, layer, 8)
     assert abs(layer.pivot - CENTRE) < 1e-9
@@ -139,17 +150,16 @@ def test_a_layer_is_moved_and_turned_around_its_anchor_or_its_middle():
 
 
 def test_fades_are_even_and_stay_between_nothing_and_all():
-    keys = (OpacityKey(frame=0, opacity=1.0), OpacityKey(frame=12, opacity=0.2))
-    document = altered(EMPTY, opacity_keys=keys, opacity=0.5)
+    keys = (OPACITY.key(0, 1.0), OPACITY.key(12, 0.2))
+    document = altered(EMPTY, opacity=0.5, channels={(OPACITY.name, None): keys})
     layer = document.layers[0]
     assert opacity_at(document, layer, 3) == pytest.approx(0.8, abs=1e-12)
     assert opacity_at(document, layer, 40) == 0.2
     peaks = [0.9, 1.0, 0.1, 0.0, 0.8]
     keys = tuple(
-        OpacityKey(frame=6 * i, opacity=each, tangent_mode=TangentMode.SMOOTH)
-        for i, each in enumerate(peaks)
+        OPACITY.key(6 * i, each, tangent_mode=TangentMode.SMOOTH) for i, each in enumerate(peaks)
     )
-    through = altered(EMPTY, opacity_keys=keys)
+    through = altered(EMPTY, channels={(OPACITY.name, None): keys})
     values = [opacity_at(through, through.layers[0], t) for t in np.arange(0, 30, 0.1)]
     assert max(values) == 1.0
     assert min(values) == 0.0
@@ -164,10 +174,12 @@ def stack(**order_keys):
     layers = tuple(
         replace(
             layer,
-            draw_order_keys=tuple(
-                DrawOrderKey(frame, ids.get(beside), in_front)
-                for frame, beside, in_front in order_keys.get(layer.name, ())
-            ),
+            channels={
+                (DRAW_ORDER.name, None): tuple(
+                    DRAW_ORDER.key(frame, DrawOrder(ids.get(beside), in_front))
+                    for frame, beside, in_front in order_keys.get(layer.name, ())
+                )
+            },
         )
         for layer in document.layers
     )
@@ -193,15 +205,20 @@ def test_time_edits_carry_all_of_them_along():
     document = altered(
         EMPTY,
         camera=KEYS,
-        transform_keys=(TransformKey(frame=4), TransformKey(frame=8, shift=1j)),
-        opacity_keys=(OpacityKey(frame=2, opacity=0.5),),
-        draw_order_keys=(DrawOrderKey(6, None),),
+        channels={
+            (TRANSFORM.name, None): (
+                TRANSFORM.key(4, Transform()),
+                TRANSFORM.key(8, Transform(shift=1j)),
+            ),
+            (OPACITY.name, None): (OPACITY.key(2, 0.5),),
+            (DRAW_ORDER.name, None): (DRAW_ORDER.key(6, DrawOrder(None)),),
+        },
     )
     twice = scene_commands.scale_time(2.0)(document)
     layer = twice.layers[0]
     assert [key.frame for key in twice.camera] == [8, 20, 60, 80]
-    assert [key.frame for key in layer.transform_keys] == [8, 16]
-    assert [layer.opacity_keys[0].frame, layer.draw_order_keys[0].frame] == [4, 12]
+    assert [key.frame for key in layer.keys_of(TRANSFORM)] == [8, 16]
+    assert [layer.keys_of(OPACITY)[0].frame, layer.keys_of(DRAW_ORDER)[0].frame] == [4, 12]
     for frame in (3.0, 7.3, 11.0):
         assert_allclose(
             camera_values(twice, 2 * frame), camera_values(document, frame), rtol=0, atol=1e-12
@@ -210,23 +227,23 @@ def test_time_edits_carry_all_of_them_along():
 
 def test_what_cannot_be_is_refused():
     with pytest.raises(LissomError, match="zoom must be from"):
-        CameraKey(frame=0, centre=0j, zoom=0.0)
+        CAMERA.key(0, Camera(centre=0j, zoom=0.0))
     with pytest.raises(LissomError, match="zoom must be from"):
-        CameraKey(frame=0, centre=0j, zoom=float("nan"))
-    with pytest.raises(LissomError, match="keys at frames 10 and 4 that are out of order"):
+        CAMERA.key(0, Camera(centre=0j, zoom=float("nan")))
+    with pytest.raises(LissomError, match="the keys at frames 10 and 4 are out of order"):
         with_camera([KEYS[1], KEYS[0]])
     with pytest.raises(LissomError, match="key at frame 40 lies outside"):
         altered(EMPTY, frames=FrameRange(0, 39), camera=KEYS)
     with pytest.raises(LissomError, match=says(KEY_OUTSIDE, frame=40)):
         scene_commands.set_frames(FrameRange(0, 39))(with_camera())
     with pytest.raises(LissomError, match="in front of itself"):
-        altered(EMPTY, draw_order_keys=(DrawOrderKey(0, 0),))
+        altered(EMPTY, channels={(DRAW_ORDER.name, None): (DRAW_ORDER.key(0, DrawOrder(0)),)})
     with pytest.raises(LissomError, match=says(NO_LAYER, identity=7)):
-        altered(EMPTY, draw_order_keys=(DrawOrderKey(0, 7),))
+        altered(EMPTY, channels={(DRAW_ORDER.name, None): (DRAW_ORDER.key(0, DrawOrder(7)),)})
     with pytest.raises(LissomError, match="from 0 to 1"):
-        OpacityKey(frame=0, opacity=1.5)
+        altered(EMPTY, channels={(OPACITY.name, None): (OPACITY.key(0, 1.5),)})
     with pytest.raises(LissomError, match="within"):
-        TransformKey(frame=0, shift=complex(0, float("inf")))
+        TRANSFORM.key(0, Transform(shift=complex(0, float("inf"))))
 
 
 def test_a_layer_that_is_removed_leaves_none_that_lies_beside_it():
@@ -252,7 +269,7 @@ def stacked(places=None, **groups):
     layers = []
     for name, (group, clipped) in drawn.items():
         placed = (places or {}).get(name)
-        order_keys = (DrawOrderKey(6, ids[placed[0]], placed[1]),) if placed else ()
+        order_keys = (DRAW_ORDER.key(6, DrawOrder(ids[placed[0]], placed[1])),) if placed else ()
         layers.append(
             replace(
                 EMPTY.layers[0],
@@ -260,7 +277,7 @@ def stacked(places=None, **groups):
                 name=name,
                 group=group if groups else "",
                 clipped=clipped,
-                draw_order_keys=order_keys,
+                channels={(DRAW_ORDER.name, None): order_keys},
             )
         )
     return replace(document, layers=tuple(layers))

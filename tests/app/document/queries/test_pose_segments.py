@@ -7,15 +7,18 @@ from documents import altered, disc_document, random_pose
 from numpy import random
 from numpy.testing import assert_allclose
 
-from app.document.commands import key_commands
-from app.document.keyframe import Keyframe, TangentMode
+from app.document import channel_commands as channels, pose_channel
+from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.channels.tangent_mode import TangentMode
+from app.document.keyframe import Keyframe
 from app.document.queries.clips import clip_of
 from app.document.queries.pose_tangents import pose_segments
 from app.document.queries.timeline import segment_time_at
 from app.document.settings import FrameRange
-from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
 from app.errors import LissomError
 from engine.interpolation import InteriorKnot
+
+CHANNEL = pose_channel(0)
 
 EMPTY = disc_document()
 POSES = [random_pose(random.default_rng(seed), EMPTY) for seed in range(6)]
@@ -130,10 +133,10 @@ def test_the_paces_of_an_easing(curve, paces):
 
 def test_passings_are_set_and_holds_undone():
     document = altered(EMPTY, keys=keyed(0, 10, 30).keys)
-    held = key_commands.set_tangent_mode(0, {10, 30}, TangentMode.HOLD)(document)
+    held = channels.set_tangent_mode({CHANNEL: {10, 30}}, TangentMode.HOLD)(document)
     assert [key.shown_tangent_mode for key in held.layers[0].keys] == ["through", "hold", "hold"]
-    assert key_commands.set_tangent_mode(0, {10}, TangentMode.HOLD)(held) is held
-    stopped = key_commands.set_tangent_mode(0, {0, 10}, TangentMode.STOP)(held)
+    assert channels.set_tangent_mode({CHANNEL: {10}}, TangentMode.HOLD)(held) is held
+    stopped = channels.set_tangent_mode({CHANNEL: {0, 10}}, TangentMode.STOP)(held)
     assert [key.shown_tangent_mode for key in stopped.layers[0].keys] == ["stop", "stop", "hold"]
     assert stopped.layers[0].key(10).easing == LINEAR
     with pytest.raises(LissomError, match="hold is an easing"):

@@ -8,7 +8,9 @@ from documents import disc_document, random_pose
 from numpy import random
 
 from app.document import clip_of, measure_target_errors, pose_segments
-from app.document.commands import key_commands
+from app.document.commands.keys import (
+    key_commands,
+)
 from app.document.queries.memo import MOST, memoized_on
 from app.document.settings import FrameRange
 

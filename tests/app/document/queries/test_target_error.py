@@ -7,6 +7,7 @@ import pytest
 from documents import CENTRE, RADIUS, altered, disc_document
 from numpy.testing import assert_allclose
 
+from app.document.channels.springs import Spring
 from app.document.commands.handle_commands import add_handle
 from app.document.keyframe import Target
 from app.document.queries.target_error import (
@@ -14,7 +15,6 @@ from app.document.queries.target_error import (
     DistortionRange,
     measure_target_errors,
 )
-from app.document.timing.springs import Spring
 from engine.maps import Bounds
 
 

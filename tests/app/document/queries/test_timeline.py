@@ -8,9 +8,12 @@ from documents import altered, disc_document
 from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose
 
+from app.document.channels.easing import HOLD, PRESETS
+from app.document.channels.springs import Spring
+from app.document.channels.tangent_mode import TangentMode
 from app.document.commands.handle_commands import add_handle
-from app.document.commands.key_commands import replace_key_pose
-from app.document.keyframe import Keyframe, TangentMode, Target
+from app.document.commands.keys.key_commands import replace_key_pose
+from app.document.keyframe import Keyframe, Target
 from app.document.playhead import Playhead
 from app.document.queries.clips import clip_of
 from app.document.queries.key_segments import loop_segment, segment_keys
@@ -21,8 +24,6 @@ from app.document.queries.timeline import (
     segment_time_at,
 )
 from app.document.settings import FrameRange
-from app.document.timing.easing import HOLD, PRESETS
-from app.document.timing.springs import Spring
 from app.errors import LissomError
 
 EMPTY = disc_document()

@@ -9,12 +9,12 @@ from hypothesis import given, strategies as st
 from numpy.testing import assert_allclose
 from scipy.interpolate import CubicHermiteSpline
 
+from app.document.channels.easing import HOLD, LINEAR, PRESETS, Easing
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
+from app.document.queries.channel_values.tracks_at import track_at, velocity_at
 from app.document.queries.clips import clip_of
-from app.document.queries.tracks import track_at, velocity_at
 from app.document.settings import FrameRange
-from app.document.timing.easing import HOLD, LINEAR, PRESETS, Easing
-from app.document.timing.tangent_mode import TangentMode
-from app.document.timing.tracks import Track, TrackKey
 
 EMPTY = disc_document()
 PLACES = [0j, 3 + 1j, -2 + 4j, 1 / 3 - 0.1j, 7 - 5j]

@@ -9,8 +9,8 @@ from invariants import check_pose
 from projects import project_of
 from sessions import BLANK, go, session_of, settle
 
-from app.document import HOLD
-from app.document.commands import handle_commands, key_commands, shape_commands
+from app.document import HOLD, channel_commands, pose_channel
+from app.document.commands import handle_commands, shape_commands
 from app.document.settings import NATURAL
 from app.editor.actions import editing
 from app.editor.actions.posing.pose_drag import nudge_handles
@@ -55,7 +55,7 @@ def test_in_the_timeline_the_one_chosen_key_is_copied_wherever_the_playhead_is(s
 
 def test_several_keys_are_pasted_with_their_ways_and_distances(session):
     project = session.project
-    editing.edit_layer(session, key_commands.set_easing, {0}, HOLD)
+    editing.edit_document(session, channel_commands.set_easing({pose_channel(0): {0}}, HOLD))
     before = project.document
     editing.select_keys(session, frozenset({0, 6}))
     copying.copy_keys(session)

@@ -7,7 +7,7 @@ from animations import still_document
 from documents import altered
 from sessions import session_of, settle
 
-from app.document import Keyframe, handle_commands
+from app.document import DEPTH, Channel, Keyframe, handle_commands, pose_channel
 from app.editor.actions import editing, playback
 from app.editor.poses import copying, flipping, pasting
 from app.editor.poses.pasting import NOT_PASTED
@@ -21,22 +21,26 @@ def session(tmp_path):
         document = handle_commands.add_handle(0, place, name=name)(document)
     first = document.layers[0].keys[0]
     keys = (
-        replace(first, revolutions=2, depths={0: 1.0}),
+        replace(first, revolutions=2),
         Keyframe(frame=6, pose=first.pose, revolutions=-1),
     )
-    return session_of(altered(document, keys=keys), tmp_path)
+    channels = {(DEPTH.name, 0): (DEPTH.key(0, 1.0),)}
+    return session_of(altered(document, keys=keys, channels=channels), tmp_path)
 
 
 def test_keys_are_flipped_with_their_turns_and_what_is_in_front(session):
     project, before = session.project, session.project.document
-    editing.select_keys(session, frozenset({0, 6}))
+    depth = Channel(DEPTH, project.active, 0)
+    chosen = {pose_channel(project.active): frozenset({0, 6}), depth: frozenset({0})}
+    editing.select_channel_keys(session, chosen)
     copying.copy_keys(session)
     playback.scrub(session, 20)
     pasting.paste_copied(session, "flipped")
     settle(session)
     assert project.selected_frames == {20, 26}
     assert (project.layer.key(20).revolutions, project.layer.key(26).revolutions) == (-2, 1)
-    assert dict(project.layer.key(20).depths) == {1: 1.0}
+    assert project.layer.keys_of(DEPTH, 0) == (DEPTH.key(0, 1.0),)
+    assert project.layer.keys_of(DEPTH, 1) == (DEPTH.key(20, 1.0),)
     assert flipping.can_flip_again(project)
     editing.select_keys(session, frozenset({20}))
     assert not flipping.can_flip_again(project)

@@ -9,14 +9,19 @@ from sessions import go, session_of, settle
 from walkers import AXIS, FAR, leg, walker
 
 from app.document import (
+    DEPTH,
     PAIRS,
     PRESETS,
+    TRACK,
+    Channel,
     Document,
     TangentMode,
     Target,
+    channel_commands,
     handle_commands,
     key_commands,
     layer_commands,
+    pose_channel,
     stiffness_commands,
     track_commands,
 )
@@ -31,7 +36,6 @@ from app.editor.poses import copying, library, paste_destinations, pasting
 from app.editor.poses.paste_destinations import NOTHING_COPIED
 from app.editor.poses.pasting import NOT_PASTED
 from app.editor.session import CopiedKeys
-from app.editor.timeline_view import TrackRow
 
 SWAPPED, FLIPPED, PLAIN = "swapped", "flipped", "as it is"
 
@@ -121,11 +125,16 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     editing.edit_document(
         session, key_commands.insert_key(near, 8, layer(session, "near leg").keys[0].pose)
     )
-    editing.edit_document(session, key_commands.set_easing(near, {0}, PRESETS["in-out"]))
-    editing.edit_document(session, key_commands.set_tangent_mode(near, {8}, TangentMode.STOP))
+    editing.edit_document(
+        session, channel_commands.set_easing({pose_channel(near): {0}}, PRESETS["in-out"])
+    )
+    editing.edit_document(
+        session, channel_commands.set_tangent_mode({pose_channel(near): {8}}, TangentMode.STOP)
+    )
     editing.edit_document(session, key_commands.set_revolutions(near, {0}, 1))
-    editing.edit_document(session, layer_commands.key_depth(near, 0, knee, 0.5))
-    editing.select_keys(session, frozenset({0, 8}))
+    editing.edit_document(session, channel_commands.set_key(Channel(DEPTH, near, knee), 0, 0.5))
+    chosen = {pose_channel(near): frozenset({0, 8}), Channel(DEPTH, near, knee): frozenset({0})}
+    editing.select_channel_keys(session, chosen)
     copying.copy_keys(session)
     set_active_layer(session, identity(session, "far leg"))
     go(session, 12)
@@ -134,7 +143,8 @@ def test_keys_take_their_ways_passings_turns_and_fronts_along(session):
     far = layer(session, "far leg")
     assert far.key_frames == {0, 12, 20}
     one, other = far.key(12), far.key(20)
-    assert (one.easing, one.revolutions, dict(one.depths)) == (PRESETS["in-out"], 1, {knee: 0.5})
+    assert (one.easing, one.revolutions) == (PRESETS["in-out"], 1)
+    assert far.keys_of(DEPTH, knee) == (DEPTH.key(12, 0.5),)
     assert other.tangent_mode is TangentMode.STOP
     close(ways(session, "far leg", 20), ways(session, "near leg", 8))
 
@@ -155,11 +165,7 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
     close(near, first_far)
     body = layer(session, "body")
     assert body.key(12).pose.phi is body.key(0).pose.phi
-    assert {row: set(at) for row, at in project.selected_keys.items()} == {
-        0: {12},
-        1: {12},
-        2: {12},
-    }
+    assert project.selected_keys == {pose_channel(each): {12} for each in (0, 1, 2)}
     editing.undo(session)
     assert project.document is before
     # Once more is the step itself again.
@@ -172,7 +178,9 @@ def test_the_step_of_all_layers_is_pasted_swapped_and_nothing_is_mirrored(sessio
         close(ways(session, name, 24), ways(session, name, 0))
     # Poses bring no way to the next key.
     near = identity(session, "near leg")
-    editing.edit_document(session, key_commands.set_easing(near, {12}, PRESETS["in"]))
+    editing.edit_document(
+        session, channel_commands.set_easing({pose_channel(near): {12}}, PRESETS["in"])
+    )
     go(session, 12)
     pasting.paste_copied(session)
     settle(session)
@@ -185,7 +193,8 @@ def test_left_and_right_layers_exchange_mirrored_when_flipped(tmp_path):
     session = walking(tmp_path, document)
     pull(session, "leg.L", knee=18 + 8j, foot=-20 + 30j)
     editing.edit_document(session, key_commands.set_revolutions(0, {0}, 2))
-    editing.select_keys_in_rows(session, {0: frozenset({0}), 2: frozenset({0})})
+    chosen = {pose_channel(each): frozenset({0}) for each in (0, 2)}
+    editing.select_channel_keys(session, chosen)
     copying.copy_keys(session)
     go(session, 12)
     pasting.paste_copied(session, FLIPPED)
@@ -425,7 +434,7 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
         command = track_commands.put_track_key(near, foot, frame, place, velocity=1 + 2j)
         editing.edit_document(session, command)
     settle(session)
-    editing.select_keys_in_rows(session, {TrackRow(near, foot): frozenset({0, 6})})
+    editing.select_channel_keys(session, {Channel(TRACK, near, foot): frozenset({0, 6})})
     copying.copy_keys(session)
     go(session, 12)
     before = session.project.document
@@ -440,7 +449,7 @@ def test_keys_of_tracks_go_to_the_handles_of_the_partner(session, way, mirrors):
         assert abs(key.place) == pytest.approx(abs(wanted[0]))
         if not mirrors:
             assert [key.place, key.velocity] == pytest.approx(wanted)
-    assert session.project.selected_keys == {TrackRow(far, foot): frozenset({12, 18})}
+    assert session.project.selected_keys == {Channel(TRACK, far, foot): {12, 18}}
     editing.undo(session)
     assert session.project.document is before
 

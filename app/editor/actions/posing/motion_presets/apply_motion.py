@@ -71,14 +71,13 @@ def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
 def _without(document: Document, draft: MotionSetup) -> Document:
     """Return a document without the motion that a draft replaces.
 
-    The key that it blended in from stays. One of its keys stays if the layer has no other.
+    Only its own keys are deleted, wherever they are now. One of them stays if the layer has no
+    other.
     """
     given, layer = draft.applied_motion, document.layer(draft.layer)
     if given is None:
         return document
-    kept = [key for key in layer.keys if not given.first <= key.frame <= given.last]
-    if given.start > given.first or not kept:
-        kept = [key for key in layer.keys if key in kept or key.frame == given.first]
+    kept = [key for key in layer.keys if key.motion != given.id]
     bones = layer.bones
     if not draft.bones:
         limbs = preset_setup.limb_joint_handles(given)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
 
+from app.document.channels.key import BaseKey
 from app.document.checks import NOTHING, Unknown, require, require_frame
-from app.document.timing.base_key import BaseKey
 from app.errors import LissomError
 from app.texts import N_, _
 

@@ -2,27 +2,35 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TypeVar
+from typing import Any, TypeVar
 
+from app.document.channels.cycles import Cycle
+from app.document.channels.key import Key
+from app.document.channels.kind import ChannelKeys, ChannelKind
+from app.document.channels.kinds import LAYER_KINDS
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.tracks import Track, TrackKey
 from app.document.commands.command import command, layer_command
-from app.document.commands.retime import Keys, nearest_frame, sorted_by_frame
-from app.document.keyframe import Keyframe
+from app.document.commands.keys.retime import nearest_frame, sorted_by_frame
 from app.document.layer import Layer
 from app.document.layers.attachments import repeated_joints
-from app.document.layers.layer_keys import OpacityKey, TransformKey
 from app.document.model import Document
-from app.document.queries.layers.layer_state import DEFAULT_DRAW_ORDER, repeating_cycle
-from app.document.queries.layers.visibility import repeated, switch_cycle, with_repeats
+from app.document.queries.channel_values.repeats import (
+    repeated_keys,
+    repeating_cycle,
+    rest_value,
+    switch_cycle,
+    with_repeats,
+)
+from app.document.queries.channel_values.values_at import interpolated_value
 from app.document.queries.pose_tangents import have_same_map
-from app.document.timing.cycles import Cycle
-from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 from app.texts import N_, _
 
 # Pixels and radians. A track with smaller values at its ends does not move the handle there.
 SAME_POSE_DISTANCE = 1e-6
 
-Moving = TypeVar("Moving", TransformKey, OpacityKey)
+V = TypeVar("V")
 TWO_POSES_SHOWN = N_(
     "A cycle must end with the pose of its start, but frames {first} and {last} show different "
     "poses. Make the poses equal, or choose other keys."
@@ -55,10 +63,10 @@ def delete_cycle(document: Document, identity: int, first: int) -> Document:
     """
     cycle = cycle_starting_at(document.layer(identity), first)
     document = _with_baked_switch(document, identity, cycle, cycle.last)
-    return document.with_layer(_without_cycle(document.layer(identity), first))
+    return document.with_layer(_without_cycle(document, document.layer(identity), first))
 
 
-def _without_cycle(layer: Layer, first: int) -> Layer:
+def _without_cycle(document: Document, layer: Layer, first: int) -> Layer:
     cycle = cycle_starting_at(layer, first)
     cycles = tuple(each for each in layer.cycles if each is not cycle)
     own = [key for key in layer.keys if cycle.contains(key.frame)]
@@ -69,8 +77,7 @@ def _without_cycle(layer: Layer, first: int) -> Layer:
         layer,
         keys=keys,
         cycles=cycles,
-        transform_keys=_copied(layer, layer.transform_keys, cycle, cycle.last),
-        opacity_keys=_copied(layer, layer.opacity_keys, cycle, cycle.last),
+        channels=_baked_channels(document, layer, cycle, cycle.last, held=False),
         attachments=repeated_joints(
             layer.attachments, (replace(cycle, until=cycle.last),), cycle.last
         ),
@@ -90,7 +97,7 @@ def bake_cycle(document: Document, identity: int, first: int, end: int) -> Docum
     document = _with_baked_switch(
         document, identity, cycle, end if cycle.until is None else cycle.until
     )
-    return document.with_layer(_with_baked_keys(document.layer(identity), first, end))
+    return document.with_layer(_with_baked_keys(document, document.layer(identity), first, end))
 
 
 def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
@@ -103,7 +110,7 @@ def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int
     return replace(document, switch_groups=choices)
 
 
-def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
+def _with_baked_keys(document: Document, layer: Layer, first: int, end: int) -> Layer:
     cycle = cycle_starting_at(layer, first)
     until = max(cycle.last, end if cycle.until is None else cycle.until)
     own = [key for key in layer.keys if cycle.contains(key.frame)]
@@ -118,7 +125,6 @@ def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
     copies = [replace(key, frame=key.frame + at - first) for at in starts for key in own]
     if not left and until not in layer.key_frames and len(own) > 1 and own[0].frame == first:
         copies.append(replace(own[0], frame=first + rounds * cycle.period))
-    copies = [_with_depths(layer, cycle, key) for key in copies]
     others = (each for each in layer.cycles if each is not cycle)
     return replace(
         layer,
@@ -128,10 +134,7 @@ def _with_baked_keys(layer: Layer, first: int, end: int) -> Layer:
             _repeated(layer, track, cycle, starts) if cycle.repeats_keys(track.keys) else track
             for track in layer.tracks
         ),
-        transform_keys=_copied(layer, layer.transform_keys, cycle, until),
-        opacity_keys=_copied(layer, layer.opacity_keys, cycle, until),
-        visibility_keys=repeated(layer.visibility_keys, (cycle,), until, layer.visibility_keys[:1]),
-        draw_order_keys=repeated(layer.draw_order_keys, (cycle,), until, DEFAULT_DRAW_ORDER),
+        channels=_baked_channels(document, layer, cycle, until),
         attachments=repeated_joints(layer.attachments, (cycle,), until),
     )
 
@@ -209,33 +212,60 @@ def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
     return tuple(sorted(cycles, key=lambda cycle: cycle.first))
 
 
-def _with_depths(layer: Layer, cycle: Cycle, copy: Keyframe) -> Keyframe:
-    """Return a copy of a key; at the start of a repeat, the copy resets the depths."""
-    own = [key for key in layer.keys if cycle.contains(key.frame)]
-    if not own or (copy.frame - own[0].frame) % cycle.period:
-        return copy
-    changed = {handle for key in own for handle in key.depths}
-    depths = {handle.id: handle.depth for handle in layer.handles}
-    for key in layer.keys:
-        if key.frame <= own[0].frame:
-            depths.update(key.depths)
-    return replace(copy, depths={handle: depths[handle] for handle in changed})
+def _baked_channels(
+    document: Document, layer: Layer, cycle: Cycle, until: int, *, held: bool = True
+) -> ChannelKeys:
+    """Return a layer's channels with their keys in each repeat until a frame, if they repeat.
+
+    Without `held`, keys that hold stay as they are.
+    """
+    baked: dict[tuple[str, int | str | None], tuple[Key[Any], ...]] = {}
+    for (name, part), keys in layer.channels.items():
+        kind, row = LAYER_KINDS[name], keys
+        if not kind.is_held:
+            row = _copied(document, layer, kind, keys, cycle, until)
+        elif held:
+            row = repeated_keys(keys, (cycle,), until, rest_value(layer, kind, part))
+        baked[name, part] = row
+    return baked
 
 
-def _copied(layer: Layer, row: Keys[Moving], cycle: Cycle, until: int) -> Keys[Moving]:
-    """Return transform or opacity keys with copies in each repeat until a frame, if they repeat."""
-    if repeating_cycle(layer, row) is not cycle:
-        return row
-    first, last = row[0], row[-1]
+def _copied(
+    document: Document,
+    layer: Layer,
+    kind: ChannelKind[V],
+    keys: tuple[Key[V], ...],
+    cycle: Cycle,
+    until: int,
+) -> tuple[Key[V], ...]:
+    """Return interpolated keys with copies in each repeat until a frame, if they repeat.
+
+    Keys that do not fill the cycle get keys at both ends of its repeats, with the values there.
+    """
+    if repeating_cycle(kind, keys, layer.cycles) is not cycle:
+        return keys
+    first, last = keys[0], keys[-1]
     is_whole = last.frame - first.frame == cycle.period
-    copies: list[Moving] = []
+    copies: list[Key[V]] = []
     for count, at in enumerate(range(0, until - cycle.first + 1, cycle.period)):
-        for key in row[:-1] if is_whole else row:
+        for key in keys[:-1] if is_whole else keys:
+            # A rotation that grows from repeat to repeat keeps growing.
+            grown = [
+                each.value_of(key)
+                + (count * (each.value_of(last) - each.value_of(first)) if each.period else 0)
+                for each in kind.components
+            ]
             copy = replace(key, frame=key.frame + at)
-            if is_whole and isinstance(first, TransformKey) and isinstance(last, TransformKey):
-                # A rotation that grows from repeat to repeat keeps growing.
-                copy = replace(copy, turn=copy.turn + count * (last.turn - first.turn))
+            if is_whole and count:
+                copy = replace(copy, value=kind.join(*grown))
             copies += [copy] if copy.frame <= until else []
+    ends = {cycle.first, until} - {key.frame for key in copies}
+    values = {at: interpolated_value(document, kind, keys, at, layer.cycles) for at in ends}
+    copies += [
+        kind.key(at, value, tangent_mode=TangentMode.CORNER)
+        for at, value in values.items()
+        if value is not None
+    ]
     return sorted_by_frame(copies)
 
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.document.channels.tracks import Track, TrackKey
 from app.document.layer import Layer
 from app.document.rig.mirror_names import SidePairs, mirrored_handles
-from app.document.timing.tracks import Track, TrackKey
 
 
 def without_handles(layer: Layer, gone: Collection[int]) -> Layer:

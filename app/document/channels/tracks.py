@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Self
 
+from app.document.channels.key import BaseKey
 from app.document.checks import (
     LAST_FRAME,
     MAX_COORDINATE,
@@ -14,7 +15,6 @@ from app.document.checks import (
     require_distinct,
     require_point,
 )
-from app.document.timing.base_key import BaseKey
 from app.texts import N_, _
 
 MAX_TRACK_ROTATION = 20 * math.tau  # radians, either direction

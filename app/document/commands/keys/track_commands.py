@@ -1,4 +1,4 @@
-"""Commands on tracks and springs.
+"""Commands on tracks as wholes, and on springs.
 
 Any handle of a track identifies the track. Its keys are at their own frames, without the delay.
 """
@@ -7,19 +7,20 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from app.document.commands import retime
+from app.document.channels.easing import LINEAR, Easing
+from app.document.channels.springs import Spring
+from app.document.channels.tracks import Track, TrackKey
 from app.document.commands.command import layer_command
-from app.document.commands.track_handles import (
+from app.document.commands.keys import (
+    retime,
+)
+from app.document.commands.keys.track_handles import (
     mirrored_track,
     track_for_handles,
     track_without_handles,
 )
 from app.document.layer import Layer
 from app.document.rig.mirror_names import PAIRS, SidePairs
-from app.document.timing.easing import LINEAR, Easing
-from app.document.timing.springs import Spring
-from app.document.timing.tangent_mode import TangentMode
-from app.document.timing.tracks import Track, TrackKey
 from app.errors import LissomError
 from app.texts import _
 
@@ -73,70 +74,6 @@ def put_track_key(
         return _with_keys(layer, track, retime.with_inserted_key(track.keys, key))
     layer.handle(handle)
     return _with_track(layer, Track(handles=(handle,), is_scene_space=planted, keys=(key,)))
-
-
-@layer_command(_("Paste keys of track"))
-def put_track_keys(layer: Layer, handle: int, keys: Sequence[TrackKey]) -> Layer:
-    track = _track(layer, handle)
-    return _with_keys(layer, track, retime.with_overwritten_keys(track.keys, keys))
-
-
-@layer_command(_("Move keys of track"))
-def move_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
-    track = _track(layer, handle)
-    return _with_keys(layer, track, retime.with_moved_keys(track.keys, frames, by))
-
-
-@layer_command(_("Copy keys of track"))
-def copy_track_keys(layer: Layer, handle: int, frames: Collection[int], by: int) -> Layer:
-    track = _track(layer, handle)
-    return _with_keys(layer, track, retime.with_copied_keys(track.keys, frames, by))
-
-
-@layer_command(_("Delete keys of track"))
-def delete_track_keys(layer: Layer, handle: int, frames: Collection[int]) -> Layer:
-    """Delete the keys of a track at some frames; a track without keys is deleted."""
-    track = _track(layer, handle)
-    keys = retime.without_keys(track.keys, frames)
-    if not keys:
-        return _with_tracks(layer, (each for each in layer.tracks if each is not track))
-    return _with_keys(layer, track, keys)
-
-
-@layer_command(_("Reverse keys of track"))
-def reverse_track_keys(
-    layer: Layer, handle: int, frames: Collection[int], span: tuple[int, int] | None = None
-) -> Layer:
-    """Reverse a track between some of its keys, or in a range of frames."""
-    track = _track(layer, handle)
-    return _with_keys(layer, track, retime.with_reversed_keys(track.keys, frames, span))
-
-
-@layer_command(_("Scale time of keys of track"))
-def scale_track_keys(
-    layer: Layer, handle: int, frames: Collection[int], factor: float, first: int | None = None
-) -> Layer:
-    """Scale the frames of some track keys around the first of them, or around a frame."""
-    track = _track(layer, handle)
-    return _with_keys(layer, track, retime.with_scaled_keys(track.keys, frames, factor, first))
-
-
-@layer_command(_("Set easing"))
-def set_track_easing(layer: Layer, handle: int, frames: Collection[int], easing: Easing) -> Layer:
-    """Set the easing after some keys of a track, which lose their own velocities."""
-    track = _track(layer, handle)
-    return _with_keys(layer, track, retime.with_easing(_unled(track, frames), frames, easing))
-
-
-@layer_command(_("Set tangent"))
-def set_track_passing(
-    layer: Layer, handle: int, frames: Collection[int], passing: TangentMode
-) -> Layer:
-    """Set the tangent mode of some track keys, which lose their own velocities; a hold ends."""
-    track = _track(layer, handle)
-    return _with_keys(
-        layer, track, retime.with_tangent_mode(_unled(track, frames), frames, passing)
-    )
 
 
 @layer_command(_("Set delay"))
@@ -233,14 +170,6 @@ def _track(layer: Layer, handle: int) -> Track:
             _("The handle {handle!r} has no track.").format(handle=layer.handle(handle).name)
         )
     return track
-
-
-def _unled(track: Track, frames: Collection[int]) -> tuple[TrackKey, ...]:
-    """Return the keys of a track; the keys at some frames lose their own velocities."""
-    chosen = retime.keys_at_frames(track.keys, frames)
-    return retime.with_replaced_keys(
-        track.keys, {key.frame: key.without_velocity() for key in chosen}
-    )
 
 
 def _with_track(layer: Layer, track: Track, *, instead: Track | None = None) -> Layer:

@@ -7,13 +7,22 @@ import pytest
 from documents import disc_document, disc_domain, random_command
 from messages import says
 
-from app.document.commands import cycle_commands, scene_commands
+from app.document import SWITCH, VISIBILITY, Channel, channel_commands as channels
+from app.document.channels.cycles import Cycle
+from app.document.commands import (
+    scene_commands,
+)
+from app.document.commands.keys import (
+    cycle_commands,
+)
+from app.document.commands.keys.retime import KEYS_COLLIDE
 from app.document.commands.layers import (
     group_commands as groups,
     layer_commands,
     switch_group_commands as choices,
 )
-from app.document.layers.visibility import SwitchGroup, SwitchKey, VisibilityKey
+from app.document.layer import NO_KEY
+from app.document.layers.switch_group import SwitchGroup
 from app.document.model import NO_LAYER
 from app.document.queries.layers.switch_suggestions import (
     subgroups_with_layers,
@@ -21,8 +30,9 @@ from app.document.queries.layers.switch_suggestions import (
 )
 from app.document.queries.layers.visibility import is_visible
 from app.document.settings import FrameRange
-from app.document.timing.cycles import Cycle
 from app.errors import LissomError
+
+MOUTH = Channel(SWITCH, part="mouth")
 
 FRAMES = range(49)
 
@@ -63,24 +73,26 @@ def test_exactly_one_is_seen_whatever_is_hidden(mouths):
     assert seen(hidden) == seen(document)
     assert [layer.id for layer in hidden.exported_layers] == [0, 1, 2]
     assert choices.choose_at(0, 20)(document) is document
-    back = choices.unchoose_at("mouth", 8)(document)
+    back = channels.delete_keys({MOUTH: {8}})(document)
     assert seen(back, (8, 11, 12)) == [[2], [2], [0]]
-    moved = choices.move_turn("mouth", 8, 10)(document)
+    moved = channels.move_keys({MOUTH: {8}}, 2)(document)
     assert seen(moved, (8, 10, 12)) == [[2], [1], [0]]
-    # Onto another: what is moved holds.
-    assert seen(choices.move_turn("mouth", 8, 12)(document), (11, 12)) == [[2], [1]]
+    with pytest.raises(LissomError, match=says(KEYS_COLLIDE, frame=12)):
+        channels.move_keys({MOUTH: {8}}, 4)(document)
 
 
 def test_what_took_turns_by_switches_still_does(mouths):
     document = layer_commands.set_hidden(1, hidden=False)(mouths)
     for identity, frames in ((0, (0, 10)), (1, (10, 20)), (2, (20, 48))):
         switches = tuple(
-            VisibilityKey(frame, frames[0] <= frame < frames[1]) for frame in (0, 10, 20)
+            VISIBILITY.key(frame, frames[0] <= frame < frames[1]) for frame in (0, 10, 20)
         )
-        document = document.with_layer(replace(document.layer(identity), visibility_keys=switches))
+        document = document.with_layer(
+            replace(document.layer(identity), channels={(VISIBILITY.name, None): switches})
+        )
     formed = choices.create_switch_group("mouth", (0, 1, 2))(document)
     assert seen(formed) == seen(document)
-    assert formed.switch_groups[0].keys == (SwitchKey(0, 0), SwitchKey(10, 1), SwitchKey(20, 2))
+    assert formed.switch_groups[0].keys == (SWITCH.key(0, 0), SWITCH.key(10, 1), SWITCH.key(20, 2))
     apart = choices.delete_switch_group("mouth")(formed)
     assert apart.switch_groups == ()
     assert seen(apart) == seen(document)
@@ -112,7 +124,7 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
     document = choices.create_switch_group("mouth", (0, 1))(mouths)
     document = choices.choose_at(1, 10)(document)
     scaled = scene_commands.scale_time(2.0)(document)
-    assert scaled.switch_groups[0].keys[-1] == SwitchKey(20, 1)
+    assert scaled.switch_groups[0].keys[-1] == SWITCH.key(20, 1)
 
 
 @pytest.mark.parametrize(
@@ -132,7 +144,7 @@ def test_time_that_is_scaled_takes_turns_along(mouths):
         ),
         (choices.choose_at(2, 5), "'oh' is in no switch"),
         (choices.delete_switch_group("nose"), "no switch 'nose'"),
-        (choices.move_turn("mouth", 7, 9), "'mouth' has no key at frame 7"),
+        (channels.move_keys({MOUTH: {7}}, 2), says(NO_KEY, frame=7)),
     ],
 )
 def test_what_cannot_be_chosen_is_refused(mouths, make, words):
@@ -143,9 +155,9 @@ def test_what_cannot_be_chosen_is_refused(mouths, make, words):
 
 def test_turns_are_in_order_and_of_the_choice():
     with pytest.raises(LissomError, match="at frames 8 and 4 are out of order"):
-        SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 0), SwitchKey(4, 1)))
+        SwitchGroup(name="mouth", layers=(0, 1), keys=(SWITCH.key(8, 0), SWITCH.key(4, 1)))
     with pytest.raises(LissomError, match="At frame 8 the switch 'mouth' shows a layer"):
-        SwitchGroup(name="mouth", layers=(0, 1), keys=(SwitchKey(8, 2),))
+        SwitchGroup(name="mouth", layers=(0, 1), keys=(SWITCH.key(8, 2),))
 
 
 def test_one_layer_of_a_switch_is_visible_after_any_commands():
@@ -248,7 +260,7 @@ def turning(document, *, cycle, turns, of=(0, 1, 2)):
     document = choices.create_switch_group("mouth", (0, 1, 2))(document)
     for identity in of:
         document = document.with_layer(replace(document.layer(identity), cycles=(cycle,)))
-    choice = replace(document.switch_groups[0], keys=tuple(SwitchKey(*turn) for turn in turns))
+    choice = replace(document.switch_groups[0], keys=tuple(SWITCH.key(*turn) for turn in turns))
     return replace(document, switch_groups=(choice,), frames=FrameRange(0, 100))
 
 

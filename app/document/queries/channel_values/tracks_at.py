@@ -5,21 +5,20 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.document.channels.cycles import Cycle
+from app.document.channels.easing import LINEAR
+from app.document.channels.key import KeyedProperty, Value
+from app.document.channels.springs import Spring
+from app.document.channels.tracks import Track, TrackKey
 from app.document.layer import Layer
 from app.document.queries.clips import Clip
 from app.document.queries.memo import memoized_on
 from app.document.queries.tangents import (
-    KeyedProperty,
     KeySequence,
     TangentSegment,
-    Value,
     sample_segment,
     segment_slopes,
 )
-from app.document.timing.cycles import Cycle
-from app.document.timing.easing import LINEAR
-from app.document.timing.springs import Spring
-from app.document.timing.tracks import Track, TrackKey
 from engine.domain import MeshedDomain
 from engine.domain.meshing.depth import find_distances
 

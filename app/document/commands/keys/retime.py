@@ -1,40 +1,24 @@
-"""Moving keys in time: pure functions on rows, the keys of a channel.
-
-A row is in the order of its frames, with at most one key per frame.
-"""
+"""Moving keys in time: pure functions on the keys of one channel, in the order of their frames."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain, pairwise
 from math import floor
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
-from app.document.keyframe import Keyframe
+from app.document.channels.easing import HOLD, LINEAR, Easing
+from app.document.channels.key import BaseKey, Key as ValueKey
+from app.document.channels.tangent_mode import TangentMode
 from app.document.layer import NO_KEY
-from app.document.layers.layer_keys import CameraKey, OpacityKey, TransformKey
-from app.document.timing.easing import HOLD, LINEAR, Easing
-from app.document.timing.tangent_mode import TangentMode
-from app.document.timing.tracks import TrackKey
 from app.errors import LissomError
 from app.texts import N_, _
 
-Key = TypeVar("Key", Keyframe, TrackKey, CameraKey, TransformKey, OpacityKey)
+Key = TypeVar("Key", bound=BaseKey)
 Keys = tuple[Key, ...]
-
-
-class AtFrame(Protocol):
-    """A key of any channel, or a marker."""
-
-    @property
-    def frame(self) -> int:
-        """Frame of the key."""
-
-
-Timed = TypeVar("Timed", bound=AtFrame)
 KEYS_COLLIDE = N_("Two keys would be at frame {frame}; move or delete the key there first.")
 KEYS_MEET = N_(
-    "The {keys} at frames {one} and {other} would both be at frame {frame}. Delete one "
+    "{channel}: the keys at frames {one} and {other} would both be at frame {frame}. Delete one "
     "of them first, or shorten the time less."
 )
 BAD_TIME_FACTOR = N_("Time can be scaled by a factor above 0 and up to 1000, not by {factor:g}.")
@@ -55,26 +39,28 @@ class TimeScale:
         """Return the scaled frame, at least 0."""
         return max(self.stays + nearest_frame((frame - self.stays) * self.factor), 0)
 
-    def paced(self, keys: Iterable[Key], named: str) -> Keys[Key]:
-        """Return keys at their scaled frames, with velocities scaled accordingly."""
-        return self.retimed(keys, named, lambda key, at: key.retimed(at, 1 / self.factor))
+    def scaled(self, keys: Iterable[Key], channel: str) -> Keys[Key]:
+        """Return keys at their scaled frames, with velocities scaled accordingly.
 
-    def retimed(
-        self, keys: Iterable[Timed], named: str, at_frame: Callable[[Timed, int], Timed]
-    ) -> tuple[Timed, ...]:
-        """Return keys at their scaled frames; `at_frame` moves one key.
-
-        Two keys at one frame are refused. Before the fixed frame, where no frame is shown, the last
-        of them counts.
+        Two keys at one frame are refused; `channel` names them. Before the fixed frame, where no
+        frame is shown, the last of them counts.
         """
-        placed: dict[int, Timed] = {}
+        placed: dict[int, Key] = {}
         for key in keys:
             at = self(key.frame)
             if at in placed and key.frame > self.stays:
-                one, other = placed[at].frame, key.frame
-                raise LissomError(_(KEYS_MEET).format(keys=named, one=one, other=other, frame=at))
+                self.require_apart((placed[at], key), channel)
             placed[at] = key
-        return tuple(at_frame(key, at) for at, key in placed.items())
+        return tuple(key.mapped(self, 1 / self.factor) for key in placed.values())
+
+    def require_apart(self, keys: Iterable[BaseKey], channel: str) -> None:
+        """Refuse ordered keys of which two would be at one frame; `channel` names them."""
+        for one, other in pairwise(key.frame for key in keys):
+            at = self(other)
+            if self(one) == at:
+                raise LissomError(
+                    _(KEYS_MEET).format(channel=channel, one=one, other=other, frame=at)
+                )
 
 
 def nearest_frame(time: float) -> int:
@@ -117,7 +103,7 @@ def with_inserted_key(keys: Keys[Key], new: Key) -> Keys[Key]:
     """
     row: list[Key] = list(keys)
     before = [key for key in row if key.frame < new.frame]
-    if new.frame > row[-1].frame:
+    if row and new.frame > row[-1].frame:
         if row[-1].easing == LINEAR:
             row[-1] = replace(row[-1], easing=new.easing)
     elif before:
@@ -135,14 +121,13 @@ def with_overwritten_keys(keys: Keys[Key], others: Iterable[Key]) -> Keys[Key]:
 def with_moved_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
     """Return the row with the keys at some frames moved by a number of frames."""
     chosen = keys_at_frames(keys, frames)
-    return with_replaced_keys(
-        keys, {key.frame: replace(key, frame=key.frame + by) for key in chosen if by}
-    )
+    moved = {key.frame: key.retimed(key.frame + by, 1.0) for key in chosen if by}
+    return with_replaced_keys(keys, moved)
 
 
 def with_copied_keys(keys: Keys[Key], frames: Collection[int], by: int) -> Keys[Key]:
     """Return the row with copies of the keys at some frames, moved by a number of frames."""
-    copies: list[Key] = [replace(key, frame=key.frame + by) for key in keys_at_frames(keys, frames)]
+    copies = [key.copied(key.frame + by) for key in keys_at_frames(keys, frames)]
     return sorted_by_frame(chain(keys, copies)) if copies else keys
 
 
@@ -153,51 +138,71 @@ def without_keys(keys: Keys[Key], frames: Collection[int]) -> Keys[Key]:
 
 
 def with_reversed_keys(
-    keys: Keys[Key], frames: Collection[int], span: tuple[int, int] | None = None
+    keys: Keys[Key],
+    frames: Collection[int],
+    span: tuple[int, int] | None = None,
+    *,
+    is_held: bool = False,
 ) -> Keys[Key]:
     """Return the row with keys and motion reversed in `span`, by default the range of the keys."""
     chosen = keys_at_frames(keys, frames)
     ends = sum(span) if span else chosen[0].frame + chosen[-1].frame if chosen else 0
     if len(chosen) < 2 and all(2 * key.frame == ends for key in chosen):
         return keys
-    # A key stores the easing of the segment after it. Easings between the keys are reversed with
-    # them, and the easing after the last key stays there.
-    turned = {chosen[0].frame: chosen[0].with_easing_of(chosen[-1])}
-    for before, key in pairwise(chosen):
-        turned[key.frame] = key.with_easing_of(before, backwards=True)
-    return with_replaced_keys(
-        keys, {frame: key.retimed(ends - frame, -1) for frame, key in turned.items()}
-    )
+    # A key stores what follows it: an easing, or the value that it holds. These are reversed
+    # between the keys, and what follows the last key stays there.
+    moved: dict[int, Key] = {}
+    for before, key in pairwise([chosen[-1], *chosen]):
+        is_first = key is chosen[0]
+        if is_held:
+            # Between two keys the value is that of the earlier one.
+            moved[key.frame] = before.retimed(ends - key.frame, -1)
+        else:
+            eased = key.with_easing_of(before, backwards=not is_first)
+            moved[key.frame] = eased.retimed(ends - key.frame, -1)
+    return with_replaced_keys(keys, moved)
 
 
 def with_scaled_keys(
-    keys: Keys[Key], frames: Collection[int], factor: float, first: int | None = None
+    keys: Keys[Key], frames: Collection[int], scale: TimeScale, channel: str
 ) -> Keys[Key]:
-    """Return the row with the keys at some frames scaled around a fixed frame."""
+    """Return the row with the keys at some frames scaled; `channel` names it in refusals."""
     chosen = keys_at_frames(keys, frames)
-    stays = min(frames, default=0) if first is None else first
-    scale = TimeScale(stays, factor)
-    if factor == 1 or not chosen:
+    if scale.factor == 1 or not chosen:
         return keys
-    changed = {key.frame: key.retimed(scale(key.frame), 1 / factor) for key in chosen}
+    scale.require_apart(chosen, channel)
+    changed = {key.frame: key.retimed(scale(key.frame), 1 / scale.factor) for key in chosen}
     return with_replaced_keys(keys, changed)
 
 
 def with_easing(keys: Keys[Key], frames: Collection[int], easing: Easing) -> Keys[Key]:
     """Return the row with this easing after the keys at some frames."""
-    chosen = [key for key in keys_at_frames(keys, frames) if key.easing != easing]
-    return with_replaced_keys(keys, {key.frame: replace(key, easing=easing) for key in chosen})
+    changed = {}
+    for key in keys_at_frames(keys, frames):
+        free = key.without_velocity()
+        changed[key.frame] = free if free.easing == easing else replace(free, easing=easing)
+    return with_replaced_keys(keys, changed)
 
 
 def with_tangent_mode(keys: Keys[Key], frames: Collection[int], passing: TangentMode) -> Keys[Key]:
     """Return the row with this tangent mode at some frames; a hold ends."""
     changed = {}
     for key in keys_at_frames(keys, frames):
+        free = key.without_velocity()
         if key.shown_tangent_mode is passing:
-            continue
-        if passing is TangentMode.HOLD:
-            changed[key.frame] = replace(key, easing=HOLD)
+            changed[key.frame] = free
+        elif passing is TangentMode.HOLD:
+            changed[key.frame] = replace(free, easing=HOLD)
         else:
             easing = LINEAR if key.easing == HOLD else key.easing
-            changed[key.frame] = replace(key, easing=easing, tangent_mode=passing)
+            changed[key.frame] = replace(free, easing=easing, tangent_mode=passing)
     return with_replaced_keys(keys, changed)
+
+
+def without_repetitions(keys: Iterable[ValueKey[int]]) -> tuple[ValueKey[int], ...]:
+    """Return switch keys without those that show the layer that was visible before."""
+    plain: list[ValueKey[int]] = []
+    for key in keys:
+        if not plain or key.value != plain[-1].value:
+            plain.append(key)
+    return tuple(plain)

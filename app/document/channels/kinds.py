@@ -1,0 +1,119 @@
+"""The table of all kinds of channels."""
+
+from collections.abc import Mapping
+from math import exp, log, tau
+from types import MappingProxyType
+from typing import Any, Final
+
+from app.document.channels.key import KeyedProperty
+from app.document.channels.kind import ChannelKind, Quantity, ValueField
+from app.document.channels.tangent_mode import TangentMode
+from app.document.channels.values import Camera, DrawOrder, Transform
+from app.document.checks import require
+from app.texts import N_
+
+# Keys closer than this count as equal: pixels, radians, logarithms of zoom, and opacity.
+SAME_PLACE, SAME_TURN, SAME_ZOOM, SAME_OPACITY = 0.01, 1e-4, 1e-5, 1e-4
+
+
+def require_opacity(opacity: float) -> None:
+    """Refuse an opacity outside 0 to 1."""
+    require(0 <= opacity <= 1, N_("Opacity must be from 0 to 1, not {opacity:g}."), opacity=opacity)
+
+
+def require_depth(depth: float) -> None:
+    """Refuse a depth outside −1 to 1."""
+    require(
+        -1 <= depth <= 1,
+        N_("A depth must be from −1 (behind) to 1 (in front), not {depth:g}."),
+        depth=depth,
+    )
+
+
+# Whose keys have classes of their own.
+POSE: Final = ChannelKind[Any](name="pose", label=N_("Poses"), icon="PERSON", is_blended=True)
+TRACK: Final = ChannelKind[Any](name="track", label=N_("Track"), icon="CROSSHAIRS", is_blended=True)
+PARENT: Final = ChannelKind[Any](name="parent", label=N_("Parent"), icon="LINK")
+MARKER: Final = ChannelKind[Any](name="marker", label=N_("Markers"), icon="BOOKMARK")
+
+CAMERA: Final = ChannelKind[Camera](
+    name="camera",
+    label=N_("Camera"),
+    icon="VIDEO",
+    fields=(
+        ValueField("centre", Quantity.POINT),
+        ValueField("zoom", Quantity.FACTOR, default=1.0),
+        ValueField("turn", Quantity.ANGLE, default=0.0),
+    ),
+    make=Camera,
+    components=(
+        KeyedProperty(lambda key: key.value.centre, SAME_PLACE),
+        KeyedProperty(lambda key: log(key.value.zoom), SAME_ZOOM),
+        KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
+    ),
+    join=lambda centre, zoom, turn: Camera(centre, exp(zoom), turn),
+)
+TRANSFORM: Final = ChannelKind[Transform](
+    name="transform",
+    label=N_("Transform"),
+    icon="UP_DOWN_LEFT_RIGHT",
+    fields=(
+        ValueField("shift", Quantity.POINT, default=0j),
+        ValueField("turn", Quantity.ANGLE, default=0.0),
+    ),
+    make=Transform,
+    components=(
+        KeyedProperty(lambda key: key.value.shift, SAME_PLACE),
+        KeyedProperty(lambda key: key.value.turn, SAME_TURN, period=tau),
+    ),
+    join=Transform,
+    moves_layer=True,
+)
+OPACITY: Final = ChannelKind[float](
+    name="opacity",
+    label=N_("Opacity"),
+    icon="DROPLET",
+    fields=(ValueField("opacity", Quantity.SHARE, default=1.0),),
+    components=(KeyedProperty(lambda key: key.value, SAME_OPACITY),),
+    join=lambda opacity: min(max(opacity, 0.0), 1.0),
+    check=require_opacity,
+    tangent_mode=TangentMode.CORNER,  # linear fades
+)
+DRAW_ORDER: Final = ChannelKind[DrawOrder](
+    name="draw_order",
+    label=N_("Draw order"),
+    icon="LAYER_GROUP",
+    fields=(
+        ValueField("beside", Quantity.LAYER, is_optional=True, default=None),
+        ValueField("in_front", Quantity.FLAG, default=True),
+    ),
+    make=DrawOrder,
+)
+VISIBILITY: Final = ChannelKind[bool](
+    name="visibility",
+    label=N_("Visibility"),
+    icon="EYE",
+    fields=(ValueField("visible", Quantity.FLAG, default=True),),
+    holds_before=True,
+)
+SWITCH: Final = ChannelKind[int](
+    name="switch",
+    label=N_("Switch"),
+    icon="MASKS_THEATER",
+    fields=(ValueField("layer", Quantity.LAYER),),
+    holds_before=True,
+)
+DEPTH: Final = ChannelKind[float](
+    name="depth",
+    label=N_("Depth"),
+    icon="CLONE",
+    fields=(ValueField("depth", Quantity.DEPTH),),
+    of_handles=True,
+    check=require_depth,
+    moves_layer=True,
+)
+
+# Kinds whose keys a layer stores by their channels' ids.
+LAYER_KINDS: Final[Mapping[str, ChannelKind[Any]]] = MappingProxyType(
+    {kind.name: kind for kind in (TRANSFORM, OPACITY, DRAW_ORDER, VISIBILITY, DEPTH)}
+)

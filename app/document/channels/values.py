@@ -1,0 +1,75 @@
+"""Values of keys that consist of several numbers."""
+
+from dataclasses import dataclass
+from math import tau
+from typing import Final
+
+import numpy as np
+
+from app.document.channels.tracks import MAX_TRACK_ROTATION
+from app.document.checks import require, require_point
+from app.texts import N_, _
+from engine.arrays import Complexes
+from engine.geometry import Similarity
+
+MAX_ZOOM: Final = 1000.0  # largest zoom; its inverse is the smallest
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A rectangle with the canvas's proportions that the frame shows."""
+
+    centre: complex  # point of the scene in the centre of the frame
+    zoom: float = 1.0  # magnification relative to the canvas; interpolated by its logarithm
+    turn: float = 0.0  # rotation of the picture, counter-clockwise, in radians
+
+    def __post_init__(self) -> None:
+        require_point(self.centre, _("The camera's centre"))
+        require(
+            1 / MAX_ZOOM <= self.zoom <= MAX_ZOOM,
+            N_("The zoom must be from {smallest:g} to {largest:g}, not {zoom:g}."),
+            smallest=1 / MAX_ZOOM,
+            largest=MAX_ZOOM,
+            zoom=self.zoom,
+        )
+        _require_rotation(self.turn)
+
+    def canvas_motion(self, canvas: tuple[int, int]) -> Similarity:
+        """Return the similarity that maps the visible part of the scene to the canvas."""
+        factor = self.zoom * complex(np.exp(1j * self.turn))
+        return Similarity(factor, complex(*canvas) / 2 - factor * self.centre)
+
+    def frame_corners(self, canvas: tuple[int, int]) -> Complexes:
+        """Return the corners (4,) of the visible part, counter-clockwise from the lower left."""
+        seen, (width, height) = self.canvas_motion(canvas), canvas
+        corners = (0j, complex(width, 0), complex(width, height), complex(0, height))
+        return np.array([seen.apply_inverse(corner) for corner in corners])
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """A rigid motion of the whole layer, applied after its pose."""
+
+    shift: complex = 0j  # pixels
+    turn: float = 0.0  # counter-clockwise around the pivot, in radians
+
+    def __post_init__(self) -> None:
+        require_point(self.shift, _("A layer's movement"))
+        _require_rotation(self.turn)
+
+
+@dataclass(frozen=True, slots=True)
+class DrawOrder:
+    """A place in the draw order directly in front of or behind another layer."""
+
+    beside: int | None  # id of the other layer; None restores the document's order
+    in_front: bool = True
+
+
+def _require_rotation(turn: float) -> None:
+    require(
+        abs(turn) <= MAX_TRACK_ROTATION,
+        N_("A rotation can be at most {largest:g} whole turns, not {turn:g}."),
+        largest=MAX_TRACK_ROTATION / tau,
+        turn=turn / tau,
+    )

@@ -1,0 +1,84 @@
+"""Keys of channels with values: set, insert and delete at the present frame."""
+
+from typing import Any
+
+import numpy as np
+
+from app.document import (
+    CAMERA,
+    OPACITY,
+    Camera,
+    Channel,
+    camera_at,
+    channel_commands,
+    frames_in,
+    layer_commands,
+    source_frame,
+    value_at,
+)
+from app.editor.actions import editing, playback
+from app.editor.project import Project, fit_view_around
+from app.editor.session import Session, with_project
+from app.motion import BoundingBox
+
+
+@with_project
+def set_channel_value(
+    session: Session, project: Project, channel: Channel[Any], value: Any
+) -> None:
+    """Set a channel's value at the present frame by a key.
+
+    An opacity without keys is set for all frames.
+    """
+    frame = playback.current_frame(session, project)
+    command = channel_commands.set_key(channel, frame, value)
+    is_keyed = bool(frames_in(project.document, channel))
+    if channel.kind is OPACITY and channel.layer is not None and not is_keyed:
+        command = layer_commands.set_opacity(channel.layer, value)
+    editing.edit_document(session, command)
+
+
+@with_project
+def insert_channel_key(session: Session, project: Project, channel: Channel[Any]) -> None:
+    """Insert a key with the channel's value at the present frame."""
+    frame = playback.current_frame(session, project)
+    value = value_at(project.document, channel, frame)
+    editing.edit_document(session, channel_commands.set_key(channel, frame, value))
+
+
+@with_project
+def delete_channel_key(session: Session, project: Project, channel: Channel[Any]) -> None:
+    """Delete a channel's key at the present frame; in repeats, the key that repeats."""
+    frame = source_frame(project.document, channel, playback.current_frame(session, project))
+    if frame is not None:
+        keys = {channel: frozenset({frame})}
+        editing.edit_document(session, channel_commands.delete_keys(keys))
+
+
+def set_key_value(session: Session, channel: Channel[Any], frame: int, value: Any) -> None:
+    """Set the value of a key at a frame."""
+    editing.edit_document(session, channel_commands.set_key(channel, frame, value))
+
+
+@with_project
+def key_camera(session: Session, project: Project) -> None:
+    """Key the camera at the playhead with the viewport's view.
+
+    The rotation is kept if the viewport is upright.
+    """
+    document, frame = project.document, playback.current_frame(session, project)
+    shot, view = camera_at(document, frame), project.view(session.screen)
+    whole = fit_view_around(BoundingBox(0j, complex(*document.canvas)), session.screen)
+    turn = 0.0 if shot is None else shot.turn
+    if view.turn != 1:
+        # The nearest angle among those whole turns apart.
+        turn += float(np.angle(view.turn * np.exp(-1j * turn)))
+    camera = Camera(view.centre, view.scale / whole.scale, turn)
+    frame = document.frames.clamp(frame)
+    editing.edit_document(session, channel_commands.set_key(Channel(CAMERA), frame, camera))
+
+
+@with_project
+def toggle_camera_view(_: Session, project: Project) -> None:
+    """Show the camera's view in the viewport, or the earlier view again."""
+    project.is_camera_view = not project.is_camera_view

@@ -1,0 +1,81 @@
+"""Values of keys in words."""
+
+from math import degrees
+from typing import Any
+
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from app.document import (
+    DRAW_ORDER,
+    VISIBILITY,
+    Attachment,
+    BaseKey,
+    Channel,
+    Document,
+    DrawOrder,
+    Key,
+    Marker,
+    Quantity,
+)
+from app.texts import _
+
+NOTHING = _("nothing")
+
+
+def label_value(document: Document, channel: Channel[Any], key: BaseKey) -> str:
+    """Return the value of a key that holds, as short as its lane needs it."""
+    if channel.kind is VISIBILITY and isinstance(key, Key):
+        return str(icons.ICON_FA_EYE if key.value else icons.ICON_FA_EYE_SLASH)
+    return format_value(document, channel, key)
+
+
+def format_value(document: Document, channel: Channel[Any], key: BaseKey) -> str:
+    """Return the value of a key as words and numbers."""
+    if isinstance(key, Marker):
+        return key.name
+    if isinstance(key, Attachment):
+        parent = None if key.parent is None else document.find_layer(key.parent)
+        return NOTHING if parent is None else parent.name
+    if not isinstance(key, Key):
+        return ""
+    if channel.kind is DRAW_ORDER:
+        return format_draw_order(document, key.value)
+    if channel.kind is VISIBILITY:
+        return _("visible") if key.value else _("hidden")
+    kind = channel.kind
+    parts = (
+        _format_field(document, each.quantity, kind.field_of(key.value, each.name))
+        for each in kind.fields
+    )
+    return ", ".join(parts)
+
+
+def format_draw_order(document: Document, order: DrawOrder) -> str:
+    beside = None if order.beside is None else document.find_layer(order.beside)
+    if beside is None:
+        return _("as in the list")
+    text = _("in front of {name}") if order.in_front else _("behind {name}")
+    return text.format(name=beside.name)
+
+
+def _format_field(document: Document, quantity: Quantity, value: Any) -> str:
+    """Return one field of a value in its usual unit."""
+    match quantity:
+        case Quantity.SHARE:
+            text = f"{100 * value:.0f} %"
+        case Quantity.FACTOR:
+            text = f"× {value:.3g}"
+        case Quantity.POINT:
+            text = f"({value.real:.1f}, {value.imag:.1f}) px"
+        case Quantity.ANGLE:
+            text = f"{degrees(value):.4g}°"
+        case Quantity.LAYER:
+            layer = None if value is None else document.find_layer(value)
+            text = NOTHING if layer is None else layer.name
+        case Quantity.COLOUR:
+            text = "#" + "".join(f"{round(255 * part):02x}" for part in value)
+        case Quantity.DEPTH:
+            text = f"{value:+.2f}"
+        case _:
+            text = f"{value}"
+    return text
