@@ -37,6 +37,7 @@ from app.document.channels.kinds import (
     PARENT as PARENT,
     POSE as POSE,
     SWITCH as SWITCH,
+    TINT as TINT,
     TRACK as TRACK,
     TRANSFORM as TRANSFORM,
     VISIBILITY as VISIBILITY,

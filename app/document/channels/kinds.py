@@ -21,6 +21,15 @@ def require_opacity(opacity: float) -> None:
     require(0 <= opacity <= 1, N_("Opacity must be from 0 to 1, not {opacity:g}."), opacity=opacity)
 
 
+def require_colour(colour: tuple[float, float, float]) -> None:
+    """Refuse a colour that is not three levels from 0 to 1."""
+    require(
+        len(colour) == 3 and all(0 <= level <= 1 for level in colour),
+        N_("A colour must be three numbers from 0 to 1, not {colour}."),
+        colour=colour,
+    )
+
+
 def require_depth(depth: float) -> None:
     """Refuse a depth outside −1 to 1."""
     require(
@@ -103,6 +112,21 @@ SWITCH: Final = ChannelKind[int](
     fields=(ValueField("layer", Quantity.LAYER),),
     holds_before=True,
 )
+TINT: Final = ChannelKind[tuple[float, float, float]](
+    name="tint",
+    label=N_("Tint"),
+    icon="PALETTE",
+    fields=(ValueField("tint", Quantity.COLOUR, default=(1.0, 1.0, 1.0)),),
+    components=(
+        KeyedProperty(lambda key: key.value[0], SAME_OPACITY),
+        KeyedProperty(lambda key: key.value[1], SAME_OPACITY),
+        KeyedProperty(lambda key: key.value[2], SAME_OPACITY),
+    ),
+    join=lambda *levels: tuple(min(max(level, 0.0), 1.0) for level in levels),
+    check=require_colour,
+    tangent_mode=TangentMode.CORNER,
+    uniform="layer_tint",
+)
 DEPTH: Final = ChannelKind[float](
     name="depth",
     label=N_("Depth"),
@@ -115,5 +139,5 @@ DEPTH: Final = ChannelKind[float](
 
 # Kinds whose keys a layer stores by their channels' ids.
 LAYER_KINDS: Final[Mapping[str, ChannelKind[Any]]] = MappingProxyType(
-    {kind.name: kind for kind in (TRANSFORM, OPACITY, DRAW_ORDER, VISIBILITY, DEPTH)}
+    {kind.name: kind for kind in (TRANSFORM, OPACITY, TINT, DRAW_ORDER, VISIBILITY, DEPTH)}
 )

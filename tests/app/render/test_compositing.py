@@ -69,6 +69,7 @@ def composited(parts: tuple, pictures: dict, below: Floats | None = None) -> Flo
             flat = mixed(flat, whole, part.opacity)
         elif isinstance(part, CompositeGroup):
             layer = composited(part.parts, pictures)
+            layer = layer * (*part.effects.get("layer_tint", (1.0, 1.0, 1.0)), 1.0)
             flat = over(flat, layer, part.opacity, part.blend, clipped=part.clipped)
         else:
             flat = over(flat, pictures[part] / 255, 1, "normal")
@@ -98,6 +99,14 @@ def test_layers_meet_what_is_behind_them_as_they_are_blended(easel, blend, opaci
     pictures = {laid(easel, pixels): pixels for pixels in (colours(1), colours(2))}
     below, above = pictures
     check(easel, (below, CompositeGroup((above,), opacity, blend)), pictures, colour)
+
+
+@pytest.mark.parametrize("colour", [(0.0, 0.0, 0.0, 0.0), PAPER])
+def test_tint_multiplies_the_colours_of_a_layer(easel, colour):
+    pictures = {laid(easel, pixels): pixels for pixels in (colours(1), colours(2))}
+    below, above = pictures
+    tinted = CompositeGroup((above,), 0.7, effects={"layer_tint": (1.0, 0.5, 0.0)})
+    check(easel, (below, tinted), pictures, colour)
 
 
 def test_groups_are_composited_as_one_and_then_faded(easel):
