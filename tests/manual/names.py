@@ -11,7 +11,14 @@ from functools import cache
 from pathlib import Path
 
 from app.cli.main import COMMANDS, build_parser
-from app.document import BLENDS, LIMIT_PRESETS, PRESETS, SPRING_PRESETS, WEIGHT_PRESETS
+from app.document import (
+    BLENDS,
+    LAYER_KINDS,
+    LIMIT_PRESETS,
+    PRESETS,
+    SPRING_PRESETS,
+    WEIGHT_PRESETS,
+)
 from app.editor.actions import tutorials
 from app.export_formats import EXPORT_FORMATS
 from app.ui.shortcuts.keys import (
@@ -154,6 +161,7 @@ def _is_known(part: str) -> bool:
         sample.name for sample in tutorials.sample_files()
     }
     tables |= {format_.group for format_ in EXPORT_FORMATS.values()}
+    tables |= {kind.label for kind in LAYER_KINDS.values()}
     words = [
         *WEIGHT_PRESETS,
         *PRESETS,
