@@ -46,6 +46,7 @@ class History:
         self._bytes = [0]
         self._now = 0
         self._forgotten = 0  # number of dropped steps
+        self.revision = 0  # counts all changes of the steps, and of the present one
         self._gesture: object = None
         # The redo steps that the first command of the gesture replaced.
         self._undone: list[UndoStep] = []
@@ -95,6 +96,7 @@ class History:
 
     def mark_saved(self, document: Document) -> None:
         """Record that a file holds this document, which may be older than the current one."""
+        self.revision += 1
         self._saved = document
 
     def do(self, command: Command, *, gesture: object = None) -> None:
@@ -148,6 +150,7 @@ class History:
         """Remove the last step if the gesture made it, and restore the replaced redo steps."""
         if gesture is None or gesture is not self._gesture:
             return
+        self.revision += 1
         del self._steps[-1], self._bytes[-1]
         self._now -= 1
         self._bytes[-1] = 0
@@ -158,15 +161,18 @@ class History:
     def undo(self) -> None:
         """Go back one step, to the same document object, if possible."""
         if self._now:
+            self.revision += 1
             self._now -= 1
             self._gesture, self._undone = None, []
 
     def redo(self) -> None:
         """Go forward one step, if possible."""
         if self._now + 1 < len(self._steps):
+            self.revision += 1
             self._now += 1
 
     def _put(self, index: int, step: UndoStep) -> None:
+        self.revision += 1
         self._steps[index] = step
         for around in range(max(index - 1, 0), min(index + 1, len(self._steps) - 1)):
             self._bytes[around] = _bytes_only_in(self._steps[around], self._steps[around + 1])
@@ -175,6 +181,7 @@ class History:
         gesture = step.gesture
         if _is_same(step, self._steps[self._now]):
             return
+        self.revision += 1
         if gesture is not None and gesture is self._gesture:
             if _is_same(step, self._steps[self._now - 1]):
                 self.revert(gesture)

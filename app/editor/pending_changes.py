@@ -15,7 +15,7 @@ from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import Job, JobKind
-from app.editor.work.promise import Afterwards, Promise
+from app.editor.work.pending_change import DeferredAction, PendingChange
 from app.editor.work.pull import Pull
 from app.texts import _
 
@@ -30,8 +30,8 @@ def begin_pending_change(
     done: Callable[[Result], None],
     failed: Callable[[Exception], None] | None = None,
     *,
-    promise: Promise | None = None,
-) -> Promise:
+    change: PendingChange | None = None,
+) -> PendingChange:
     """Start a job that changes the document, and note it as pending until it ends.
 
     Parameters
@@ -41,7 +41,7 @@ def begin_pending_change(
     failed : callable, optional
         Takes the error of a failure; by default it is reported.
     """
-    pending = promise or Promise(label=kind.label)
+    pending = change or PendingChange(label=kind.label)
     project.pending.append(pending)
 
     def arrived(result: Result) -> None:
@@ -56,11 +56,11 @@ def begin_pending_change(
     return pending
 
 
-def _end_pending_change(session: Session, project: Project, promise: Promise) -> bool:
+def _end_pending_change(session: Session, project: Project, change: PendingChange) -> bool:
     """Remove a pending change; return whether its result is still needed."""
-    if promise not in project.pending:
+    if change not in project.pending:
         return False
-    project.pending.remove(promise)
+    project.pending.remove(change)
     return session.project is project
 
 
@@ -72,11 +72,11 @@ def is_document_idle(project: Project, *, after_saves: bool = False) -> bool:
     if project.stale_layer is not None:
         return False
 
-    def is_over(promise: Promise) -> bool:
-        if isinstance(promise, Pull):
+    def is_over(change: PendingChange) -> bool:
+        if isinstance(change, Pull):
             # An undone drag is solved on only in case it is redone.
-            return promise.is_settled or not promise.is_in(project.history)
-        return not (promise.changes or after_saves)
+            return change.is_settled or not change.is_in(project.history)
+        return not (change.changes or after_saves)
 
     return all(map(is_over, project.pending))
 
@@ -107,23 +107,23 @@ def run_when_idle(
     """
     until = session.clock() + patience
     position = project.history.position if changes else None
-    waiting = Afterwards(
+    waiting = DeferredAction(
         then=then, what=what, after_saves=after_saves, until=until, position=position
     )
-    project.afterwards.append(waiting)
+    project.deferred.append(waiting)
     run_deferred_actions(session)
 
 
 @with_project
 def run_deferred_actions(session: Session, project: Project) -> None:
     """Run waiting actions in order, while the document is idle or their time is up."""
-    for waiting in tuple(project.afterwards):
+    for waiting in tuple(project.deferred):
         is_due = session.clock() >= waiting.until
         if not (is_due or is_document_idle(project, after_saves=waiting.after_saves)):
             continue
         # The action before may have run this action as well, or closed the project.
-        if waiting in project.afterwards and session.project is project:
-            project.afterwards.remove(waiting)
+        if waiting in project.deferred and session.project is project:
+            project.deferred.remove(waiting)
             waiting.then.apply(session)
 
 
@@ -133,24 +133,24 @@ def cancel_deferred_action(project: Project) -> str | None:
     Return its label for a notice; None if there is none.
     """
     position = project.history.position
-    since = [each for each in project.afterwards if each.position == position]
+    since = [each for each in project.deferred if each.position == position]
     if not since:
         return None
-    project.afterwards.remove(since[-1])
+    project.deferred.remove(since[-1])
     return since[-1].what
 
 
 def deferred_label(project: Project) -> str:
     """Return the label of the first waiting action; empty if there is none."""
-    if not project.afterwards:
+    if not project.deferred:
         return ""
     text = _("{tasks}, then: {action}")
-    return text.format(tasks=pending_label(project), action=project.afterwards[0].what)
+    return text.format(tasks=pending_label(project), action=project.deferred[0].what)
 
 
 def pending_label(project: Project) -> str:
     """Return the label of a pending change or save."""
-    labels = [promise.label for promise in project.pending]
+    labels = [change.label for change in project.pending]
     if project.stale_layer is not None:
         labels.append(_("Cutting out"))
     return ", ".join(dict.fromkeys(labels))

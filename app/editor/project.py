@@ -42,8 +42,9 @@ from app.editor.timeline_view import TimelineState
 from app.editor.work.derived import Derived
 from app.editor.work.layer_runtime import ComparisonRuntime, LayerRuntime
 from app.editor.work.motion_setup import MotionJob, MotionSetup
-from app.editor.work.promise import Afterwards, Promise
+from app.editor.work.pending_change import DeferredAction, PendingChange
 from app.editor.work.pull import Pull
+from app.editor.work.revised import Revised
 from app.editor.work.track_drag import Recording, TrackDrag
 from app.motion import (
     BoundingBox,
@@ -92,9 +93,10 @@ class BlendPreview:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Project:
+class Project(Revised):
     """The open document, and the person's view of it."""
 
+    revision: int = field(init=False, default=0, repr=False)
     history: History
     name: str  # file name of the picture or the project, without suffix
     path: Path | None  # the project file; None for a new project
@@ -116,12 +118,12 @@ class Project:
     # Decoded pictures, also of layers that undo may bring back.
     pictures: dict[PictureFile, Picture] = field(default_factory=dict)
     active: int  # id of the active layer
-    pending: list[Promise] = field(default_factory=list)  # pending changes of the document
+    pending: list[PendingChange] = field(default_factory=list)  # pending changes of the document
     # The inputs of the last poll for due jobs.
     polled: tuple[object, ...] = ()
     # The inputs of the shown frame at its last update.
     settled: tuple[object, ...] = ()
-    afterwards: list[Afterwards] = field(default_factory=list)  # deferred actions
+    deferred: list[DeferredAction] = field(default_factory=list)  # in the order of the requests
     # Commands of one gesture, a single use of a widget, are one undo step.
     gesture: object | None = None
     used_widget: int = 0
@@ -331,12 +333,12 @@ class Project:
     @property
     def pulls(self) -> list[Pull]:
         """The unfinished pose drags, oldest first."""
-        return [promise for promise in self.pending if isinstance(promise, Pull)]
+        return [change for change in self.pending if isinstance(change, Pull)]
 
     @property
     def track_drags(self) -> list[TrackDrag]:
         """The track drags whose keys are pending."""
-        return [promise for promise in self.pending if isinstance(promise, TrackDrag)]
+        return [change for change in self.pending if isinstance(change, TrackDrag)]
 
     @property
     def pull(self) -> Pull | None:
@@ -355,14 +357,12 @@ class Project:
     @property
     def key_resolver(self) -> KeyResolver | None:
         """Keys that are solved again, with progress."""
-        return next(
-            (promise.key_resolver for promise in self.pending if promise.key_resolver), None
-        )
+        return next((change.key_resolver for change in self.pending if change.key_resolver), None)
 
     @property
     def motion_job(self) -> MotionJob | None:
         """The pending motion of a layer."""
-        return next((promise.motion_job for promise in self.pending if promise.motion_job), None)
+        return next((change.motion_job for change in self.pending if change.motion_job), None)
 
     @property
     def stale_layer(self) -> Layer | None:

@@ -23,6 +23,7 @@ from app.editor.action import Action
 from app.editor.dialogs import Dialog, FileDialog
 from app.editor.project import Project
 from app.editor.work.jobs import Jobs
+from app.editor.work.revised import Revised
 from app.errors import display_message, printable
 from app.export import CachedVertices, ExportPlan
 from app.motion import BoundingBox
@@ -244,9 +245,10 @@ class TutorialState:
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Session:
+class Session(Revised):
     """All values that one window changes while it runs."""
 
+    revision: int = field(init=False, default=0, repr=False)
     clock: Callable[[], float]
     jobs: Jobs
     folder: Path  # folder of settings and unsaved work

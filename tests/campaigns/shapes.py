@@ -1,7 +1,7 @@
 """Random and degenerate shapes, dragged at random, with in-betweens of every variant.
 
 Every map that would be shown is certified, and held against samples; no number is NaN; no frame
-folds, nor distorts more than its keyframes or the bounds, but of the two variants that promise
+folds, nor distorts more than its keyframes or the bounds, but of the two variants that change
 nothing. What fails is told by its kind and number, and the others are gone through all the same.
 """
 
@@ -39,7 +39,7 @@ ROUNDING = 1e-9
 EXCESS = 1e-6  # of k in in-betweens
 TOLD_EVERY = 25  # shapes
 PARTS = 8  # into which the sides of a triangle are cut
-UNBOUNDED = {Variant.LINEAR, Variant.ETA}  # which promise no bounds
+UNBOUNDED = {Variant.LINEAR, Variant.ETA}  # which change no bounds
 
 
 class Shape(NamedTuple):

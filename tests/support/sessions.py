@@ -8,7 +8,7 @@ from projects import project_of
 from app.document import Document
 from app.editor import Jobs, Session, pending_changes
 from app.editor.actions import playback
-from app.editor.actions.upkeep import maintain
+from app.editor.actions.frame_update import run_update_steps
 from engine.arrays import Bytes
 
 BLANK = np.zeros((90, 120, 4), np.uint8)
@@ -41,7 +41,7 @@ def settle(session: Session) -> None:
     """Let the worker do all that there is to do."""
     while True:
         pending_changes.run_deferred_actions(session)
-        maintain(session)
+        run_update_steps(session)
         if not session.jobs.kinds:
             return
         assert session.jobs.wait_until_idle()

@@ -19,7 +19,7 @@ def unrest(session: Session) -> str:
         f" settled {pull.is_settled}, in history {pull.is_in(project.history)}"
         for pull in project.pulls
     ]
-    lines += [f"waits until nothing is on its way: {each.what!r}" for each in project.afterwards]
+    lines += [f"waits until nothing is on its way: {each.what!r}" for each in project.deferred]
     if project.stale_layer is not None:
         lines.append(f"waits for a mesh: {project.stale_layer.name!r}")
     lines += _shown(project)

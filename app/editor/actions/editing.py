@@ -59,13 +59,12 @@ def edit_layer(
 
 @with_project
 def note_widget_in_use(_: Session, project: Project, widget: int) -> None:
-    """Note the number of the widget in use, 0 for none; once a frame.
+    """Note the number of the widget in use, 0 for none, when another one is.
 
     Commands of one use of a widget are one undo step.
     """
-    if widget != project.used_widget:
-        project.used_widget = widget
-        project.gesture = object() if widget else None
+    project.used_widget = widget
+    project.gesture = object() if widget else None
 
 
 @with_project

@@ -1,8 +1,7 @@
-"""Worker threads for long computations.
+"""Worker threads for long computations, in four lanes of one thread each.
 
-There are four lanes of one thread each. "hand" is for awaited results such as a dragged pose,
-"export" for exports. "display" is for slower results such as in-betweens, "keep" for writing to
-disk. No lane blocks another. A job that never ends can be abandoned.
+"hand" is for awaited results such as a dragged pose, "export" for exports, "display" for slower
+results such as in-betweens, "keep" for writing to disk. A job that never ends can be abandoned.
 """
 
 import atexit
@@ -12,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter, itemgetter
 from typing import Any, Literal, get_args
 
 from app.errors import CANCELLED, LissomError, listen_to_progress
@@ -65,14 +65,14 @@ class _Hold:
 class Jobs:
     """The queue and its worker threads.
 
-    A job is unfinished until its result is delivered. A job becomes stale if its kind is put again
-    or dropped: it never starts, or its result is dropped. Jobs queued by `add` are all done.
+    A job is unfinished until its result is delivered. If its kind is put again or dropped, it never
+    starts, or its result is dropped. Jobs queued by `add` are all done.
     """
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         # Called on the worker's thread when a result is ready to deliver.
         self.wake: Callable[[], None] = lambda: None
-        self.delivered = 0  # number of delivered results
+        self.delivered = self.revision = 0  # counts of delivered results, and of all changes
         self._clock = clock
         self._condition = threading.Condition()
         self._waiting: list[Job] = []
@@ -91,6 +91,7 @@ class Jobs:
 
     def add(self, job: Job) -> None:
         """Queue a job; unfinished jobs of its kind stay."""
+        self.revision += 1
         with self._condition:
             self._staff(job.kind.lane)
             self._waiting.append(job)
@@ -98,9 +99,9 @@ class Jobs:
 
     @contextmanager
     def held(self, *kinds: JobKind, first: int = 0) -> Iterator[None]:
-        """Hold back jobs of these kinds within the block, or all jobs if no kind is given.
+        """Hold back jobs of these kinds, or all jobs, within the block; the first few still begin.
 
-        A held job waits, and other jobs of its lane overtake it. The first few jobs still begin.
+        Other jobs of the lane overtake a held job.
         """
         hold = _Hold(frozenset(kinds), first)
         with self._condition:
@@ -115,15 +116,15 @@ class Jobs:
 
     def drop(self, kind: JobKind) -> None:
         """Make an unfinished job of this kind stale."""
+        self.revision += 1
         with self._condition:
             self._forget(kind)
 
     def abandon(self, kind: JobKind) -> None:
         """Abandon a job of this kind that may never end; jobs behind it move to a new thread.
 
-        Its result is dropped, and the job is reported as failed. A job that reports progress ends
-        at its next report. If a newer job of its kind waits, no failure is reported, and that job
-        begins.
+        It is reported as failed, unless a newer job of its kind waits. A job that reports progress
+        ends at its next report.
         """
         with self._condition:
             left = {
@@ -151,8 +152,8 @@ class Jobs:
                 for lane in self._lanes.values()
                 if lane.running is not None and not lane.is_stale
             ]
-            finished = [kind for kind, _ in self._finished]
-            return (*finished, *running, *(job.kind for job in self._waiting))
+            finished = map(itemgetter(0), self._finished)
+            return (*finished, *running, *map(attrgetter("kind"), self._waiting))
 
     @property
     def is_closed(self) -> bool:
@@ -166,10 +167,7 @@ class Jobs:
             return sum(lane.thread is not None and lane.thread.is_alive() for lane in self._left)
 
     def running_for(self, seconds: float) -> tuple[JobKind, ...]:
-        """Return the kinds of jobs that have run for at least so many seconds.
-
-        A stale job counts if other jobs wait for its end.
-        """
+        """Return the kinds of jobs that run so long; stale ones only if others wait for them."""
         start = self._clock() - seconds
         with self._condition:
             return tuple(
@@ -199,6 +197,7 @@ class Jobs:
                     return
                 _, hand_over = self._finished.pop(0)
             self.delivered += 1
+            self.revision += 1
             hand_over()
 
     def wait_until_idle(self, timeout: float = 60.0) -> bool:
@@ -213,10 +212,9 @@ class Jobs:
             )
 
     def close(self, patience: float = PATIENCE) -> bool:
-        """Drop waiting jobs, and end the threads after their running jobs.
+        """Drop waiting jobs, end the threads, and return whether all have ended after `patience`.
 
-        `patience` is in seconds; abandoned jobs get at most `MOMENT`. Return whether all threads
-        have ended. If not, the program must end without freeing values that the threads may use.
+        If not, the program must end without freeing values that the threads may use.
         """
         with self._condition:
             self._is_closed = True

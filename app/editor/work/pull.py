@@ -8,7 +8,7 @@ import numpy as np
 
 from app.document import Clip, Document, History, Layer, Pose, PoseReplacement, Target
 from app.editor.work.derived import Derived
-from app.editor.work.promise import Promise
+from app.editor.work.pending_change import PendingChange
 from app.solving import DragSolver
 from app.texts import _
 from engine.deform import BoundedPull
@@ -54,7 +54,7 @@ TargetChange = Callable[[DragStart, Mapping[int, Target]], Mapping[int, Target]]
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Pull(Promise):
+class Pull(PendingChange):
     """A pose drag of a layer at a frame: targets of handles, and the solver's progress.
 
     It lives until the pose rests, independent of the playhead and of other edits. Each pose of the

@@ -4,12 +4,12 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from app.document import Document, Playhead, Track
-from app.editor.work.promise import Promise
+from app.editor.work.pending_change import PendingChange
 from app.texts import _
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class TrackDrag(Promise):
+class TrackDrag(PendingChange):
     """A handle with a new target or rotation at a frame, on its own track.
 
     It is pending until the track has the key, which needs the track's base motion.

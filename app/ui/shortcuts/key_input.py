@@ -10,6 +10,14 @@ from app.ui.shortcuts.keys import CTRL
 from app.ui.shortcuts.table import BINDINGS
 
 Key = imgui.Key
+MODIFIERS = int(imgui.Key.mod_mask_)
+# All keys of shortcuts, without modifiers.
+_KEYS = {Key(chord & ~MODIFIERS) for binding in BINDINGS.values() for chord in binding.chords()} | {
+    Key.left_arrow,
+    Key.right_arrow,
+    Key.up_arrow,
+    Key.down_arrow,
+}
 ARROWS = {Key.left_arrow: -1, Key.right_arrow: 1, Key.up_arrow: 1j, Key.down_arrow: -1j}
 
 
@@ -21,6 +29,14 @@ def collect_key_actions(session: Session) -> list[Action]:
         return []
     # First, because copy and select depend on the focus.
     actions = _follow_focus(session)
+    if [key for key in _KEYS if imgui.is_key_down(key)]:
+        actions += _press_shortcuts(session) + _nudges(session)
+    return actions + _space(session)
+
+
+def _press_shortcuts(session: Session) -> list[Action]:
+    """Return the actions of shortcuts that were pressed, or why they are disabled."""
+    actions: list[Action] = []
     for binding in BINDINGS.values():
         # Typed characters belong to the active drag.
         keys = [
@@ -35,7 +51,7 @@ def collect_key_actions(session: Session) -> list[Action]:
             actions.append(binding.action)
         elif reason := binding.disabled_reason(session):
             actions.append(do(Session.show_notice, reason))
-    return actions + _nudges(session) + _space(session)
+    return actions
 
 
 def _follow_focus(session: Session) -> list[Action]:

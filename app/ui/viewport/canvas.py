@@ -110,18 +110,18 @@ class Canvas:
 def _inputs(session: Session, project: Project) -> tuple[object, ...]:
     """Return all inputs of the picture. While they are equal, the picture is unchanged."""
     return (
-        *(runtime.shown for runtime in project.layer_runtimes.values()),
-        *(runtime.cut.value for runtime in project.layer_runtimes.values()),
-        *(
+        *[runtime.shown for runtime in project.layer_runtimes.values()],
+        *[runtime.cut.value for runtime in project.layer_runtimes.values()],
+        *[
             runtime.comparison.shown
             for runtime in project.layer_runtimes.values()
             if runtime.comparison
-        ),
-        *(
+        ],
+        *[
             runtime.store.whole
             for runtime in project.layer_runtimes.values()
             if session.overlays.onion
-        ),
+        ],
         project.layer_runtime.store.sampler,
         project.paths.value if session.overlays.paths else None,
         project.parent_transforms.value,

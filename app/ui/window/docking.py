@@ -14,6 +14,7 @@ from app.ui.style.theme import FONT_SIZE
 LAYOUT = 1
 SIDE, BOTTOM = 30.2, 12.2  # em: initial size of the tabs at the side, and of the timeline
 BARS = (2.7, 4.4)  # em: width and height of the bars around the docks
+FITTING = 5  # frames that docks take to follow the window, or a hand
 MOST = (0.52, 0.45)  # largest share of the window's width and height for tabs and timeline
 
 
@@ -35,6 +36,9 @@ class Docking:
         self._given: dict[int, float] = {}
         self._requests: dict[int, _SizeRequest] = {}
         self._scale = 1.0
+        # Size and scale of the window, and the frames after a change in which docks are fitted.
+        self._around = (0.0, 0.0, 0.0)
+        self._frames_to_fit = FITTING
 
     def layout(self, draw: Callable[[Panel], None]) -> hello_imgui.DockingParams:
         """Return the docks, and the windows in which `draw` draws the panels."""
@@ -48,6 +52,12 @@ class Docking:
         """Fit sizes to the window and the interface scale."""
         layout = hello_imgui.get_runner_params().docking_params
         room = imgui.get_io().display_size
+        around = (room.x, room.y, scale)
+        if around != self._around or imgui.is_any_mouse_down() or layout.layout_reset:
+            self._around, self._frames_to_fit = around, FITTING
+        if not self._frames_to_fit:
+            return
+        self._frames_to_fit -= 1
         layout.docking_splits = _splits(room, scale * FONT_SIZE)
         if layout.layout_reset:
             self._given.clear()

@@ -3,7 +3,7 @@
 from imgui_bundle import hello_imgui
 
 from app.editor import FileDialog, Session
-from app.editor.actions import upkeep
+from app.editor.actions import frame_update
 
 # Input and running jobs wake the window at once.
 IDLE_FPS = 0.2
@@ -40,7 +40,7 @@ def _is_busy(session: Session) -> bool:
     # The system's dialog has its own input. Its answer is polled.
     asks_system = session.system_dialogs and isinstance(session.dialog, FileDialog)
     is_working = bool(session.jobs.kinds) or session.export is not None
-    is_working |= project is not None and bool(project.stale or project.afterwards)
+    is_working |= project is not None and bool(project.stale or project.deferred)
     return is_moving or is_working or asks_system or bool(session.toasts)
 
 
@@ -51,6 +51,7 @@ def _awaits_in_between(session: Session) -> bool:
         return False
     if session.export is not None or session.toasts or session.dialog is not None:
         return False
+    if {frame_update.GLIMPSING, frame_update.SKETCHING}.isdisjoint(session.jobs.kinds):
+        return False
     shows = [runtime.shown for runtime in project.layer_runtimes.values()]
-    awaited = {upkeep.GLIMPSING, upkeep.SKETCHING}.intersection(session.jobs.kinds)
-    return bool(awaited) and any(shown is not None and not shown.is_current for shown in shows)
+    return any(shown is not None and not shown.is_current for shown in shows)

@@ -61,6 +61,7 @@ class Window:
         self._connect = connect
         self.thumbnails: Thumbnails | None = None
         self._layer_pictures: LayerPictures | None = None
+        self._shows_files = True
         self.canvas: Canvas | None = None
         self._exporter: Exporter | None = None
         self._renderer: Renderer | None = None
@@ -281,10 +282,12 @@ class Window:
             # There are more to be read.
             hello_imgui.request_refresh()
         self.thumbnails.begin_frame()
-        if self.session.project is not None and not isinstance(self.session.dialog, FileDialog):
-            # Only the welcome view and the file browser show thumbnails. Files may have been saved
-            # again before the next time; samples do not change.
+        # Only the welcome view and the file browser show thumbnails. Files may have been saved
+        # again before the next time; samples do not change.
+        shows_files = self.session.project is None or isinstance(self.session.dialog, FileDialog)
+        if self._shows_files and not shows_files:
             self.thumbnails.release(but=sample_images())
+        self._shows_files = shows_files
 
     def _thumbnail(self, path: Path) -> Thumbnail | None:
         return self.thumbnails.get(path) if self.thumbnails else None

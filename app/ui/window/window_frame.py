@@ -15,7 +15,7 @@ from app.editor import (
     error_reports,
     pending_changes,
 )
-from app.editor.actions import editing, playback, tutorials, upkeep, viewing
+from app.editor.actions import editing, frame_update, playback, tutorials, viewing
 from app.editor.actions.project_files import autosaving, export_settings, saving
 from app.editor.actions.timing import timeline_drag
 from app.editor.actions.viewing import close_dialog, dismiss_toast
@@ -110,12 +110,13 @@ class WindowFrame:
         # Every part of the window's frame, by its name.
         self.parts = {part.name: part for part in (*over, *bars_around, *menus, *docked, *grounds)}
         self._over = [part.name for part in over]
-        self._follow = self._step(upkeep.follow_playhead)
+        self._revision: tuple[object, ...] = ()  # of the session when the steps last ran
+        self._follow = self._step(frame_update.follow_playhead)
         self._update_steps = [
             self._step(each)
             for each in (
                 pending_changes.run_deferred_actions,
-                *upkeep.STEPS,
+                *frame_update.STEPS,
                 autosaving.write_due_files,
                 tutorials.update_tutorial,
             )
@@ -218,9 +219,10 @@ class WindowFrame:
         self._docking.begin_frame(interface_scale(session.preferences.scale))
         # The tabs that show these set them again in every frame.
         session.export_frame = session.pointed_layer = None
-        playback.stop_playback_at_end(session)
-        # Before the panels, which read the playhead's frame.
-        self._follow.run_guarded(session)
+        if session.project is not None and session.project.playhead.since is not None:
+            playback.stop_playback_at_end(session)
+            # Before the panels, which read the playhead's frame.
+            self._follow.run_guarded(session)
         self._pace.begin_frame(session)
 
     def _draw_over_panels(self) -> None:
@@ -229,7 +231,9 @@ class WindowFrame:
             self._ask(name)
         # A pressed pointer without a widget counts as a widget.
         widget = imgui.internal.get_active_id() or int(imgui.is_mouse_down(LEFT))
-        self._actions.append(do(editing.note_widget_in_use, widget))
+        project = self.session.project
+        if project is not None and widget != project.used_widget:
+            self._actions.append(do(editing.note_widget_in_use, widget))
 
     def _apply_actions(self) -> None:
         # Panels' actions first: a drop depends on the pointer they saw.
@@ -241,14 +245,26 @@ class WindowFrame:
         if self.session.panel_to_focus:
             bring_to_front(self.session.panel_to_focus)
             self.session.panel_to_focus = ""
-        # After the actions, so that a drag continues with the newest target. Before the picture is
-        # drawn, so that the picture has the solver's newest result.
+        # After the actions, so that a drag continues with the newest target, and before the picture
+        # is drawn, which shows the newest result.
         self.run_guarded(self.session.jobs.deliver)
-        for step in self._update_steps:
-            step.run_guarded(self.session)
+        self._run_update_steps()
         self._pace.end_frame(self.session)
         if self.session.is_quitting:
             hello_imgui.get_runner_params().app_shall_exit = True
+
+    def _run_update_steps(self) -> None:
+        """Run all steps if anything has changed since the last time, or if one is due by now."""
+        session, revision = self.session, frame_update.session_revision(self.session)
+        is_due = frame_update.is_due_in_time(session) or autosaving.is_autosave_due(session)
+        # A failed step is tried again.
+        is_due = is_due or bool([step for step in self._update_steps if step.failure is not None])
+        if revision == self._revision and not is_due:
+            return
+        # Changes that the steps make are seen in the next frame.
+        self._revision = revision
+        for step in self._update_steps:
+            step.run_guarded(session)
 
     def _may_exit(self) -> bool:
         # The close button of the window. The answer follows as an action.

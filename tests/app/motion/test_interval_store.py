@@ -19,8 +19,8 @@ from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
+from app.editor.actions.frame_update import STREAMING, due_jobs, run_update_steps
 from app.editor.actions.timing import keys
-from app.editor.actions.upkeep import STREAMING, maintain, missing
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs
 from app.editor.work.pull import Pull
@@ -440,7 +440,7 @@ def test_a_session_streams_what_it_plays_and_stops_while_a_hand_pulls(document, 
     project.history = History(document, saved=True)
     pull = Pull(clip=clip, frame=13, gesture=object(), start=None, before=None, is_keyed=True)
     project.pending.append(pull)
-    assert not list(missing(session, project))
+    assert not list(due_jobs(session, project))
 
 
 def test_where_much_is_prepared_layers_that_nobody_edits_come_one_after_the_other(
@@ -471,7 +471,7 @@ def test_a_series_that_failed_once_is_built_anew_when_the_document_changes(
 
     def settle():
         for _ in range(1_000):
-            maintain(session)
+            run_update_steps(session)
             if not session.jobs.kinds:
                 return
             asked.extend(session.jobs.kinds)

@@ -80,7 +80,7 @@ def test_drag_survives_each_command_that_edits_nothing(window, ready, monkeypatc
             "document": ready.document is dragged,
             "step": ready.history.undo_label == label,
             "drag": ready.pulls == [pull] and ready.pull is pull,
-            "at once": not ready.afterwards and not exporting.is_export_under_way(session),
+            "at once": not ready.deferred and not exporting.is_export_under_way(session),
         }
         lost = [what for what, is_held in held.items() if not is_held]
         assert not lost, f"“{name}” edits, waits or leaves: it belongs to another list"
@@ -106,7 +106,7 @@ def test_drag_is_a_step_beside_each_edit_that_follows(window, ready):
         if steps[-1] != steps[-2] + 1:
             lost.append(name)
     assert not lost, "each is one step"
-    window.until(lambda: not ready.pending and not ready.afterwards)
+    window.until(lambda: not ready.pending and not ready.deferred)
     check_invariants(session)
     for name in reversed(EDITS):
         before = ready.document
@@ -127,7 +127,7 @@ def test_drag_comes_to_rest_whatever_command_follows(window, ready, name):
     if name in FURTHER:
         window.until(lambda: ready.pulls[-1].kept is not None)
     call(window, name)
-    window.until(lambda: not ready.pending and not ready.afterwards)
+    window.until(lambda: not ready.pending and not ready.deferred)
     assert session.project is ready, "it asks first"
     if isinstance(session.dialog, Question):
         (_, save), _ = session.dialog.answers

@@ -24,7 +24,7 @@ from app.editor.layering.layer_list import (
 )
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.timeline_view import TimeRangeView
-from app.editor.work.promise import Promise
+from app.editor.work.pending_change import PendingChange
 from app.solving import KeyResolver
 from app.storage.assets import sample_images
 from app.ui.style.theme import PALETTES
@@ -126,7 +126,7 @@ def test_all_tabs_of_a_pose_that_falls_short(window, loose, check):
         check(tab)
     solved = loose.layer.poses[:-1]
     resolver = KeyResolver(before=loose.layer, bounds=loose.layer.bounds, poses=solved)
-    loose.pending.append(Promise(label="Solving the keys", key_resolver=resolver))
+    loose.pending.append(PendingChange(label="Solving the keys", key_resolver=resolver))
     window.show_tab("Deform")
     check("progress")
 

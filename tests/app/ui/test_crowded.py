@@ -12,7 +12,7 @@ from scenes import PICTURE, drawn
 from app.document import layer_commands
 from app.document.keyframe import Target
 from app.document.layer import Handle
-from app.editor.actions import editing, upkeep
+from app.editor.actions import editing, frame_update
 from app.editor.actions.project_files import saving
 from app.editor.layering import layer_list
 from app.editor.timeline_view import TimeRangeView
@@ -112,7 +112,7 @@ def test_layer_under_the_pointer_is_sought_among_those_there(window, monkeypatch
 
 
 def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
-    asked, show_layer = [], upkeep.show
+    asked, show_layer = [], frame_update.show
 
     def counted(*given):
         asked.append(1)
@@ -121,7 +121,7 @@ def test_layers_are_settled_only_when_something_changed(window, monkeypatch):
     with window.session.jobs.held():
         show(window, many_layers())
         window.frames(3)
-        monkeypatch.setattr(upkeep, "show", counted)
+        monkeypatch.setattr(frame_update, "show", counted)
         window.frames(3)
         assert not asked
         editing.edit_document(window.session, layer_commands.rename_layer(1, "arm"))

@@ -959,7 +959,7 @@ def test_random_walk_ends_where_it_began(small_window, workers, tmp_path, seed, 
     workers.release()
     window.settle()
     # So would what waits for a mesh that waits for the brush to rest.
-    project.afterwards.clear()
+    project.deferred.clear()
     last = project.document, project.history.preview_pose
     steps = 0
     while project.history.undo_label is not None:

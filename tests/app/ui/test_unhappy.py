@@ -14,7 +14,7 @@ from app.document.commands import handle_commands
 from app.document.keyframe import Target
 from app.document.queries.target_error import HELD_BY_LIMITS, measure_target_errors
 from app.document.settings import FrameRange, Meshing
-from app.editor.actions import editing, playback, upkeep, viewing
+from app.editor.actions import editing, frame_update, playback, viewing
 from app.editor.actions.layer_setup import resolving
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import INSERTING, insert_key
@@ -399,7 +399,12 @@ def test_bound_that_bounds_nothing_is_refused_in_words(window, loose):
 # Work that takes long, or fails.
 
 
-INBETWEENS = (upkeep.GLIMPSING, upkeep.SKETCHING, upkeep.REFINING, upkeep.STREAMING)
+INBETWEENS = (
+    frame_update.GLIMPSING,
+    frame_update.SKETCHING,
+    frame_update.REFINING,
+    frame_update.STREAMING,
+)
 
 
 def test_scrubbing_while_the_worker_builds(window, loose):
@@ -447,11 +452,11 @@ FAILURES = {
         lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Measuring": (
-        "app.editor.actions.upkeep.measure_curves",
+        "app.editor.actions.frame_update.measure_curves",
         lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Measuring the motion": (
-        "app.editor.actions.upkeep.measure_extent",
+        "app.editor.actions.frame_update.measure_extent",
         lambda session: keys.set_inbetween_method(session, "nu"),
     ),
     "Smooth playback": (
@@ -547,11 +552,11 @@ def test_work_that_tells_how_far_it_is_is_cancelled_at_once_and_ends(window, mon
 
 
 WAITING = {
-    upkeep.SKETCHING: lambda session: keys.set_inbetween_method(session, "nu"),
-    upkeep.SPANNING: lambda session: (
+    frame_update.SKETCHING: lambda session: keys.set_inbetween_method(session, "nu"),
+    frame_update.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
         export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
-        upkeep.maintain(session),
+        frame_update.run_update_steps(session),
     ),
     resolving.SOLVING_KEYS: resolving.solve_keys_again,
     POSING: lambda session: set_targets(session, {1: Target(position=900 + 50j)}),

@@ -13,7 +13,7 @@ from app.editor.error_reports import as_sentence, report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
-from app.editor.work.promise import Promise
+from app.editor.work.pending_change import PendingChange
 from app.solving import KeyResolver, step_resolver
 from app.texts import _, ngettext
 from engine.maps import Bounds
@@ -133,7 +133,7 @@ def cancel_solving_keys(session: Session, project: Project) -> None:
     session.jobs.drop(SOLVING_KEYS)
     if project.key_resolver is not None and _follows_cut_out(project.key_resolver):
         project.unbuildable = project.key_resolver.before
-    project.pending = [promise for promise in project.pending if not promise.key_resolver]
+    project.pending = [change for change in project.pending if not change.key_resolver]
 
 
 @with_project
@@ -173,7 +173,7 @@ def _go_on(session: Session, project: Project, resolver: KeyResolver) -> None:
         lambda: step_resolver(resolver, picture),
         partial(_go_on, session, project),
         failed,
-        promise=Promise(label=SOLVING_KEYS.label, key_resolver=resolver),
+        change=PendingChange(label=SOLVING_KEYS.label, key_resolver=resolver),
     )
 
 

@@ -60,7 +60,7 @@ def _commit_newest(session: Session, project: Project, pull: Pull, *, is_here: b
     # In-betweens of still pictures are never prepared.
     layers = project.document.layers
     is_still = any(layer.id == pull.layer and layer.still for layer in layers)
-    if not is_here and pull.is_at_rest and (is_still or project.afterwards):
+    if not is_here and pull.is_at_rest and (is_still or project.deferred):
         commit_pose(session, project, pull, newest)
     elif not is_here and pull.ready is not None:
         commit_pose(session, project, pull, pull.ready)

@@ -72,9 +72,16 @@ def autosave(session: Session, project: Project) -> None:
     # An autosave would disturb a drag, so it waits for the end of the drag. A very long drag must
     # not delay it for ever.
     may_write = pending_changes.is_document_idle(project) or now - project.changed_at >= SECONDS
-    is_due = now - project.autosaved_at >= SECONDS
-    if is_due and may_write and AUTOSAVING not in session.jobs.kinds:
+    if is_autosave_due(session) and may_write and AUTOSAVING not in session.jobs.kinds:
         _begin_autosave(session, project, now)
+
+
+def is_autosave_due(session: Session) -> bool:
+    """Return whether there are changes, and the last autosave is some time ago."""
+    project = session.project
+    if project is None or project.changed_at is None:
+        return False
+    return session.clock() - project.autosaved_at >= SECONDS
 
 
 @with_project

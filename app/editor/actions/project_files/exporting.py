@@ -16,7 +16,7 @@ from app.editor.error_reports import as_sentence, report_failure, run_job
 from app.editor.project import Project
 from app.editor.session import ExportRun, Session, with_project
 from app.editor.work.jobs import JobKind
-from app.editor.work.promise import Afterwards
+from app.editor.work.pending_change import DeferredAction
 from app.errors import LissomError, display_name
 from app.export import (
     CachedVertices,
@@ -122,11 +122,11 @@ def _begin_copy(session: Session, project: Project, request: ExportRequest) -> N
 
 def is_export_under_way(session: Session) -> bool:
     """Return whether an export runs, is prepared, or waits for pending changes."""
-    is_waiting = session.project is not None and any(map(_is_export, session.project.afterwards))
+    is_waiting = session.project is not None and any(map(_is_export, session.project.deferred))
     return is_waiting or session.export is not None or PREPARING in session.jobs.kinds
 
 
-def _is_export(waiting: Afterwards) -> bool:
+def _is_export(waiting: DeferredAction) -> bool:
     return waiting.then.verb in {_begin, _begin_copy}
 
 
@@ -201,7 +201,7 @@ def cancel_export(session: Session) -> None:
     if not is_export_under_way(session):
         return
     if project is not None:
-        project.afterwards = [each for each in project.afterwards if not _is_export(each)]
+        project.deferred = [each for each in project.deferred if not _is_export(each)]
     # Dropped first, so that no failure is reported; then abandoned, since it may take long.
     session.jobs.drop(PREPARING)
     session.jobs.abandon(PREPARING)

@@ -11,7 +11,7 @@ from app.editor.error_reports import report_failure
 from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import Job, JobKind
-from app.editor.work.promise import Promise
+from app.editor.work.pending_change import PendingChange
 from app.errors import display_name
 from app.storage import (
     FileLock,
@@ -114,7 +114,7 @@ def write_project_now(session: Session, project: Project, path: Path, then: Acti
                 ),
             )
 
-    saving = Promise(label=SAVING.label, changes=False)
+    saving = PendingChange(label=SAVING.label, changes=False)
     project.pending.append(saving)
     session.jobs.add(Job(kind=SAVING, work=work, done=done, failed=failed))
 
@@ -183,9 +183,9 @@ def confirm_unsaved(session: Session, then: Action) -> None:
     if project is None:
         then.apply(session)
         return
-    asked = [each for each in project.afterwards if _asks_about(each.then, then)]
+    asked = [each for each in project.deferred if _asks_about(each.then, then)]
     if asked:
-        project.afterwards = [each for each in project.afterwards if each not in asked]
+        project.deferred = [each for each in project.deferred if each not in asked]
         ask_unsaved_now(session, then)
         return
     if not pending_changes.is_document_idle(project, after_saves=True):

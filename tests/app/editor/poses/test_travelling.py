@@ -26,9 +26,9 @@ from app.document import (
     track_commands,
 )
 from app.editor.actions import editing, playback
+from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.layer_setup import handle_editing, stiffness_editing
 from app.editor.actions.posing.pose_drag import nudge_handles
-from app.editor.actions.upkeep import maintain
 from app.editor.layering.layer_list import rename_layer
 from app.editor.layering.layer_selection import select_layers, set_active_layer
 from app.editor.layering.pictures import make_still
@@ -332,7 +332,7 @@ def test_a_paste_waits_for_a_pose_that_is_on_its_way(session):
     nudge_handles(session, 13 + 3j)
     (pull,) = session.project.pulls
     while pull.kept is None:
-        maintain(session)
+        run_update_steps(session)
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
     assert not pull.is_settled

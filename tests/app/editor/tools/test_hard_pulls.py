@@ -9,9 +9,9 @@ from sessions import session_of, settle
 from app.document import NATURAL, RUBBERY
 from app.document.commands import handle_commands, shape_commands, stiffness_commands
 from app.editor.actions import editing, playback
+from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.actions.posing.reach_limit import STOPPED_AT_LIMIT
-from app.editor.actions.upkeep import maintain
 from app.editor.tools import tool_pointer
 from app.editor.tools.tool import PointerHit
 from engine.geometry import diameter
@@ -90,7 +90,7 @@ def where(project):
 
 def picture(session):
     """Let one picture pass, with a step of the worker in it."""
-    maintain(session)
+    run_update_steps(session)
     assert session.jobs.wait_until_idle()
     session.jobs.deliver()
 
@@ -215,7 +215,7 @@ def test_a_pose_that_rests_when_the_hand_lets_go_is_kept(session):
     assert project.pull.is_at_rest
     phi = project.layer.key(0).pose.phi
     tool_pointer.release_pointer(session, asked)
-    maintain(session)
+    run_update_steps(session)
     assert not project.pending
     assert project.layer.key(0).pose.phi is phi
     assert project.layer.key(0).pose.targets[hand].position == asked

@@ -9,8 +9,8 @@ from sessions import session_of, settle
 
 from app.document.commands import handle_commands, shape_commands
 from app.editor.actions import editing, playback
+from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.pose_drag import set_targets
-from app.editor.actions.upkeep import maintain
 from app.editor.layering.layer_list import duplicate_layer, toggle_layers_locked
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import attach_layer
@@ -61,10 +61,10 @@ def drag(session, way=WAY, *, end=True, **held):
     tool_pointer.press_pointer(session, spot)
     for share in (0.3, 0.7, 1.0):
         tool_pointer.move_pointer(session, spot.place + share * way)
-        maintain(session)
+        run_update_steps(session)
     if end:
         tool_pointer.release_pointer(session, spot.place + way)
-    maintain(session)
+    run_update_steps(session)
 
 
 def is_moved(session, pose, before, way):
@@ -141,7 +141,7 @@ def test_each_arrow_is_a_step(session):
     project, before, document = session.project, pose_of(session), session.project.document
     for step in (1, 10j, -1):
         move_tool.nudge_layer(session, step)
-        maintain(session)
+        run_update_steps(session)
     assert is_moved(session, pose_of(session), before, 10j)
     for _ in range(3):
         editing.undo(session)
@@ -257,7 +257,7 @@ def test_a_pose_on_its_way_gets_there_elsewhere(blob, tmp_path):
     rested = pose_of(session)
     editing.undo(session)
     set_targets(session, targets)
-    maintain(session)
+    run_update_steps(session)
     assert session.jobs.wait_until_idle()
     session.jobs.deliver()
     assert session.project.pending

@@ -11,8 +11,8 @@ from sessions import session_of, settle
 from app.document.commands import handle_commands, scene_commands
 from app.editor import BoxOverlay, RotationOverlay
 from app.editor.actions import editing, playback
+from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.handles import remove_handles
-from app.editor.actions.upkeep import maintain
 from app.editor.tools import tool_pointer
 from app.editor.tools.table import TOOLS
 from app.editor.tools.tool import PointerHit
@@ -38,7 +38,7 @@ def session(tmp_path):
 def frames(session, count=2):
     """Let the worker take some steps."""
     for _ in range(count):
-        maintain(session)
+        run_update_steps(session)
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
 

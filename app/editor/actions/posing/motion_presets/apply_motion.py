@@ -14,7 +14,7 @@ from app.editor.project import Project
 from app.editor.session import Session, with_project
 from app.editor.work.jobs import JobKind
 from app.editor.work.motion_setup import MotionJob, MotionSetup
-from app.editor.work.promise import Promise
+from app.editor.work.pending_change import PendingChange
 from app.solving import MotionRequest, MotionSolve, start_motion_solve, step_motion_solve
 from app.texts import _, ngettext
 
@@ -105,9 +105,9 @@ def _step(
     def arrived(giving: MotionSolve) -> None:
         _go_on(session, project, replace(task, solve=giving))
 
-    promise = Promise(label=GIVING.label, motion_job=task)
+    change = PendingChange(label=GIVING.label, motion_job=task)
     pending_changes.begin_pending_change(
-        session, project, GIVING, work, arrived, failed, promise=promise
+        session, project, GIVING, work, arrived, failed, change=change
     )
 
 
@@ -195,6 +195,6 @@ def cancel_motion_job(session: Session, project: Project) -> None:
     task = project.motion_job
     if task is not None:
         session.jobs.drop(GIVING)
-        project.pending = [promise for promise in project.pending if not promise.motion_job]
+        project.pending = [change for change in project.pending if not change.motion_job]
         if task.before.id == project.active:
             project.motion_setup = project.motion_setup or task.setup

@@ -9,7 +9,7 @@ from app.solving import KeyResolver
 
 
 @dataclass(slots=True, kw_only=True, eq=False)
-class Promise:
+class PendingChange:
     """A pending result of the worker."""
 
     label: str  # shown in the status bar
@@ -19,7 +19,7 @@ class Promise:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Afterwards:
+class DeferredAction:
     """An action that runs as soon as no change is pending."""
 
     then: Action

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from math import inf
 from typing import TypeVar
 
 from app.document import Clip, clip_of, keyed_pose_at, segment_time_at
@@ -87,7 +88,7 @@ def ask_for_missing(session: Session, project: Project) -> None:
     if inputs != project.polled:
         project.polled = inputs
         _follow_document(session, project)
-        for job in missing(session, project):
+        for job in due_jobs(session, project):
             if job.kind not in session.jobs.kinds:
                 session.jobs.put(job)
     target_errors, layer = project.timeline.target_errors, project.layer
@@ -103,11 +104,14 @@ def settle_shown(session: Session, project: Project) -> None:
     if _drawn_of(session, project) != project.settled:
         _show(session, project)
         project.settled = _drawn_of(session, project)
+    if session.clock() - project.moved_at >= STILL:
+        project.moved_at = -inf
     if project.awaits_extent:
         _fit_motion(session, project)
 
 
-# These run in this order, once a frame. If a step fails, the window goes on with the next one.
+# These run in this order, in a frame after a change. If a step fails, the window goes on with the
+# next one.
 STEPS: tuple[Callable[[Session], None], ...] = (
     bring_poses,
     bring_tracks,
@@ -118,10 +122,33 @@ STEPS: tuple[Callable[[Session], None], ...] = (
 )
 
 
-def maintain(session: Session) -> None:
-    """Run all steps, once a frame."""
+def run_update_steps(session: Session) -> None:
     for step in STEPS:
         step(session)
+
+
+def session_revision(session: Session) -> tuple[object, ...]:
+    """Return a value that differs after any change that a step of the frame depends on."""
+    project, own = session.project, (session.revision, session.jobs.revision)
+    if project is None:
+        return own
+    history = project.history
+    return (*own, project.revision, history.revision)
+
+
+def is_due_in_time(session: Session) -> bool:
+    """Return whether a step depends on the clock, or on a drag that is not at rest."""
+    project = session.project
+    if project is None:
+        return session.tutorial is not None
+    return (
+        project.playhead.since is not None
+        or session.tutorial is not None
+        or project.stale is not None
+        or project.moved_at > -inf
+        or bool(project.pending or project.deferred)
+        or session.active_tool is not None
+    )
 
 
 @with_project
@@ -191,7 +218,7 @@ def _pin(session: Session, project: Project) -> None:
             runtime.fine.set_needed_clips([clip], nearby, frame)
 
 
-def missing(session: Session, project: Project) -> Iterator[Job]:
+def due_jobs(session: Session, project: Project) -> Iterator[Job]:
     """Yield the next jobs of any layer, the most urgent first."""
     yield from _cut(session, project)
     # Motion paths come first: the person watches them during a drag, and they are of few points.

@@ -10,12 +10,12 @@ from unrest import is_shown, unrest
 from app.document import cycle_commands, scene_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback
+from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_commit import NO_POSE
 from app.editor.actions.posing.pose_drag import drag_handles, free_rotation, set_targets
 from app.editor.actions.posing.pose_lifecycle import candidate_clips
-from app.editor.actions.upkeep import maintain
 from app.editor.layering.layer_list import duplicate_layer
 from app.editor.layering.parenting import delete_layers
 
@@ -36,7 +36,7 @@ def test_refused_pose_is_reported_once(session):
     handle = project.layer.handles[0]
     with session.jobs.held():
         set_targets(session, {handle.id: Target(position=handle.position + 9)})
-        maintain(session)
+        run_update_steps(session)
         project.history.do(cycle_commands.set_cycle(0, 0, last + 2))
     settle(session)
     settle(session)
@@ -52,12 +52,12 @@ def begun_pull(session):
     playback.scrub(session, project.layer.keys[-1].frame)
     handle = project.layer.handles[0]
     set_targets(session, {handle.id: Target(position=handle.position + 9)})
-    maintain(session)
+    run_update_steps(session)
     (pull,) = project.pulls
     while pull.kept is None or pull.kept is pull.before:
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
-        maintain(session)
+        run_update_steps(session)
     # The hand lets go, and the in-betweens of an earlier pose are there.
     pull.is_held, pull.ready = False, replace(pull.kept, phi=pull.kept.phi.copy())
     return pull
@@ -69,9 +69,9 @@ def test_undone_pull_has_its_newest_pose_and_no_other(session):
     with session.jobs.held():
         editing.undo(session)
         playback.scrub(session, 0)
-        maintain(session)
+        run_update_steps(session)
         later = [step.document for step in project.history._steps]
-        maintain(session)
+        run_update_steps(session)
     assert not pull.is_in(project.history)
     assert pull.kept is pull.newest
     now = [step.document for step in project.history._steps]
@@ -88,11 +88,11 @@ def test_pull_of_a_removed_layer_lets_its_copy_rest(session):
         assert any(pose.phi is pull.kept.phi for pose in project.layer.poses)
         playback.scrub(session, 5)
         insert_key(session)
-        maintain(session)
+        run_update_steps(session)
     for _ in range(ROUNDS):
         assert session.jobs.wait_until_idle()
         session.jobs.deliver()
-        maintain(session)
+        run_update_steps(session)
     assert is_shown(session), unrest(session)
     assert not project.pending, unrest(session)
     assert 5 in project.layer.key_frames

@@ -185,7 +185,7 @@ def test_an_export_that_waits_for_a_pose_is_asked_about_and_cancelled(window, lo
     window.until(lambda: (tmp_path / "before.png").exists() and session.export is None)
     goal = drag_bar(window, loose)
     exporting.start_export(session, tmp_path / "a.png")
-    assert loose.afterwards
+    assert loose.deferred
     exporting.start_export(session, tmp_path / "b.png")
     assert "An export is running." in session.toasts[-1].text
     saving.request_quit(session)
@@ -410,9 +410,9 @@ def test_undo_takes_back_first_a_paste_that_still_waits_and_nothing_is_lost(wind
         copying.copy_pose_or_keys(window.session)
         playback.scrub(window.session, 40)
         pasting.paste_copied(window.session, "flipped")
-        assert [each.what for each in loose.afterwards] == ["Paste flipped"]
+        assert [each.what for each in loose.deferred] == ["Paste flipped"]
         editing.undo(window.session)
-        assert not loose.afterwards
+        assert not loose.deferred
         assert loose.pulls, "the drag goes on"
     window.settle()
     check_at_rest(loose.document, goal)
@@ -430,7 +430,7 @@ def test_a_save_that_waits_is_not_taken_back(window, loose, tmp_path):
         drag_bar(window, loose)
         saving.save(window.session)
         editing.undo(window.session)
-        assert [each.what for each in loose.afterwards] == ["Save"]
+        assert [each.what for each in loose.deferred] == ["Save"]
     window.settle()
     assert loose.path.exists()
 

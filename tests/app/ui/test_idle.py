@@ -1,0 +1,91 @@
+"""A window in which nothing changes does next to nothing, however many layers there are."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from projects import project_of
+from scenes import PICTURE, drawn
+
+from app.document import layer_commands
+from app.editor.actions import editing, playback
+from app.editor.actions.project_files import saving
+from app.editor.work.revised import Revised
+from app.ui.viewport.canvas import Canvas
+from app.ui.window.window_frame import WindowFrame
+
+OWN = str(Path(__file__).parents[3] / "app")
+MOST_CALLS = 50
+# Panels, and the picture of the drawing.
+DRAWING = {each.__code__ for each in (WindowFrame._draw_panel, WindowFrame._ask, Canvas.draw)}
+
+
+def show_layers(window, count):
+    """Show a scene of some layers, and wait until nothing is left to do."""
+    document = drawn()
+    layers = (replace(document.layers[0], id=each, name=f"layer {each}") for each in range(count))
+    project = project_of(replace(document, layers=tuple(layers)), PICTURE, "idle")
+    saving.set_project(window.session, project)
+    window.settle()
+    playback.stop_playback(window.session)
+    window.frames(30)
+
+
+def count_calls(window, frames=1):
+    """Return the calls of the program's functions in a frame outside of its panels, on average."""
+    calls, inside = 0, 0
+
+    def note(frame, event, _):
+        nonlocal calls, inside
+        code = frame.f_code
+        if code in DRAWING and event in {"call", "return"}:
+            inside += 1 if event == "call" else -1
+        elif event == "call" and not inside and code.co_filename.startswith(OWN):
+            calls += 1
+
+    sys.setprofile(note)
+    try:
+        window.frames(frames)
+    finally:
+        sys.setprofile(None)
+    return calls / frames
+
+
+@pytest.mark.parametrize("layers", [1, 72])
+def test_idle_window_makes_few_calls(window, layers):
+    show_layers(window, layers)
+    assert count_calls(window, frames=5) <= MOST_CALLS
+
+
+def test_window_is_idle_again_after_a_change(window):
+    show_layers(window, 3)
+    editing.edit_document(window.session, layer_commands.rename_layer(1, "arm"))
+    assert count_calls(window) > MOST_CALLS
+    window.settle()
+    window.frames(30)
+    assert count_calls(window, frames=5) <= MOST_CALLS
+
+
+def test_window_shows_the_frame_of_a_playhead_that_was_moved(window):
+    show_layers(window, 2)
+    last = window.session.project.document.frames.last
+    playback.scrub(window.session, last)
+    window.frames(2)
+    assert {each.shown.frame for each in window.session.project.layer_runtimes.values()} == {last}
+
+
+class Part(Revised):
+    __slots__ = ("points", "revision", "size")
+
+
+def test_revision_counts_changes_of_values_only():
+    part = Part()
+    part.revision = 0
+    part.size, part.points = 3, [1]
+    assert part.revision == 2
+    part.size, part.points = 3, part.points
+    assert part.revision == 2
+    part.size = 4
+    part.points = [1]
+    assert part.revision == 4
