@@ -100,12 +100,13 @@ from app.document.layers.attachments import (
     attachments_repeat as attachments_repeat,
 )
 from app.document.layers.groups import (
+    BLEND_SECTIONS as BLEND_SECTIONS,
     BLENDS as BLENDS,
+    GROUP_BLEND_SECTIONS as GROUP_BLEND_SECTIONS,
     GROUP_BLENDS as GROUP_BLENDS,
     MAX_GROUP_DEPTH as MAX_GROUP_DEPTH,
     BlendMode as BlendMode,
     Group as Group,
-    GroupBlend as GroupBlend,
     ancestor_paths as ancestor_paths,
     common_path as common_path,
 )

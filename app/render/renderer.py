@@ -7,8 +7,8 @@ from typing import Final
 import moderngl
 
 from app.document import (
+    BLENDS,
     LAYER_KINDS,
-    BlendMode,
     CompositeGroup,
 )
 from app.render.colormap import heat_colormap
@@ -26,32 +26,22 @@ _PICTURE: Final = ShaderFiles(vertex=_MESH, fragment=("picture.frag", "sample.gl
 _HEAT: Final = ShaderFiles(vertex=_HEATED, fragment=("heat.frag", "sample.glsl"))
 _WIRE: Final = ShaderFiles(vertex=_MESH, geometry="wire.geom", fragment=("wire.frag",))
 _BORDER: Final = replace(_WIRE, geometry="border.geom")
-_GHOST: Final = ShaderFiles(vertex=("screen.vert",), fragment=("ghost.frag",))
-_PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT = 0, 1, 0
-# "Compositing and Blending Level 1" of the W3C, Sections 9.1.4, 10.1.2 and 10.1.3, for
-# premultiplied colours: factors of the source s and of the backdrop b, for the colours and for
-# alpha. OpenGL lacks the factor 1 − α_b + b of multiply, which takes two passes. The first gives
-# s·b + (1 − α_s)·b and keeps the backdrop's alpha. The second adds (1 − α_b)·s.
+_COMPOSITES: Final = {
+    blend: ShaderFiles(
+        vertex=("screen.vert",),
+        fragment=("ghost.frag", "blend.glsl"),
+        constants=() if blend == "normal" else (("BLEND", blend.replace("-", "_")),),
+    )
+    for blend in BLENDS
+}
+_PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT, _BACKDROP_UNIT = 0, 1, 0, 1
+# "Compositing and Blending Level 1" of the W3C, Section 9.1.4, for premultiplied colours: factors of
+# the source and of the backdrop, for the colours and for alpha. The shader blends the source's
+# colours with the backdrop first.
 _OVER: Final = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
-_BESIDE: Final = (moderngl.ONE_MINUS_DST_ALPHA, moderngl.ONE)
-_STAYS: Final = (moderngl.ZERO, moderngl.ONE)
-_WITHIN: Final = (moderngl.DST_COLOR, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS)
-_ADDED: Final = (moderngl.ONE, moderngl.ONE, moderngl.ONE, moderngl.ONE)
-_BLENDS: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
-    "normal": ((*_OVER, *_OVER),),
-    "multiply": (_WITHIN, (*_BESIDE, *_BESIDE)),
-    "screen": ((moderngl.ONE, moderngl.ONE_MINUS_SRC_COLOR, *_OVER),),
-}
-# A clipped source meets its backdrop as if the backdrop were opaque, and keeps the backdrop's
-# alpha: α_b times the blend of the straight colours by α_s, as if painted first and then cut out.
-_CLIPPED: Final[Mapping[BlendMode, tuple[tuple[int, int, int, int], ...]]] = {
-    "normal": ((moderngl.DST_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, *_STAYS),),
-    "multiply": (_WITHIN,),
-    "screen": (
-        (moderngl.ZERO, moderngl.ONE_MINUS_SRC_COLOR, *_STAYS),
-        (moderngl.DST_ALPHA, moderngl.ONE, *_STAYS),
-    ),
-}
+# A clipped source keeps the backdrop's alpha, as if painted first and then cut out.
+_CLIPPED: Final = (moderngl.DST_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE)
+_ADDED: Final = (moderngl.ONE, moderngl.ONE)
 
 # Values of all effects of layers that leave a layer unchanged, by uniform.
 _UNCHANGED = {kind.uniform: kind.default for kind in LAYER_KINDS.values() if kind.uniform}
@@ -78,13 +68,20 @@ class Renderer:
             raise ValueError(f"a view of {view.size} pixels cannot fill a frame of {target.size}")
         target.framebuffer.use()
         self._draw_background(scene.background, view, target.oversampling)
+        # A checkerboard stands for clear ground, with which nothing blends.
+        is_clear = scene.background.checks is not None
+        whole = CompositeGroup(scene.meshes)
+        ground, depth = target, 0
+        if is_clear and whole.needs_backdrop:
+            ground, depth = self._clear_layer(0, target), 1
         behind, before = scene.meshes[: scene.ghosts_over], scene.meshes[scene.ghosts_over :]
-        self._draw_parts(behind, target, view, scene.heat)
+        self._draw_parts(behind, ground, view, scene.heat, depth)
         for ghost in scene.ghosts:
-            self._draw_layer(
-                CompositeGroup(ghost.meshes, ghost.opacity), target, view, tint=ghost.tint
-            )
-        self._draw_parts(before, target, view, scene.heat)
+            faded = CompositeGroup(ghost.meshes, ghost.opacity)
+            self._draw_layer(faded, ground, view, tint=ghost.tint, depth=depth)
+        self._draw_parts(before, ground, view, scene.heat, depth)
+        if ground is not target:
+            self._lay(ground, target, whole)
         if scene.wireframe is not None:
             self._blend_over()
             for mesh in _meshes(scene.meshes):
@@ -166,9 +163,33 @@ class Renderer:
 
         Drawn directly, overlapping limbs would show through each other.
         """
-        layer = self._layer_at(depth, target)
-        layer.framebuffer.use()
-        layer.framebuffer.clear()
+        layer = self._clear_layer(depth, target)
+        if whole.is_pass_through:
+            # The offscreen target holds the final colours. First subtract its share of the old
+            # colours from the target, then add the same share of the final colours.
+            self._context.copy_framebuffer(layer.framebuffer, target.framebuffer)
+            self._context.blend_equation = moderngl.FUNC_REVERSE_SUBTRACT  # type: ignore[assignment]
+            self._lay(layer, target, whole, tint=tint)
+            self._context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
+            layer.framebuffer.use()
+        self._draw_parts(whole.parts, layer, view, heat, depth + 1)
+        if whole.blend != "normal":
+            # The parts are drawn, so the next target is free for a copy of the backdrop.
+            backdrop = self._layer_at(depth + 1, target)
+            self._context.copy_framebuffer(backdrop.framebuffer, target.framebuffer)
+            backdrop.texture.use(_BACKDROP_UNIT)
+        self._lay(layer, target, whole, tint=tint)
+
+    def _lay(
+        self,
+        layer: RenderTarget,
+        target: RenderTarget,
+        whole: CompositeGroup[PosedMesh],
+        tint: tuple[float, float, float] | None = None,
+    ) -> None:
+        """Composite the drawn parts of a group on a target."""
+        target.framebuffer.use()
+        layer.texture.use(_LAYER_UNIT)
         uniforms = {
             "frame": _LAYER_UNIT,
             "tint": tint or (0.0, 0.0, 0.0),
@@ -177,33 +198,19 @@ class Renderer:
             **_UNCHANGED,
             **whole.effects,
         }
-        passes = (_CLIPPED if whole.clipped else _BLENDS)[whole.blend]
-        if whole.is_pass_through:
-            # The offscreen target holds the final colours. First subtract its share of the old
-            # colours from the target, then add the same share of the final colours.
-            self._context.copy_framebuffer(layer.framebuffer, target.framebuffer)
-            passes = (_ADDED,)
-            self._context.enable_only(moderngl.BLEND)
-            self._context.blend_equation = moderngl.FUNC_REVERSE_SUBTRACT  # type: ignore[assignment]
-            self._lay(layer, target, passes, uniforms)
-            self._context.blend_equation = moderngl.FUNC_ADD  # type: ignore[assignment]
-            layer.framebuffer.use()
-        self._draw_parts(whole.parts, layer, view, heat, depth + 1)
-        self._lay(layer, target, passes, uniforms)
+        if whole.blend != "normal":
+            uniforms |= {"backdrop": _BACKDROP_UNIT, "clipped": whole.clipped}
+        factors = _ADDED if whole.is_pass_through else _CLIPPED if whole.clipped else _OVER
+        self._context.enable_only(moderngl.BLEND)
+        self._context.blend_func = factors  # type: ignore[assignment]
+        self.programs.draw_screen(_COMPOSITES[whole.blend], uniforms)
 
-    def _lay(
-        self,
-        layer: RenderTarget,
-        target: RenderTarget,
-        passes: Sequence[tuple[int, int, int, int]],
-        uniforms: Mapping[str, object],
-    ) -> None:
-        """Composite an offscreen target on a target, one pass for each pair of blend factors."""
-        target.framebuffer.use()
-        layer.texture.use(_LAYER_UNIT)
-        for factors in passes:
-            self._context.blend_func = factors  # type: ignore[assignment]
-            self.programs.draw_screen(_GHOST, uniforms)
+    def _clear_layer(self, depth: int, target: RenderTarget) -> RenderTarget:
+        """Return the offscreen target of this depth, cleared and bound."""
+        layer = self._layer_at(depth, target)
+        layer.framebuffer.use()
+        layer.framebuffer.clear()
+        return layer
 
     def _layer_at(self, depth: int, target: RenderTarget) -> RenderTarget:
         wanted = (target.size, target.oversampling)

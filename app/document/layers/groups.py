@@ -1,20 +1,53 @@
 """Groups of layers, and blend modes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, get_args
+from typing import Final
 
 from app.document.checks import NOTHING, Unknown, require
 from app.texts import N_
 
-# How the colours of a layer are blended with the colours behind it ("Compositing and Blending Level
-# 1" of the W3C, Section 10).
-BlendMode = Literal["normal", "multiply", "screen"]
-BLENDS: tuple[BlendMode, ...] = get_args(BlendMode)
+# How the colours of a layer are blended with the colours behind it, its backdrop: the labels by name,
+# in the order and sections of Photoshop. Formulas are those of "Compositing and Blending Level 1" of
+# the W3C, Section 10. Linear dodge, linear burn and subtract are b + s, b + s − 1 and b − s.
+BLEND_SECTIONS: Final[tuple[Mapping[str, str], ...]] = (
+    {"normal": N_("normal")},
+    {
+        "darken": N_("darken"),
+        "multiply": N_("multiply"),
+        "color-burn": N_("colour burn"),
+        "linear-burn": N_("linear burn"),
+    },
+    {
+        "lighten": N_("lighten"),
+        "screen": N_("screen"),
+        "color-dodge": N_("colour dodge"),
+        "linear-dodge": N_("linear dodge (add)"),
+    },
+    {
+        "overlay": N_("overlay"),
+        "soft-light": N_("soft light"),
+        "hard-light": N_("hard light"),
+    },
+    {
+        "difference": N_("difference"),
+        "exclusion": N_("exclusion"),
+        "subtract": N_("subtract"),
+    },
+    {
+        "hue": N_("hue"),
+        "saturation": N_("saturation"),
+        "color": N_("colour"),
+        "luminosity": N_("luminosity"),
+    },
+)
+BlendMode = str  # a name of the table
+BLENDS: Final = tuple(name for section in BLEND_SECTIONS for name in section)
 # The layers of a pass-through group blend directly with the backdrop; the group's opacity is
 # applied to the result. The layers of any other group blend with each other first, and the result
 # blends with the backdrop.
-GroupBlend = Literal["pass-through", BlendMode]
-GROUP_BLENDS: tuple[GroupBlend, ...] = ("pass-through", *BLENDS)
+GROUP_BLEND_SECTIONS: Final = ({"pass-through": N_("pass-through")}, *BLEND_SECTIONS)
+GROUP_BLENDS: Final = ("pass-through", *BLENDS)
 MAX_GROUP_DEPTH = 50  # nested groups
 
 
@@ -28,7 +61,7 @@ class Group:
     name: str  # path with the groups around it, such as "limbs/left"; unique in the document
     opacity: float = 1.0  # in [0, 1]
     hidden: bool = False  # whether its layers are hidden at all frames
-    blend: GroupBlend = "pass-through"
+    blend: BlendMode = "pass-through"
     clipped: bool = False  # as for a layer
     unknown: Unknown = field(default_factory=lambda: NOTHING, repr=False, hash=False)
 

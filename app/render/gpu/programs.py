@@ -18,7 +18,7 @@ class ShaderFiles:
     vertex: tuple[str, ...]
     fragment: tuple[str, ...]
     geometry: str = ""  # empty without a geometry stage
-    constants: tuple[tuple[str, int], ...] = ()  # of the vertex and the fragment stage
+    constants: tuple[tuple[str, int | str], ...] = ()  # of the vertex and the fragment stage
 
 
 class Programs:
@@ -61,7 +61,7 @@ def set_uniforms(program: moderngl.Program, values: Mapping[str, object]) -> Non
         program[name] = value
 
 
-def _join(*names: str, constants: tuple[tuple[str, int], ...] = ()) -> str:
+def _join(*names: str, constants: tuple[tuple[str, int | str], ...] = ()) -> str:
     definitions = "".join(f"#define {name} {value}\n" for name, value in constants)
     # The numbers give a compiler's message the file, counted from 0, and its line.
     texts = (f"#line 1 {number}\n{shader_source(name)}" for number, name in enumerate(names))

@@ -11,7 +11,7 @@ from app.document.commands.layers.layer_commands import (
     without_empty_groups,
 )
 from app.document.layer import Layer
-from app.document.layers.groups import Group, GroupBlend, ancestor_paths, common_path
+from app.document.layers.groups import BlendMode, Group, ancestor_paths, common_path
 from app.document.model import Document
 from app.errors import LissomError
 from app.texts import _
@@ -127,7 +127,7 @@ def set_group_hidden(document: Document, path: str, *, hidden: bool) -> Document
 
 
 @command(_("Set group's blend"))
-def set_group_blend(document: Document, path: str, blend: GroupBlend) -> Document:
+def set_group_blend(document: Document, path: str, blend: BlendMode) -> Document:
     return _changed(document, path, blend=blend)
 
 

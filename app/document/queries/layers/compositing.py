@@ -97,7 +97,7 @@ def _parts(
         unit: _ClipUnit[Drawn]
         if path:
             group, inner = given.document.group(path), _parts(given, run, depth + 1)
-            blend: BlendMode = "normal" if group.blend == "pass-through" else group.blend
+            blend = "normal" if group.blend == "pass-through" else group.blend
             whole = CompositeGroup(inner, group.opacity, blend, group.clipped)
             unit = _ClipUnit(whole, is_pass_through=group.blend == "pass-through")
         else:
