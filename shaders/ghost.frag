@@ -12,7 +12,7 @@ const vec3 LUMA = vec3(0.299, 0.587, 0.114);
 
 #ifdef BLEND
 uniform sampler2D backdrop;   // premultiplied
-uniform bool clipped;   // whether the layer meets its backdrop as if the backdrop were opaque
+uniform float clipped;   // 1: the layer meets its backdrop as if the backdrop were opaque
 
 vec3 BLEND(vec3 backdrop, vec3 source);
 
@@ -28,7 +28,7 @@ void main() {
 #ifdef BLEND
     vec4 behind = texelFetch(backdrop, ivec2(gl_FragCoord.xy), 0);
     vec3 blended = drawing.a * BLEND(straight(behind), straight(drawing));
-    drawing.rgb = mix(drawing.rgb, blended, clipped ? 1.0 : behind.a);
+    drawing.rgb = mix(drawing.rgb, blended, max(clipped, behind.a));
 #endif
     colour = drawing * opacity;
 }

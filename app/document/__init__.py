@@ -185,6 +185,7 @@ from app.document.queries.key_segments import (
 )
 from app.document.queries.layers.clipping import without_foreign_clips as without_foreign_clips
 from app.document.queries.layers.compositing import (
+    DEFAULT_EFFECTS as DEFAULT_EFFECTS,
     CompositeGroup as CompositeGroup,
     composite_layers as composite_layers,
 )

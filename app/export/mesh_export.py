@@ -144,12 +144,13 @@ class MeshExport:
         """Yield notices about blends that a format without compositing cannot show."""
         groups = self._document.groups
         painted: list[Layer | Group] = [*self._document.exported_layers, *groups]
-        not_multiplied = _("the {format} cannot multiply {names}; they are painted over the rest")
-        not_screened = _("the {format} cannot screen {names}; they are painted over the rest")
+        not_blended = _("the {format} cannot blend {names}; they are painted over the rest")
         not_clipped = _("the {format} cannot clip {names}; they are painted over the rest")
         for notice, names in (
-            (not_multiplied, [each.name for each in painted if each.blend == "multiply"]),
-            (not_screened, [each.name for each in painted if each.blend == "screen"]),
+            (
+                not_blended,
+                [each.name for each in painted if each.blend not in {"normal", "pass-through"}],
+            ),
             (not_clipped, [each.name for each in painted if each.clipped]),
         ):
             if names:

@@ -8,7 +8,7 @@ import moderngl
 
 from app.document import (
     BLENDS,
-    LAYER_KINDS,
+    DEFAULT_EFFECTS,
     CompositeGroup,
 )
 from app.render.colormap import heat_colormap
@@ -35,16 +35,13 @@ _COMPOSITES: Final = {
     for blend in BLENDS
 }
 _PICTURE_UNIT, _RAMP_UNIT, _LAYER_UNIT, _BACKDROP_UNIT = 0, 1, 0, 1
-# "Compositing and Blending Level 1" of the W3C, Section 9.1.4, for premultiplied colours: factors of
-# the source and of the backdrop, for the colours and for alpha. The shader blends the source's
+# "Compositing and Blending Level 1" of the W3C, Section 9.1.4, for premultiplied colours: factors
+# of the source and of the backdrop, for the colours and for alpha. The shader blends the source's
 # colours with the backdrop first.
 _OVER: Final = (moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA)
 # A clipped source keeps the backdrop's alpha, as if painted first and then cut out.
 _CLIPPED: Final = (moderngl.DST_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA, moderngl.ZERO, moderngl.ONE)
 _ADDED: Final = (moderngl.ONE, moderngl.ONE)
-
-# Values of all effects of layers that leave a layer unchanged, by uniform.
-_UNCHANGED = {kind.uniform: kind.default for kind in LAYER_KINDS.values() if kind.uniform}
 
 
 class Renderer:
@@ -174,8 +171,9 @@ class Renderer:
             layer.framebuffer.use()
         self._draw_parts(whole.parts, layer, view, heat, depth + 1)
         if whole.blend != "normal":
-            # The parts are drawn, so the next target is free for a copy of the backdrop.
-            backdrop = self._layer_at(depth + 1, target)
+            # The parts are drawn, so the next target is free for a copy of the backdrop. Cleared first,
+            # it makes software OpenGL wait for what is being drawn on the backdrop.
+            backdrop = self._clear_layer(depth + 1, target)
             self._context.copy_framebuffer(backdrop.framebuffer, target.framebuffer)
             backdrop.texture.use(_BACKDROP_UNIT)
         self._lay(layer, target, whole, tint=tint)
@@ -195,11 +193,11 @@ class Renderer:
             "tint": tint or (0.0, 0.0, 0.0),
             "strength": 0.0 if tint is None else 1.0,
             "opacity": whole.opacity,
-            **_UNCHANGED,
+            **DEFAULT_EFFECTS,
             **whole.effects,
         }
         if whole.blend != "normal":
-            uniforms |= {"backdrop": _BACKDROP_UNIT, "clipped": whole.clipped}
+            uniforms |= {"backdrop": _BACKDROP_UNIT, "clipped": float(whole.clipped)}
         factors = _ADDED if whole.is_pass_through else _CLIPPED if whole.clipped else _OVER
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = factors  # type: ignore[assignment]

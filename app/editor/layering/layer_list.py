@@ -208,6 +208,10 @@ def set_group_opacity(session: Session, path: str, opacity: float) -> None:
     editing.edit_document(session, group_commands.set_group_opacity(path, opacity))
 
 
+def set_group_blend_mode(session: Session, path: str, mode: BlendMode) -> None:
+    editing.edit_document(session, group_commands.set_group_blend(path, mode))
+
+
 @with_project
 def toggle_group_hidden(session: Session, project: Project, path: str) -> None:
     hidden = project.document.group(path).hidden

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from app.document import CompositeGroup
+from app.document import DEFAULT_EFFECTS, CompositeGroup
 from app.errors import display_name
 from app.export.framing import find_shown_box
 from app.export.morph_mesh import MorphMesh, MorphScene
@@ -29,7 +29,7 @@ _SHADERS: Final = (
     ("vertex", ("mesh.vert", "positions.glsl", "placed.glsl")),
     ("fragment", ("picture.frag", "sample.glsl")),
     ("screen", ("screen.vert",)),
-    ("faint", ("ghost.frag",)),
+    ("faint", ("ghost.frag", "blend.glsl")),
 )
 
 
@@ -92,6 +92,10 @@ def _parts(parts: Sequence[int | CompositeGroup[int]]) -> list[Any]:
             "blend": part.blend,
             "clipped": part.clipped,
             "passes": part.is_pass_through,
+            "effects": {
+                name: np.atleast_1d(value).tolist()
+                for name, value in {**DEFAULT_EFFECTS, **part.effects}.items()
+            },
         }
         for part in parts
     ]

@@ -334,8 +334,7 @@ def test_what_a_model_does_not_composite_is_reported(tmp_path):
     assert maker.meshes[0].opacity == 0.25
     notices = [notice for notice in maker.notices if "glTF" in notice]
     assert notices == [
-        f"the glTF model cannot multiply {second.name}; they are painted over the rest",
-        "the glTF model cannot screen limbs; they are painted over the rest",
+        f"the glTF model cannot blend {second.name}, limbs; they are painted over the rest",
         f"the glTF model cannot clip {second.name}; they are painted over the rest",
         ("in the glTF model the layers of limbs fade one by one, and shine through each other"),
     ]

@@ -15,6 +15,10 @@ from app.document.queries.layers.clipping import group_runs
 
 Drawn = TypeVar("Drawn")
 NO_EFFECTS: Mapping[str, Any] = MappingProxyType({})
+# Values that leave a layer unchanged, by uniform.
+DEFAULT_EFFECTS: Mapping[str, Any] = MappingProxyType(
+    {kind.uniform: kind.default for kind in LAYER_KINDS.values() if kind.uniform}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +31,7 @@ class CompositeGroup(Generic[Drawn]):
     # Whether the group is visible only within the alpha of its backdrop in the outer composite, and
     # blends with that backdrop as if it were opaque.
     clipped: bool = False
-    # Values for the shader of the result, by uniform; other uniforms have their defaults.
+    # Values for the shader of the result, by uniform; others are in `DEFAULT_EFFECTS`.
     effects: Mapping[str, Any] = field(default_factory=lambda: NO_EFFECTS)
     # Pass-through group: its parts blend directly with the backdrop; the group's opacity is applied
     # to the result.

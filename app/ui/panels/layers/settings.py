@@ -1,10 +1,14 @@
 """The settings of the active layer: blending, visibility, and parent."""
 
+from collections.abc import Mapping, Sequence
+
 from imgui_bundle import ImVec2, imgui
 
 from app.document import (
-    BLENDS,
+    BLEND_SECTIONS,
+    GROUP_BLEND_SECTIONS,
     VISIBILITY,
+    BlendMode,
     Channel,
     Document,
     Group,
@@ -17,6 +21,7 @@ from app.editor import Action, Project, do
 from app.editor.layering.layer_list import (
     rename_layer,
     set_blend_mode,
+    set_group_blend_mode,
     set_group_opacity,
     toggle_clipping,
     toggle_group_hidden,
@@ -54,7 +59,6 @@ from app.ui.style.widgets import (
 )
 
 PERCENT = Scale(left=0, right=100)
-BLEND_NAMES = {"normal": _("normal"), "multiply": _("multiply"), "screen": _("screen")}
 NOTHING = _("nothing")
 
 
@@ -70,14 +74,9 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     actions += draw_opacity_channel(project.document, look, layer, frame)
     actions += draw_effect_channels(project.document, look, layer, frame)
     label(look, _("Blend"))
-    if imgui.begin_combo("##blend", BLEND_NAMES[layer.blend]):
-        actions += [
-            do(set_blend_mode, identity, blend)
-            for blend in BLENDS
-            if imgui.selectable(BLEND_NAMES[blend], blend == layer.blend)[0]
-        ]
-        imgui.end_combo()
-    draw_tooltip(_("How its colours mix with the layers behind: multiply darkens, screen lightens"))
+    actions += [
+        do(set_blend_mode, identity, blend) for blend in _choose_blend(layer.blend, BLEND_SECTIONS)
+    ]
     changed = imgui.checkbox(_("Clipped"), layer.clipped)[0]
     draw_tooltip(_("Visible only over the layer below it in its group"))
     if changed:
@@ -101,6 +100,22 @@ def draw_layer_settings(project: Project, look: Look, layer: Layer, frame: int) 
     return actions
 
 
+def _choose_blend(present: BlendMode, sections: Sequence[Mapping[str, str]]) -> list[BlendMode]:
+    """Draw the list of blend modes, and return the chosen one."""
+    chosen = []
+    labels = {blend: _(text) for section in sections for blend, text in section.items()}
+    if imgui.begin_combo("##blend", labels[present], imgui.ComboFlags_.height_largest):
+        for number, section in enumerate(sections):
+            if number:
+                imgui.separator()
+            chosen += [
+                blend for blend in section if imgui.selectable(labels[blend], blend == present)[0]
+            ]
+        imgui.end_combo()
+    draw_tooltip(_("How its colours mix with the layers behind: multiply darkens, screen lightens"))
+    return chosen
+
+
 def _group(look: Look, group: Group) -> list[Action]:
     actions = []
     imgui.push_id(group.name)
@@ -110,6 +125,12 @@ def _group(look: Look, group: Group) -> list[Action]:
     faded = slider(look, "opacity", 100 * group.opacity, PERCENT, text="%.0f %%", hint=hint)
     if faded is not None:
         actions.append(do(set_group_opacity, group.name, min(max(faded.value / 100, 0.0), 1.0)))
+    text = _("Blend of {name}").format(name=name)
+    label(look, shorten_text(text, (LABEL_WIDTH - 0.5) * look.em))
+    actions += [
+        do(set_group_blend_mode, group.name, blend)
+        for blend in _choose_blend(group.blend, GROUP_BLEND_SECTIONS)
+    ]
     if imgui.checkbox(
         shorten_text(_("Hide all of {name}").format(name=name), 14 * look.em), group.hidden
     )[0]:
