@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageChops
+from PIL import Image
 
 from app.cut_out import CutOut, build_picture_domain
 from app.document import (
@@ -23,6 +23,7 @@ from app.document import (
 from app.errors import LissomError, NoticeCollector, display_name
 from app.storage.files.reading import read_file
 from app.storage.opening import OpenedScene, build_scene, cut_picture
+from app.storage.pictures.blending import blend_pictures
 from app.storage.pictures.layer_names import UniqueNames
 from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
 from app.storage.pictures.openraster import read_openraster
@@ -162,10 +163,10 @@ def _blended(below: Image.Image, above: Image.Image, how: CompositeGroup[Layer])
     # A clipped layer meets its backdrop as if the backdrop were opaque.
     solid = below.convert("RGB").convert("RGBA") if how.clipped else below
     if how.blend != "normal":
-        mix = ImageChops.multiply if how.blend == "multiply" else ImageChops.screen
-        own, lower = above.convert("RGB"), below.convert("RGB")
+        own = above.convert("RGB")
+        mixed = blend_pictures(below.convert("RGB"), own, how.blend)
         # Over an empty backdrop the layer keeps its colours.
-        above = Image.composite(mix(lower, own), own, solid.getchannel("A")).convert("RGBA")
+        above = Image.composite(mixed, own, solid.getchannel("A")).convert("RGBA")
     above.putalpha(alpha)
     flat = Image.alpha_composite(solid, above)
     if how.clipped:

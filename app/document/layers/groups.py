@@ -7,9 +7,9 @@ from typing import Final
 from app.document.checks import NOTHING, Unknown, require
 from app.texts import N_
 
-# How the colours of a layer are blended with the colours behind it, its backdrop: labels by name, in
-# the order and sections of Photoshop. The formulas are those of "Compositing and Blending Level 1"
-# of the W3C, Section 10, with b + s for linear dodge, b + s − 1 for linear burn, b − s for subtract.
+# How the colours of a layer are blended with the colours behind it, its backdrop: labels by name,
+# in the order and sections of Photoshop. The formulas are those of "Compositing and Blending Level
+# 1" of the W3C, Section 10. Linear dodge is b + s, linear burn b + s − 1, and subtract b − s.
 BLEND_SECTIONS: Final[tuple[Mapping[str, str], ...]] = (
     {"normal": N_("normal")},
     {

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from math import isfinite
 from xml.etree import ElementTree as ET
 
-from app.document import BlendMode, Group, ancestor_paths
+from app.document import BLENDS, BlendMode, Group, ancestor_paths
 from app.errors import LissomError, NoticeCollector, shortened
 from app.storage.files.reading import DAMAGED_ZIP, open_zip
 from app.storage.pictures.layered import (
@@ -33,12 +33,15 @@ LARGEST_XML = 4 * 1024 * 1024
 MOST_UNPACKED = 16 * 1024 * 1024
 LARGEST_SIDE = 65_535
 DAMAGED_STACK = N_("its stack.xml is damaged, or has a rare encoding; save it as UTF-8")
+# Krita writes modes that OpenRaster lacks by names of its own.
 MODES: dict[str, BlendMode] = {
     "": "normal",
     "svg:src-over": "normal",
     "svg:src-atop": "normal",
-    "svg:multiply": "multiply",
-    "svg:screen": "screen",
+    "svg:plus": "linear-dodge",
+    "svg:add": "linear-dodge",
+    **{f"svg:{blend}": blend for blend in BLENDS},
+    **{f"krita:{blend.replace('-', '_')}": blend for blend in BLENDS},
 }
 DAMAGE = (*DAMAGED_ZIP, OSError)
 

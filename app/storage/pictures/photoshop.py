@@ -13,7 +13,7 @@ from typing import Any, Final
 import numpy as np
 from PIL import Image
 
-from app.document import BlendMode, Group
+from app.document import BLENDS, BlendMode, Group
 from app.errors import LissomError, NoticeCollector, install_hint, shortened
 from app.storage.pictures.layered import (
     GroupPaths,
@@ -44,11 +44,7 @@ KNOCKOUT: Final = b"knko"
 PADDING: Final = 3  # bytes that may follow the merged picture
 # A layer's blending range of two black and two white levels: all levels, or unspecified.
 ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
-MODES: Final[dict[str, BlendMode]] = {
-    "NORMAL": "normal",
-    "MULTIPLY": "multiply",
-    "SCREEN": "screen",
-}
+MODES: Final = {blend.upper().replace("-", "_"): blend for blend in BLENDS}
 DAMAGED: Final = N_("it is not a Photoshop file, or it is damaged")
 DAMAGE = (
     OSError,
