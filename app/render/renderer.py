@@ -171,8 +171,8 @@ class Renderer:
             layer.framebuffer.use()
         self._draw_parts(whole.parts, layer, view, heat, depth + 1)
         if whole.blend != "normal":
-            # The parts are drawn, so the next target is free for a copy of the backdrop. Clearing it
-            # makes software OpenGL finish the backdrop before the copy.
+            # The parts are drawn, so the next target is free for a copy of the backdrop. Clearing
+            # it makes software OpenGL finish the backdrop before the copy.
             backdrop = self._clear_layer(depth + 1, target)
             self._context.copy_framebuffer(backdrop.framebuffer, target.framebuffer)
             backdrop.texture.use(_BACKDROP_UNIT)

@@ -11,7 +11,7 @@ from engine.arrays import Floats
 
 _ROWS: Final = 64  # blended at a time: floats of a whole picture would take much memory
 _TINY: Final = 1e-6
-_LUMINANCE: Final = np.array([0.3, 0.59, 0.11], np.float32)
+_LUMINANCE: Final = np.array([0.3, 0.59, 0.11])
 
 
 def blend_pictures(backdrop: Image.Image, source: Image.Image, mode: BlendMode) -> Image.Image:
@@ -20,7 +20,7 @@ def blend_pictures(backdrop: Image.Image, source: Image.Image, mode: BlendMode) 
     mixed = np.empty_like(front)
     for top in range(0, len(front), _ROWS):
         rows = slice(top, top + _ROWS)
-        levels = _BLENDS[mode](*(np.float32(each[rows]) / 255 for each in (behind, front)))
+        levels = _BLENDS[mode](behind[rows] / 255, front[rows] / 255)
         mixed[rows] = np.rint(255 * np.clip(levels, 0, 1))
     return Image.fromarray(mixed)
 
@@ -50,15 +50,15 @@ def _soft_light(backdrop: Floats, source: Floats) -> Floats:
 
 
 def _luminance(levels: Floats) -> Floats:
-    return (levels @ _LUMINANCE)[..., None]
+    return np.asarray(levels @ _LUMINANCE)[..., None]
 
 
 def _least(levels: Floats) -> Floats:
-    return levels.min(axis=-1, keepdims=True)
+    return np.asarray(levels.min(axis=-1, keepdims=True))
 
 
 def _largest(levels: Floats) -> Floats:
-    return levels.max(axis=-1, keepdims=True)
+    return np.asarray(levels.max(axis=-1, keepdims=True))
 
 
 def _with_luminance(levels: Floats, other: Floats) -> Floats:
