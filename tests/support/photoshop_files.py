@@ -8,7 +8,7 @@ import numpy as np
 
 from engine.arrays import Bytes
 
-NORMAL, PASS_THROUGH, MULTIPLY, SCREEN, OVERLAY = b"norm", b"pass", b"mul ", b"scrn", b"over"
+NORMAL, PASS_THROUGH, MULTIPLY, SCREEN, VIVID_LIGHT = b"norm", b"pass", b"mul ", b"scrn", b"vLit"
 FOLDER, BELOW_ALL = 1, 3  # kinds of section dividers: a group, and where it begins from below
 DENSITY, FEATHER = 1, 2  # bits of what is said of a mask of pixels
 

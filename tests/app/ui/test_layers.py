@@ -992,8 +992,8 @@ def stranger(tmp_path_factory):
     """A drawing with what looks different here, and small matters."""
     path = tmp_path_factory.mktemp("layers") / "stranger.ora"
     stack = (
-        '<layer name="glow" src="data/0.png" composite-op="svg:overlay"/>'
-        '<layer name="shine" src="data/0.png" composite-op="svg:overlay"/>'
+        '<layer name="glow" src="data/0.png" composite-op="svg:vivid-light"/>'
+        '<layer name="shine" src="data/0.png" composite-op="svg:vivid-light"/>'
         '<stack name="limbs" opacity="0.5"><layer name="arm" src="data/0.png"/></stack>'
         '<layer name="body" src="data/1.png"/><layer name="wall" src="data/2.png"/>'
     )
@@ -1011,7 +1011,7 @@ def test_import_log_stays_in_the_panel(window, stranger):
     (toast,) = window.session.toasts
     assert "One thing looks different here" in toast.text
     log = project.document.import_log
-    assert log.warnings == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    assert log.warnings == ("shine, glow: drawn normally, not in the mode 'vivid-light'",)
     assert "wall: the picture is opaque everywhere, so there is no shape to pose" in log.notes
     window.show_tab("Handle")
     window.act(toast.action.apply)
@@ -1052,7 +1052,7 @@ def test_import_log_of_added_layers_is_undone_with_them(window, scene, stranger)
     window.act(add_layers, [stranger])
     window.settle()
     losses = scene.document.import_log.warnings
-    assert losses == ("shine, glow: drawn normally, not in the mode 'overlay'",)
+    assert losses == ("shine, glow: drawn normally, not in the mode 'vivid-light'",)
     window.act(editing.undo)
     assert scene.document.import_log == before
     window.session.toasts = []

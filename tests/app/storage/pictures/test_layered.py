@@ -113,7 +113,7 @@ def test_layers_of_one_name_are_reported_apart():
 
 def test_what_cannot_be_kept_is_reported():
     stack = (
-        HEAD.replace("/>", ' composite-op="svg:overlay"/>')
+        HEAD.replace("/>", ' composite-op="svg:vivid-light"/>')
         + '<text name="title"/>'
         + '<layer name="nothing" src="data/2.png"/>'
     )
@@ -121,7 +121,7 @@ def test_what_cannot_be_kept_is_reported():
     read = read_openraster(openraster((100, 100), stack, [blob(9, 9), blob(9, 9), empty]))
     assert [layer.name for layer in read.layers] == ["head"]
     assert sorted(read.summary.warnings) == [
-        "head: drawn normally, not in the mode 'overlay'",
+        "head: drawn normally, not in the mode 'vivid-light'",
         "title: left out, because Lissom reads only drawn layers",
     ]
     assert read.summary.notes == ("nothing: left out, because it is empty",)

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from photoshop_files import (
     MULTIPLY,
     NORMAL,
-    OVERLAY,
     SCREEN,
+    VIVID_LIGHT,
     Drawn,
     Folder,
     Mask,
@@ -205,14 +205,14 @@ def test_a_feathered_mask_is_soft():
 
 def test_what_is_not_taken_over_is_reported_once_with_all_names():
     found = read(
-        drawn("a", blend=OVERLAY),
-        Folder(name="limbs", layers=[drawn("b", blend=OVERLAY)], blend=OVERLAY),
+        drawn("a", blend=VIVID_LIGHT),
+        Folder(name="limbs", layers=[drawn("b", blend=VIVID_LIGHT)], blend=VIVID_LIGHT),
         Drawn(name="paint", pixels=EMPTY, blocks=((b"SoCo", bytes(4)),)),
         drawn("hole", blocks=((b"knko", bytes([2, 0, 0, 0])),)),
         drawn("bright", ranges=(50, 0, 255, 255)),
     )
     assert found.summary.warnings == (
-        "limbs, a, b: drawn normally, not in the mode 'overlay'",
+        "limbs, a, b: drawn normally, not in the mode 'vivid light'",
         "paint: left out, because it is a fill layer",
         "hole: drawn over the layers behind; its knockout is ignored",
         "bright: drawn at all brightnesses; its “Blend If” setting is ignored",
