@@ -11,7 +11,16 @@ from chromium import PROGRAM, Page, chromium
 from documents import altered
 from PIL import Image
 
-from app.document import VISIBILITY, Document, ExportSettings, FrameRange, Group, clip_of
+from app.document import (
+    BLENDS,
+    LAYER_KINDS,
+    VISIBILITY,
+    Document,
+    ExportSettings,
+    FrameRange,
+    Group,
+    clip_of,
+)
 from app.export import CachedVertices, ExportRequest, FrameRenderer, MeshExport, plan_export
 from app.motion import Animation
 from app.render.gpu.context import create_context
@@ -118,15 +127,17 @@ def test_the_browser_shows_what_the_renderer_draws(browser, tmp_path):
 @pytest.mark.parametrize("background", ["transparent", "#c08030"])
 def test_the_browser_composites_as_the_renderer_does(browser, tmp_path, background):
     document, out = two_blobs(), tmp_path / "walk.html"
-    low, high = document.layers
+    (low, high), tint = document.layers, LAYER_KINDS["tint"]
     made = [
         replace(low, name="base", opacity=0.8),
-        replace(high, id=1, name="shade", clipped=True, blend="screen"),
-        replace(high, id=2, name="far", blend="multiply", group="limbs"),
+        replace(high, id=1, name="shade", clipped=True, blend="soft-light"),
+        replace(high, id=2, name="far", blend="luminosity", group="limbs").with_keys_of(
+            tint, [tint.key(0, tint=(0.5, 0.8, 1.0))]
+        ),
         replace(low, id=3, name="near", opacity=1.0, group="limbs/inner"),
         replace(high, id=4, name="light", clipped=True, blend="multiply", group="limbs/inner"),
     ]
-    groups = (Group(name="limbs", opacity=0.6), Group(name="limbs/inner", blend="screen"))
+    groups = (Group(name="limbs", opacity=0.6), Group(name="limbs/inner", blend="difference"))
     document = replace(document, layers=tuple(made), groups=groups)
     draw = exported(document, out, background=background)
     page, gl = opened(browser, out), create_context()
@@ -138,6 +149,14 @@ def test_the_browser_composites_as_the_renderer_does(browser, tmp_path, backgrou
         assert apart.mean() <= 2 * MEAN, seconds
     gl.release()
     assert page.run("gl.getError()") == 0
+
+
+def test_the_browser_has_a_program_for_every_blend_mode(browser, tmp_path):
+    out = tmp_path / "walk.html"
+    exported(moving_document(), out)
+    page = opened(browser, out)
+    linked = f"{list(BLENDS)}.filter(b => gl.getProgramParameter(wholeOf(b), gl.LINK_STATUS))"
+    assert page.run(linked) == list(BLENDS)
 
 
 def test_it_fits_its_frame_whatever_that_is(browser, tmp_path):

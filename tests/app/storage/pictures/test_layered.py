@@ -111,6 +111,21 @@ def test_layers_of_one_name_are_reported_apart():
     assert sorted(layers_of(drawing(HEAD * 3))) == ["head", "head 2", "head 3"]
 
 
+def test_all_supported_blend_modes_are_read():
+    modes = {
+        "svg:color-dodge": "color-dodge",
+        "svg:luminosity": "luminosity",
+        "svg:plus": "linear-dodge",
+        "svg:add": "linear-dodge",
+        "krita:linear_burn": "linear-burn",
+        "krita:exclusion": "exclusion",
+    }
+    stack = "".join(HEAD.replace("/>", f' composite-op="{mode}"/>') for mode in modes)
+    read = read_openraster(openraster((100, 100), stack, [blob(9, 9)] * 2))
+    assert [layer.blend for layer in read.layers[::-1]] == list(modes.values())
+    assert not read.summary
+
+
 def test_what_cannot_be_kept_is_reported():
     stack = (
         HEAD.replace("/>", ' composite-op="svg:vivid-light"/>')

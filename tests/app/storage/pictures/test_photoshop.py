@@ -17,7 +17,7 @@ from photoshop_files import (
     photoshop_file,
 )
 
-from app.document.layers.groups import Group
+from app.document.layers.groups import BLENDS, Group
 from app.errors import ImportLog, LissomError
 from app.storage.pictures.layered import GROUPS_DEEP
 from app.storage.pictures.photoshop import DAMAGED, MOST_RECORDS, read_photoshop
@@ -201,6 +201,17 @@ def test_a_feathered_mask_is_soft():
     assert (np.diff(levels) <= 0).all()
     assert abs(levels[14] - 128) < 40
     assert (levels[[0, -1]] == (255, 0)).all()
+
+
+def test_all_supported_blend_modes_are_read():
+    # By the order of the modes in the program's table.
+    keys = (
+        *(b"norm", b"dark", b"mul ", b"idiv", b"lbrn", b"lite", b"scrn", b"div ", b"lddg", b"over"),
+        *(b"sLit", b"hLit", b"diff", b"smud", b"fsub", b"hue ", b"sat ", b"colr", b"lum "),
+    )
+    found = read(*(drawn(f"{number}", blend=key) for number, key in enumerate(keys)))
+    assert tuple(layer.blend for layer in found.layers) == BLENDS
+    assert not found.summary
 
 
 def test_what_is_not_taken_over_is_reported_once_with_all_names():
