@@ -12,7 +12,7 @@ from pathlib import Path
 
 from app.cli.main import COMMANDS, build_parser
 from app.document import (
-    BLENDS,
+    GROUP_BLEND_SECTIONS,
     LAYER_KINDS,
     LIMIT_PRESETS,
     PRESETS,
@@ -166,7 +166,7 @@ def _is_known(part: str) -> bool:
         *WEIGHT_PRESETS,
         *PRESETS,
         *SPRING_PRESETS,
-        *BLENDS,
+        *(label for section in GROUP_BLEND_SECTIONS for label in section.values()),
         *(stretch.name for stretch in LIMIT_PRESETS),
     ]
     tables |= {*words, *map(str.capitalize, words)}

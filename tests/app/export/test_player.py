@@ -132,7 +132,7 @@ def test_the_browser_composites_as_the_renderer_does(browser, tmp_path, backgrou
         replace(low, name="base", opacity=0.8),
         replace(high, id=1, name="shade", clipped=True, blend="soft-light"),
         replace(high, id=2, name="far", blend="luminosity", group="limbs").with_keys_of(
-            tint, [tint.key(0, tint=(0.5, 0.8, 1.0))]
+            tint, [tint.key(0, (0.5, 0.8, 1.0))]
         ),
         replace(low, id=3, name="near", opacity=1.0, group="limbs/inner"),
         replace(high, id=4, name="light", clipped=True, blend="multiply", group="limbs/inner"),

@@ -1070,14 +1070,16 @@ def test_blends_clipping_and_groups_are_set_in_the_panel(window, stranger):
         robot.combo_click("##blend/multiply")
         robot.item_check("Clipped")
         robot.item_check("**/Hide all of limbs")
+        robot.set_ref("Layers/limbs")
+        robot.combo_click("##blend/linear dodge (add)")
 
     window.run(play)
     window.frames(3)
     layer = project.document.layer(arm)
     assert (layer.blend, layer.clipped, layer.group) == ("multiply", True, "limbs")
     (group,) = project.document.groups
-    assert (group.opacity, group.hidden) == (0.5, True)
-    for _ in range(3):
+    assert (group.opacity, group.blend, group.hidden) == (0.5, "linear-dodge", True)
+    for _ in range(4):
         window.act(editing.undo)
     assert not project.document.groups[0].hidden
     assert project.document.layer(arm).blend == "normal"
