@@ -6,7 +6,7 @@ import warnings
 import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,10 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 from app.cut_out import Mask
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
+from app.storage.pictures.icon import ICO, largest_icon
 from app.storage.pictures.parallel import require_memory, run_parallel
+from app.storage.pictures.png import PNG, with_clear_colour, without_damaged_chunks
+from app.storage.pictures.programs import refuse_program_file
 from app.texts import N_, _, message_of
 from engine.arrays import Booleans, Bytes, Floats, freeze
 
@@ -50,11 +53,15 @@ DECODER_ERRORS = (
     zlib.error,
 )
 EXIF_ORIENTATION = 0x0112
+SIGNATURE = 16  # bytes at the beginning that tell the format
 BAND = 64  # rows of pixels copied at once
 OPAQUE = 255
 HALF = 128  # levels: lighter mask pixels are kept
 NO_PICTURE = N_("{name} is not a picture that Lissom reads ({formats})")
 DAMAGED_PICTURE = N_("{name} is damaged or cut short")
+RARE_PICTURE = N_(
+    "{name} is damaged, or a {format} picture of a rare kind; save it again as PNG or OpenRaster"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -127,11 +134,7 @@ def stored_size(data: bytes, name: str) -> tuple[int, int]:
     """Return the width and height in pixels from a picture file's header, without decoding it."""
     if not data:
         raise LissomError(_("{name} is empty").format(name=name))
-    with (
-        _only_size_warnings(),
-        _naming_errors(name),
-        Image.open(io.BytesIO(data), formats=tuple(FORMATS)) as image,
-    ):
+    with _only_size_warnings(), _naming_errors(data, name), _opened(_usable(data)[0]) as image:
         return image.size
 
 
@@ -150,7 +153,7 @@ def _only_size_warnings() -> Iterator[None]:
 
 
 @contextmanager
-def _naming_errors(name: str) -> Iterator[None]:
+def _naming_errors(data: bytes, name: str) -> Iterator[None]:
     """Turn Pillow's exceptions into a `LissomError` that names the file."""
     try:
         yield
@@ -161,28 +164,51 @@ def _naming_errors(name: str) -> Iterator[None]:
             )
         ) from error
     except UnidentifiedImageError as error:
-        raise LissomError(_(NO_PICTURE).format(name=name, formats=_(FORMATS_IN_WORDS))) from error
+        raise LissomError(_refusal(data, name)) from error
     except DECODER_ERRORS as error:
         raise LissomError(_(DAMAGED_PICTURE).format(name=name)) from error
 
 
+def _refusal(data: bytes, name: str) -> str:
+    """Return why a file is not read, and what to do."""
+    for kind in FORMATS:
+        accepts = Image.OPEN[kind][1]
+        if accepts and accepts(data[:SIGNATURE]):
+            return _(RARE_PICTURE).format(name=name, format=kind)
+    no_picture = _(NO_PICTURE).format(name=name, formats=_(FORMATS_IN_WORDS))
+    return refuse_program_file(name) or no_picture
+
+
+def _usable(data: bytes) -> tuple[bytes, tuple[str, ...]]:
+    """Return the file that is decoded for a picture file, and notices."""
+    if data.startswith(ICO):
+        data = largest_icon(data)
+    return without_damaged_chunks(data) if data.startswith(PNG) else (data, ())
+
+
+def _opened(data: bytes) -> ImageFile.ImageFile:
+    return Image.open(io.BytesIO(data), formats=tuple(FORMATS))
+
+
 def _decode(data: bytes, name: str) -> Picture:
-    with _naming_errors(name):
-        return _decoded(data)
+    with _naming_errors(data, name):
+        usable, notices = _usable(data)
+        picture = _decoded(usable)
+        suffix = ".ico" if data.startswith(ICO) else picture.suffix
+        return replace(picture, suffix=suffix, notices=notices + picture.notices)
 
 
 def _decoded(data: bytes) -> Picture:
     notices = []
-    file = Image.open(io.BytesIO(data), formats=tuple(FORMATS))
+    file = _opened(data)
     suffix = FORMATS[file.format or ""]
     frames = getattr(file, "n_frames", 1)
     if frames > 1:
         notices.append(_("only the first of its {frames} frames was used").format(frames=frames))
     is_deep = _is_deep(file)
     rgba = _load(file)
-    image: Image.Image = file
-    profile = image.info.get("icc_profile")
-    image, notice = apply_orientation(image)
+    profile = file.info.get("icc_profile")
+    image, notice = apply_orientation(with_clear_colour(file, data))
     if notice:
         notices.append(notice)
     if image.mode.startswith("I;16") or image.mode in {"I", "F"}:
@@ -198,9 +224,12 @@ def _decoded(data: bytes) -> Picture:
 
 
 def _load(file: ImageFile.ImageFile) -> Bytes | None:
-    """Decode a picture; return its pixels (h, w, 4) without a second copy if they are RGBA."""
+    """Decode a picture; return its pixels (h, w, 4) without a second copy if they are RGBA.
+
+    Pictures of some formats are already decoded when they are opened.
+    """
     rgba = place = None
-    if file.mode == "RGBA":
+    if file.mode == "RGBA" and file.tile:
         rgba = np.zeros((file.height, file.width, 4), dtype=np.uint8)
         file.im = place = Image.frombuffer("RGBA", file.size, rgba, "raw", "RGBA", 0, 1).im
     file.load()

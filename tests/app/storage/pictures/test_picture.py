@@ -24,9 +24,11 @@ from app.storage.files.reading import FOLDER_READ, read_file
 from app.storage.pictures.picture import (
     DAMAGED_PICTURE,
     NO_PICTURE,
+    RARE_PICTURE,
     decode_picture,
     decode_pictures,
 )
+from app.storage.pictures.programs import PROGRAM_FILE
 
 GREY = np.arange(12, dtype=np.uint8).reshape(3, 4) * 20
 RGB = np.stack([GREY, GREY[::-1], 255 - GREY], axis=-1)
@@ -86,22 +88,23 @@ def test_floating_point_greys(scale, white):
     assert_array_equal(pixels[..., 0], np.rint(greys / white * 255).astype(np.uint8))
 
 
+def chunk(name: bytes, content: bytes) -> bytes:
+    checksum = struct.pack(">I", zlib.crc32(name + content))
+    return struct.pack(">I", len(content)) + name + content + checksum
+
+
+def png_file(depth: int, kind: int, rows: bytes, size: tuple[int, int], *chunks: bytes) -> bytes:
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", *size, depth, kind, 0, 0, 0))
+    content = chunk(b"IDAT", zlib.compress(rows))
+    return b"\x89PNG\r\n\x1a\n" + header + b"".join(chunks) + content + chunk(b"IEND", b"")
+
+
 def deep_png(samples: np.ndarray) -> bytes:
     """A PNG file of 16 bits per channel, which Pillow does not write."""
-
-    def chunk(name: bytes, content: bytes) -> bytes:
-        checksum = struct.pack(">I", zlib.crc32(name + content))
-        return struct.pack(">I", len(content)) + name + content + checksum
-
     height, width, channels = samples.shape
     colours = {1: 0, 2: 4, 3: 2, 4: 6}[channels]
     rows = b"".join(b"\0" + row.tobytes() for row in samples.astype(">u2"))
-    return (
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, colours, 0, 0, 0))
-        + chunk(b"IDAT", zlib.compress(rows))
-        + chunk(b"IEND", b"")
-    )
+    return png_file(16, colours, rows, (width, height))
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
@@ -308,3 +311,102 @@ def test_several_pictures_are_decoded_side_by_side(monkeypatch):
     with pytest.raises(LissomError, match=r"6\.png has more than 5,850 pixels"):
         decode_pictures(files)
     assert list(warnings.filters) == before
+
+
+def icon(*entries: tuple[int, int, bytes]) -> bytes:
+    """An icon file of pictures, each with its side, bits per pixel, and stored bytes."""
+    directory, stored = struct.pack("<HHH", 0, 1, len(entries)), b""
+    for side, bits, content in entries:
+        at = 6 + 16 * len(entries) + len(stored)
+        directory += struct.pack(
+            "<BBBBHHII", side % 256, side % 256, 0, 0, 1, bits, len(content), at
+        )
+        stored += content
+    return directory + stored
+
+
+def bitmap(pixels: np.ndarray, bits: int, *, hidden: np.ndarray | None = None) -> bytes:
+    """A bitmap of an icon, with a mask of hidden pixels."""
+    height, width, _ = pixels.shape
+    header = struct.pack("<IiiHHIIiiII", 40, width, 2 * height, 1, bits, 0, 0, 0, 0, 0, 0)
+    colours = pixels[::-1, :, [2, 1, 0, 3][: bits // 8]]
+    rows = b"".join(row.tobytes() + bytes(-row.size % 4) for row in colours)
+    if hidden is None:
+        return header + rows
+    mask = np.packbits(hidden[::-1], axis=1)
+    return header + rows + np.pad(mask, ((0, 0), (0, -mask.shape[1] % 4))).tobytes()
+
+
+@pytest.mark.parametrize("bits_are_told", [True, False])
+def test_icon_shows_its_largest_picture_with_alpha(bits_are_told):
+    pixels = np.random.default_rng(5).integers(1, 256, (40, 40, 4), np.uint8)
+    small, hidden = np.full((16, 16, 4), 99, np.uint8), pixels[..., 0] > 128
+    told = 32 * bits_are_told
+
+    def read(*entries):
+        picture = decode_picture(icon((16, told, bitmap(small, 32)), *entries), "drawing")
+        assert picture.suffix == ".ico"
+        return picture.rgba
+
+    assert_array_equal(read((40, told, bitmap(pixels, 32, hidden=hidden))), pixels)
+    assert_array_equal(read((40, told, encode(Image.fromarray(pixels), "PNG"))), pixels)
+    masked = np.dstack([pixels[..., :3], 255 * ~hidden])
+    assert_array_equal(read((40, 24, bitmap(pixels, 24, hidden=hidden))), masked)
+    # Alpha that is 0 everywhere was never written.
+    pixels[..., 3] = 0
+    assert_array_equal(read((40, told, bitmap(pixels, 32, hidden=hidden))), masked)
+    assert (read((40, told, bitmap(pixels, 32)))[..., 3] == 255).all()
+    # Of equal sizes the picture with most colours counts.
+    plain = bitmap(small[:1].repeat(40, 0)[:, :1].repeat(40, 1), 24, hidden=~hidden)
+    assert_array_equal(read((40, 24, plain), (40, 32, bitmap(masked.astype(np.uint8), 32))), masked)
+
+
+@pytest.mark.parametrize(
+    ("channels", "depth"), [*((1, depth) for depth in (1, 2, 4, 8, 16)), (3, 8), (3, 16)]
+)
+def test_transparent_colour_is_clear_at_every_depth(channels, depth):
+    most = (1 << depth) - 1
+    samples = np.random.default_rng(6).integers(0, most + 1, (16, 16, channels))
+    # Of 16 bits, neighbours of the colour differ in the lower bits alone.
+    samples[:4] = samples[0, 0]
+    samples[1] = samples[1] ^ 1
+    clear = samples[0, 0]
+    bits = (samples.reshape(16, -1, 1) >> np.arange(depth)[::-1]) & 1
+    rows = b"".join(b"\0" + np.packbits(row).tobytes() for row in bits)
+    transparent = chunk(b"tRNS", struct.pack(f">{channels}H", *clear))
+    kind = {1: 0, 3: 2}[channels]
+    rgba = rgba_of(png_file(depth, kind, rows, (16, 16), transparent))
+    assert_array_equal(rgba[..., 3] == 0, (samples == clear).all(axis=2))
+    assert np.abs(rgba[..., :channels] - samples * 255 / most).max() < 1
+    opaque = rgba_of(png_file(depth, kind, rows, (16, 16)))
+    assert_array_equal(rgba[..., :3], opaque[..., :3])
+
+
+def test_png_with_a_damaged_harmless_chunk_opens_with_a_notice():
+    text = chunk(b"tEXt", b"Comment\0drawn")
+    damaged = text[:-1] + bytes([text[-1] ^ 1])
+    at = WHOLE.index(b"IDAT") - 4
+    picture = decode_picture(WHOLE[:at] + damaged + text + damaged + WHOLE[at:], "drawing")
+    assert_array_equal(picture.rgba, rgba_of(WHOLE))
+    assert picture.notices == ("damaged parts of the file were ignored (tEXt)",)
+    header = WHOLE[:29] + bytes([WHOLE[29] ^ 1]) + WHOLE[30:]
+    with pytest.raises(LissomError, match=f"^{says(RARE_PICTURE, name='drawing', format='PNG')}$"):
+        decode_picture(header, "drawing")
+
+
+def test_float_colours_and_files_of_other_programs_are_refused_with_advice():
+    tags = [(256, 3, 4), (257, 3, 3), (258, 3, 32), (259, 3, 1), (262, 3, 2), (273, 4, 146)]
+    tags += [(277, 3, 3), (278, 3, 3), (279, 4, 144), (339, 3, 3)]
+    directory = b"".join(struct.pack("<HHII", tag, kind, 1, value) for tag, kind, value in tags)
+    tiff = b"II*\0" + struct.pack("<IH", 8, len(tags)) + directory + bytes(4 + 144)
+    with pytest.raises(LissomError, match=says(RARE_PICTURE, name="a.tif", format="TIFF")):
+        decode_picture(tiff, "a.tif")
+    for name, program in (
+        ("a.xcf", "GIMP"),
+        ("a.CLIP", "Clip Studio Paint"),
+        ("a.ase", "Aseprite"),
+    ):
+        with pytest.raises(
+            LissomError, match=f"^{says(PROGRAM_FILE, name=name, program=program)}$"
+        ):
+            decode_picture(b"gimp xcf v011\0" + bytes(99), name)
