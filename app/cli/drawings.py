@@ -51,7 +51,7 @@ def open_drawing(arguments: argparse.Namespace, *, merges_layers: bool) -> Opene
     elif merges_layers:
         opened = open_merged(arguments.picture, meshing, cut_out)
     else:
-        opened = open_layered(arguments.picture, meshing)
+        opened = open_layered(arguments.picture, meshing, cut_out)
     print_notices((*opened.notices, *opened.document.import_log.lines))
     return opened
 

@@ -65,6 +65,7 @@ from app.storage.json_values import (
     repr_for_error as repr_for_error,
 )
 from app.storage.layers import (
+    LAYERED as LAYERED,
     flatten_layers as flatten_layers,
     is_layered as is_layered,
     make_posable_layer as make_posable_layer,
@@ -101,6 +102,7 @@ from app.storage.pictures.picture import (
     decode_pictures as decode_pictures,
     encode_mask as encode_mask,
 )
+from app.storage.pictures.programs import refuse_program_file as refuse_program_file
 from app.storage.preferences import (
     CHECKER as CHECKER,
     LARGEST_GHOST_STEP as LARGEST_GHOST_STEP,

@@ -20,25 +20,33 @@ from app.document import (
     is_visible,
     new_layer,
 )
-from app.errors import LissomError, NoticeCollector, display_name
+from app.errors import LissomError, NoticeCollector, display_name, shortened
 from app.storage.files.reading import read_file
-from app.storage.opening import OpenedScene, build_scene, cut_picture
+from app.storage.opening import OpenedScene, build_scene
 from app.storage.pictures.blending import blend_pictures
+from app.storage.pictures.krita import read_krita
 from app.storage.pictures.layer_names import UniqueNames
 from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
 from app.storage.pictures.openraster import read_openraster
 from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
-from app.texts import _, message_of
+from app.texts import N_, _, message_of
 from engine.arrays import Bytes, readonly
-from engine.domain import rectangle_domain
+from engine.domain import MeshedDomain, rectangle_domain
 from engine.errors import EngineError
 
-READERS = {".ora": read_openraster, ".psd": read_photoshop}
+READERS = {
+    ".ora": read_openraster,
+    ".psd": read_photoshop,
+    ".psb": read_photoshop,
+    ".kra": read_krita,
+}
+LAYERED = tuple(READERS)
 # Minimum per layer, however many layers share the triangles.
 FEWEST_TRIANGLES = 4_000
-LARGEST_FLAT = 1_024  # pixels: layers on a canvas of twice this size are reduced
+LARGEST_FLAT = 1_024  # pixels
+NO_SHAPE = N_("none of its layers can be posed: {reason}")
 WHOLE = CutOut(background="none")  # removes only transparent pixels
 # Fields of a layer that belong to its picture, its handles and their motion.
 DRAWN = (
@@ -63,30 +71,32 @@ def read_layered(path: Path) -> LayeredPicture:
         ) from error
 
 
-def open_layered(path: Path, meshing: Meshing) -> OpenedScene:
+def open_layered(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a layered drawing, and make a layer of each of its layers.
 
-    A layer that is fully opaque, or without a shape, becomes a still picture. All layers together
-    have as many triangles as one picture.
+    A layer that is fully opaque, or without a shape, becomes a still picture. If this is true of
+    all layers, each opens as a picture file does, with the `cut_out`. All layers together have as
+    many triangles as one picture.
     """
-    return _scene(read_layered(path), meshing, is_cut_out=True)
+    return _scene(read_layered(path), meshing, cut_out, is_cut_out=True)
 
 
 def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
     """Read a layered drawing, merged into one picture of its visible layers."""
-    scene = open_layered(path, Meshing(detail="coarse", triangles=FEWEST_TRIANGLES))
-    textures = {
-        layer.id: cut_picture(scene.pictures[layer.id], layer.cut_out).texture
-        for layer in scene.document.layers
-    }
-    merged = encode_png(Image.fromarray(flatten_layers(scene.document, textures)))
+    drawing = read_layered(path)
+    layers = [
+        _placed_layer(imported, index, _rectangle(imported.picture), Meshing(), WHOLE)
+        for index, imported in enumerate(drawing.layers)
+    ]
+    textures = {index: imported.picture.rgba for index, imported in enumerate(drawing.layers)}
+    whole = flatten_layers(_document(drawing, layers), textures, largest=max(drawing.size))
+    merged = encode_png(Image.fromarray(whole))
     opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
-    count = len(scene.document.layers)
     merged_layers = _("the {count} layers of {name} were merged into one drawing").format(
-        count=count, name=path.name
+        count=len(layers), name=path.name
     )
-    notices = (merged_layers,) if count > 1 else ()
-    document = replace(opened.document, import_log=scene.document.import_log)
+    notices = (merged_layers,) if len(layers) > 1 else ()
+    document = replace(opened.document, import_log=drawing.summary)
     return opened._replace(document=document, notices=notices + opened.notices)
 
 
@@ -110,34 +120,39 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
         for notice in picture.notices:
             collector.add_note(name, notice)
     drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=collector.import_log)
-    return _scene(drawing, meshing, is_cut_out=False)
+    return _scene(drawing, meshing, CutOut(), is_cut_out=False)
 
 
-def flatten_layers(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
+def flatten_layers(
+    document: Document, textures: Mapping[int, Bytes], *, largest: int = LARGEST_FLAT
+) -> Bytes:
     """Return the initially visible layers as one picture, as drawn; a large one is reduced.
 
     Parameters
     ----------
     textures : mapping of int to uint8, shape (h, w, 4)
         The cut-out pictures by layer id.
+    largest : int
+        A picture of at least twice as many pixels across is reduced.
 
     Returns
     -------
     uint8, shape (h, w, 4)
         Straight alpha.
     """
-    factor = max(1, max(document.canvas) // LARGEST_FLAT)
+    factor = max(1, max(document.canvas) // largest)
     if len(document.layers) == 1:
         return np.asarray(_reduced(textures[document.layers[0].id], factor))
     size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
 
-    def drawn(layer: Layer) -> Image.Image:
-        imported, corner = _reduced(textures[layer.id], factor), layer.corner / factor
-        moved = Image.new("RGBA", size)
-        moved.paste(imported, (round(corner.real), round(size[1] - corner.imag - imported.height)))
-        return moved
+    def draw(layer: Layer, flat: Image.Image) -> None:
+        part, corner = _reduced(textures[layer.id], factor), layer.corner / factor
+        left, top = round(corner.real), round(size[1] - corner.imag - part.height)
+        beyond = min(max(0, -left), part.width), min(max(0, -top), part.height)
+        flat.alpha_composite(part, (max(left, 0), max(top, 0)), beyond)
 
     def over(flat: Image.Image, parts: Sequence[Layer | CompositeGroup[Layer]]) -> Image.Image:
+        flat = flat.copy()
         for part in parts:
             if isinstance(part, CompositeGroup) and part.is_pass_through:
                 faded = Image.blend(
@@ -147,7 +162,7 @@ def flatten_layers(document: Document, textures: Mapping[int, Bytes]) -> Bytes:
             elif isinstance(part, CompositeGroup):
                 flat = _blended(flat, over(Image.new("RGBA", size), part.parts), part)
             else:
-                flat = Image.alpha_composite(flat, drawn(part))
+                draw(part, flat)
         return flat
 
     first = document.frames.first
@@ -182,21 +197,24 @@ def _reduced(rgba: Bytes, factor: int) -> Image.Image:
 
 
 def make_posable_layer(
-    imported: ImportedLayer, identity: int, meshing: Meshing, *, is_cut_out: bool
+    imported: ImportedLayer,
+    identity: int,
+    meshing: Meshing,
+    cut_out: CutOut = CutOut(),
+    *,
+    is_cut_out: bool,
 ) -> tuple[Layer, tuple[str, ...]]:
     """Return a posable layer of an imported layer, in its drawn place, with notices.
 
     With `is_cut_out`, transparency alone separates the subject, and a fully opaque layer becomes a
-    still picture. Otherwise a plain background is removed first.
+    still picture. Otherwise the `cut_out` separates it.
     """
     picture = imported.picture
-    file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
-    cut_out = WHOLE if is_cut_out else CutOut()
-    domain, still = rectangle_domain(*picture.size), True
     notices: tuple[str, ...] = (
         _("the picture is opaque everywhere, so there is no shape to pose"),
     )
     if not (is_cut_out and picture.is_opaque):
+        cut_out = WHOLE if is_cut_out else cut_out
         try:
             domain, found = build_picture_domain(
                 picture.rgba,
@@ -204,22 +222,35 @@ def make_posable_layer(
                 detail=meshing.detail,
                 cut_out=cut_out,
             )
-            still, notices = False, tuple(map(message_of, found))
+            made = _placed_layer(imported, identity, domain, meshing, cut_out)
+            return replace(made, still=False), tuple(map(message_of, found))
         except EngineError as error:
             notices = (_("cannot be posed: {reason}").format(reason=message_of(error)),)
-    layer = replace(
-        new_layer(file, domain.moved(imported.corner), meshing, WHOLE if still else cut_out),
+    return _placed_layer(imported, identity, _rectangle(picture), meshing, WHOLE), notices
+
+
+def _placed_layer(
+    imported: ImportedLayer, identity: int, domain: MeshedDomain, meshing: Meshing, cut_out: CutOut
+) -> Layer:
+    """Return the still layer of an imported layer, in its drawn place."""
+    picture = imported.picture
+    file = PictureFile(data=imported.data, suffix=picture.suffix, size=picture.size)
+    return replace(
+        new_layer(file, domain.moved(imported.corner), meshing, cut_out),
         id=identity,
         name=imported.name,
         corner=imported.corner,
-        still=still,
+        still=True,
         hidden=not imported.visible,
         opacity=imported.opacity,
         blend=imported.blend,
         clipped=imported.clipped,
         group=imported.group,
     )
-    return layer, notices
+
+
+def _rectangle(picture: Picture) -> MeshedDomain:
+    return rectangle_domain(*picture.size)
 
 
 def make_still_picture(data: bytes, picture: Picture) -> Layer:
@@ -256,34 +287,51 @@ def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
     )
 
 
-def _scene(drawing: LayeredPicture, meshing: Meshing, *, is_cut_out: bool) -> OpenedScene:
+def _scene(
+    drawing: LayeredPicture, meshing: Meshing, cut_out: CutOut, *, is_cut_out: bool
+) -> OpenedScene:
     share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
     each = replace(meshing, triangles=min(meshing.triangles, share))
-    made = run_parallel(
-        lambda numbered: make_posable_layer(numbered[1], numbered[0], each, is_cut_out=is_cut_out),
-        enumerate(drawing.layers),
-        (imported.picture.size for imported in drawing.layers),
-    )
+
+    def shaped(*, is_cut_out: bool) -> list[tuple[Layer, tuple[str, ...]]]:
+        return run_parallel(
+            lambda numbered: make_posable_layer(
+                numbered[1], numbered[0], each, cut_out, is_cut_out=is_cut_out
+            ),
+            enumerate(drawing.layers),
+            (imported.picture.size for imported in drawing.layers),
+        )
+
+    made = shaped(is_cut_out=is_cut_out)
+    if is_cut_out and all(layer.still for layer, _notices in made):
+        made = shaped(is_cut_out=False)
+    if all(layer.still for layer, _notices in made):
+        reason = "; ".join(dict.fromkeys(notice for _layer, notices in made for notice in notices))
+        raise LissomError(_(NO_SHAPE).format(reason=shortened(reason)))
     # Layers with the same picture share its file.
     files: dict[int, PictureFile] = {}
-    layers = tuple(
+    layers = [
         replace(layer, picture=files.setdefault(id(imported.picture), layer.picture))
-        for imported, (layer, _) in zip(drawing.layers, made, strict=True)
-    )
-    if all(layer.still for layer in layers):
-        raise LissomError(_("none of its layers can be posed, because none contains a shape"))
-    pictures = {index: imported.picture for index, imported in enumerate(drawing.layers)}
+        for imported, (layer, _notices) in zip(drawing.layers, made, strict=True)
+    ]
     collector = NoticeCollector()
     for layer, notices in made:
         for notice in notices:
             collector.add_note(layer.name, notice)
+    document = _document(drawing, layers)
+    document = replace(document, import_log=document.import_log + collector.import_log)
+    return OpenedScene(
+        document, {index: imported.picture for index, imported in enumerate(drawing.layers)}
+    )
+
+
+def _document(drawing: LayeredPicture, layers: Sequence[Layer]) -> Document:
     # A drawing with a background defines its own frame.
     framing: Framing = "canvas" if layers[0].still else "fit"
-    document = Document(
-        layers=layers,
+    return Document(
+        layers=tuple(layers),
         size=drawing.size,
         export=ExportSettings(framing=framing),
         groups=drawing.groups,
-        import_log=drawing.summary + collector.import_log,
+        import_log=drawing.summary,
     )
-    return OpenedScene(document, pictures)

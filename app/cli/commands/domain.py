@@ -98,7 +98,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_writable(*filter(None, written), sources=filter(None, read))
     picture, corner = read_layer_picture(arguments.picture, arguments.layer)
     cut_out = parse_cut_out(arguments)
-    if is_layered(arguments.picture) and cut_out.background == "auto":
+    if is_layered(arguments.picture) and cut_out.background == "auto" and not picture.is_opaque:
         # A layer shows exactly its opaque pixels, as in a scene.
         cut_out = replace(cut_out, background="none")
     height = picture.size[1]

@@ -145,13 +145,12 @@ def add_layers(session: Session, project: Project, paths: Sequence[Path]) -> Non
             _require_room(document.layers, [imported.picture for imported in drawing.layers])
             document = group_commands.add_groups(drawing.groups)(document)
             summary += drawing.summary
+            is_cut_out = is_layered(path) and not drawing.is_opaque
             across, up = ((ours - its) // 2 for ours, its in zip(canvas, drawing.size, strict=True))
             for imported in drawing.layers:
                 moved = replace(imported, corner=imported.corner + complex(across, up))
                 identity = layer_commands.next_layer_id(document)
-                layer, notices = make_posable_layer(
-                    moved, identity, meshing, is_cut_out=is_layered(path)
-                )
+                layer, notices = make_posable_layer(moved, identity, meshing, is_cut_out=is_cut_out)
                 document = layer_commands.add_layer(layer)(document)
                 # This takes a tenth of a second, so it runs on the worker and not in the window.
                 runtime = LayerRuntime.of(clip_of(document, identity), imported.picture)

@@ -18,7 +18,7 @@ from app.storage.pictures.picture import Picture
 from app.texts import N_, _
 from engine.arrays import readonly
 
-MOST_LAYERS = 200
+MOST_LAYERS = 1_000
 MOST_GROUPS = 10_000
 EMPTY = N_("left out, because it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
@@ -78,6 +78,11 @@ class LayeredPicture:
     layers: tuple[ImportedLayer, ...]
     summary: ImportLog = EMPTY_IMPORT_LOG
     groups: tuple[Group, ...] = ()
+
+    @property
+    def is_opaque(self) -> bool:
+        """Whether every layer is opaque, as in a flat drawing."""
+        return all(layer.picture.is_opaque for layer in self.layers)
 
 
 class GroupPaths:
@@ -257,7 +262,7 @@ def check_layer_count(count: int) -> None:
     """Refuse too many layers before any of them is read."""
     if count > MOST_LAYERS:
         raise LissomError(
-            _("it has {count:,} layers; Lissom reads at most {most}. Merge some of them").format(
+            _("it has {count:,} layers; Lissom reads at most {most:,}. Merge some of them").format(
                 count=count, most=MOST_LAYERS
             )
         )

@@ -31,6 +31,7 @@ MIMETYPE = b"image/openraster"
 LARGEST_XML = 4 * 1024 * 1024
 # Limit of the pictures' total size beyond twice the file; they are packed already.
 MOST_UNPACKED = 16 * 1024 * 1024
+LARGEST_PICTURE = 1024 * 1024 * 1024
 LARGEST_SIDE = 65_535
 DAMAGED_STACK = N_("its stack.xml is damaged, or has a rare encoding; save it as UTF-8")
 # Krita writes modes that OpenRaster lacks by names of its own.
@@ -65,9 +66,9 @@ def read_openraster(data: bytes) -> LayeredPicture:
 
 
 def _read(archive: zipfile.ZipFile) -> LayeredPicture:
-    if _member(archive, "mimetype", 1024).strip() != MIMETYPE:
+    if read_member(archive, "mimetype", 1024).strip() != MIMETYPE:
         raise LissomError(_("it is not an OpenRaster file"))
-    image = _parse(_member(archive, "stack.xml", LARGEST_XML))
+    image = _parse(read_member(archive, "stack.xml", LARGEST_XML))
     size = (_whole(image, "w"), _whole(image, "h"))
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
@@ -90,7 +91,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     packed = sum(member.compress_size for member in archive.infolist())
     if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
         raise LissomError(_("its pictures would unpack to too many bytes for a drawing"))
-    members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
+    members = {source: read_member(archive, source, max(1 << 20, packed)) for source in distinct}
     check_memory([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
     pictures = dict(zip(distinct, decoded, strict=True))
@@ -224,7 +225,8 @@ def _parse(content: bytes) -> ET.Element:
         raise LissomError(_(DAMAGED_STACK)) from error
 
 
-def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
+def read_member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
+    """Return a member of a zip, of at most so many bytes."""
     member = archive.getinfo(name)
     if member.file_size > largest:
         raise LissomError(

@@ -1,19 +1,33 @@
+import zipfile
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from documents import clocked_document
 from layered import blob, openraster, png
+from messages import says
 from PIL import Image
+from psd_tools import PSDImage
 
+from app.cut_out import CutOut
 from app.document.channels.kinds import DEPTH
 from app.document.settings import Meshing
 from app.errors import LissomError
-from app.storage.layers import make_still_layer, open_layered, open_pictures
+from app.storage.layers import (
+    LARGEST_FLAT,
+    NO_SHAPE,
+    make_still_layer,
+    open_layered,
+    open_merged,
+    open_pictures,
+)
+from app.storage.opening import open_picture
+from app.storage.pictures.krita import MERGED_ALONE, NO_KRITA, NOT_MERGED
 from app.storage.project_file import load_project, save_project
 from engine.domain import require_domain
 
 MESHING = Meshing(triangles=9_000)
+COARSE = Meshing(triangles=1_000, detail="coarse")
 STACK = (
     '<layer name="head" src="data/0.png" x="60" y="10" opacity="0.5"/>'
     '<layer name="body" src="data/1.png" x="20" y="60" visibility="hidden"/>'
@@ -96,13 +110,84 @@ def test_bad_drawings_are_reported_in_words(tmp_path):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(LissomError, match=f"cannot open .*{name}: it is not a"):
             open_layered(tmp_path / name, MESHING)
-    sky = Image.new("RGBA", (30, 20), (1, 2, 3, 255))
-    stack = '<layer name="sky" src="data/0.png"/>'
-    (tmp_path / "sky.ora").write_bytes(openraster((30, 20), stack, [sky]))
-    with pytest.raises(LissomError, match="none of its layers can be posed"):
-        open_layered(tmp_path / "sky.ora", MESHING)
+    dot = Image.new("RGBA", (3, 2), (1, 2, 3, 255))
+    stack = '<layer name="dot" src="data/0.png"/>'
+    (tmp_path / "dot.ora").write_bytes(openraster((30, 20), stack, [dot]))
+    with pytest.raises(LissomError, match=says(NO_SHAPE)):
+        open_layered(tmp_path / "dot.ora", MESHING)
     with pytest.raises(LissomError, match="cannot read"):
         open_layered(tmp_path / "none.ora", MESHING)
+
+
+def disc_on_paper(size=(160, 120), paper=(255, 255, 255, 255)):
+    flat = Image.new("RGBA", size, paper)
+    flat.alpha_composite(blob(80, 60), (40, 30))
+    return flat
+
+
+@pytest.mark.parametrize("background", ["auto", "none"])
+def test_flat_drawing_opens_as_a_picture_of_it_does(tmp_path, background):
+    cut_out, flat = CutOut(background=background), disc_on_paper()
+    (tmp_path / "flat.png").write_bytes(png(flat))
+    stack = '<layer name="paper" src="data/0.png"/>'
+    (tmp_path / "flat.ora").write_bytes(openraster(flat.size, stack, [flat]))
+    PSDImage.frompil(flat.convert("RGB")).save(tmp_path / "flat.psd")
+    with zipfile.ZipFile(tmp_path / "flat.kra", "w") as archive:
+        archive.writestr("mimetype", "application/x-krita")
+        archive.writestr("mergedimage.png", png(flat))
+    wanted = open_picture(tmp_path / "flat.png", COARSE, cut_out).document.layers[0]
+    for name in ("flat.ora", "flat.psd", "flat.kra"):
+        for opening in (open_layered, open_merged):
+            (layer,) = opening(tmp_path / name, COARSE, cut_out).document.layers
+            assert not layer.still
+            assert layer.cut_out == cut_out
+            np.testing.assert_array_equal(layer.domain.outline, wanted.domain.outline)
+
+
+def test_layers_that_are_all_opaque_lose_their_plain_backgrounds(tmp_path):
+    stack = '<layer name="front" src="data/0.png"/><layer name="paper" src="data/1.png"/>'
+    paper = Image.new("RGBA", (160, 120), (9, 99, 9, 255))
+    path = tmp_path / "opaque.ora"
+    path.write_bytes(openraster((160, 120), stack, [disc_on_paper(), paper]))
+    document = open_layered(path, COARSE).document
+    assert [layer.still for layer in document.layers] == [False, False]
+    assert abs(document.layers[1].domain.outline - (80 + 60j)).max() < 45
+    # Merged, the picture is the front layer at its own size.
+    opened = open_merged(path, COARSE)
+    assert opened.pictures[opened.document.layers[0].id].size == (160, 120)
+
+
+def test_merged_drawing_keeps_its_size(tmp_path):
+    size = 2 * LARGEST_FLAT, 32
+    stack = '<layer name="a" src="data/0.png" x="-9" y="-3"/><layer name="b" src="data/1.png"/>'
+    stack += '<layer name="far" src="data/0.png" x="-99"/>'
+    path = tmp_path / "wide.ora"
+    path.write_bytes(openraster(size, stack, [blob(40, 30), blob(*size, (0, 0, 255))]))
+    opened = open_merged(path, COARSE)
+    rgba = opened.pictures[opened.document.layers[0].id].rgba
+    assert rgba.shape == (32, size[0], 4)
+    assert tuple(rgba[10, 10]) == (200, 60, 30, 255)
+    assert tuple(rgba[16, LARGEST_FLAT]) == (0, 0, 255, 255)
+
+
+def test_krita_file_is_read_as_its_merged_picture_with_advice(tmp_path):
+    path = tmp_path / "a.kra"
+
+    def write(**members):
+        with zipfile.ZipFile(path, "w") as archive:
+            for name, content in members.items():
+                archive.writestr(name.replace("_", "."), content)
+
+    write(mimetype="application/x-krita", mergedimage_png=png(blob(60, 50)))
+    document = open_layered(path, COARSE).document
+    assert [layer.picture.size for layer in document.layers] == [(60, 50)]
+    assert document.import_log.warnings == (f"picture: {MERGED_ALONE}",)
+    write(mimetype="application/x-krita")
+    with pytest.raises(LissomError, match=says(NOT_MERGED)):
+        open_layered(path, COARSE)
+    write(mimetype="image/openraster", mergedimage_png=png(blob(60, 50)))
+    with pytest.raises(LissomError, match=says(NO_KRITA)):
+        open_layered(path, COARSE)
 
 
 def test_a_layer_that_becomes_still_keeps_all_but_its_handles_and_poses():

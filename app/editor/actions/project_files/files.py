@@ -20,6 +20,7 @@ from app.editor.work.jobs import JobKind
 from app.editor.work.layer_runtime import LayerRuntime
 from app.errors import display_name
 from app.storage import (
+    LAYERED,
     FileLock,
     FileLockedError,
     OpenedScene,
@@ -32,6 +33,7 @@ from app.storage import (
     open_picture,
     open_pictures,
     project_digest,
+    refuse_program_file,
     run_parallel,
     sample_images,
 )
@@ -41,7 +43,6 @@ PICTURES = (
     *(".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".ppm", ".tga", ".ico"),
     ".avif",
 )
-LAYERED = (".ora", ".psd")
 OPENABLE = (PROJECT, *PICTURES, *LAYERED)
 LOOK = 2.0  # seconds between two checks whether files still exist
 
@@ -138,6 +139,7 @@ def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
             session.show_notice(text.format(name=usable[0].name))
         open_file(session, usable[0])
     elif paths:
+        name = paths[0].name
         if paths[0].is_dir():
             text = _("{name} is a folder. Drop a picture (PNG, JPEG, WebP, …) or a {suffix} file.")
         else:
@@ -145,7 +147,8 @@ def open_dropped_files(session: Session, paths: Sequence[Path]) -> None:
                 "{name} is neither a picture nor a project. Drop a picture (PNG, JPEG, WebP, …) "
                 "or a {suffix} file."
             )
-        session.show_notice(text.format(name=paths[0].name, suffix=PROJECT), tone="error")
+        advice = refuse_program_file(name) or text.format(name=name, suffix=PROJECT)
+        session.show_notice(as_sentence(advice), tone="error")
 
 
 def install_opened_file(session: Session, path: Path, opened: OpenedFile) -> None:
@@ -239,8 +242,6 @@ def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict
 
 
 def _read(path: Path, meshing: Meshing) -> OpenedFile:
-    if is_layered(path):
-        return with_layer_runtimes(open_layered(path, meshing))._replace(drawings=(path,))
     is_project = path.suffix.lower() == PROJECT
     return _read_project(path) if is_project else _read_picture(path, meshing)
 
@@ -262,9 +263,11 @@ def decode_project(document: Document, name: str) -> OpenedFile:
 
 
 def _read_picture(path: Path, meshing: Meshing) -> OpenedFile:
-    opened = with_layer_runtimes(open_picture(path, meshing))
-    (runtime,) = opened.layer_runtimes.values()
-    return opened._replace(next_step=_next_step(runtime), drawings=(path,))
+    read = open_layered if is_layered(path) else open_picture
+    opened = with_layer_runtimes(read(path, meshing))
+    runtimes = tuple(opened.layer_runtimes.values())
+    next_step = _next_step(runtimes[0]) if len(runtimes) == 1 else None
+    return opened._replace(next_step=next_step, drawings=(path,))
 
 
 def _next_step(runtime: LayerRuntime) -> NextStep | None:

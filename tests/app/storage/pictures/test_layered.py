@@ -15,7 +15,7 @@ from psd_tools.constants import BlendMode
 from app.document.layers.groups import Group
 from app.errors import LissomError
 from app.storage.pictures.layer_names import LONGEST_NAME, UniqueNames
-from app.storage.pictures.layered import GROUPS_DEEP, MOST_GROUPS
+from app.storage.pictures.layered import GROUPS_DEEP, MOST_GROUPS, MOST_LAYERS
 from app.storage.pictures.openraster import DAMAGED_STACK, read_openraster
 from app.storage.pictures.photoshop import read_photoshop
 
@@ -153,7 +153,7 @@ def test_what_cannot_be_kept_is_reported():
         (drawing(""), "all of its layers are empty"),
         (drawing("<stack>" * 60 + "</stack>" * 60), says(GROUPS_DEEP, most=50)),
         (drawing("<stack>"), "stack.xml is damaged"),
-        (drawing(HEAD * 201), "at most 200. Merge"),
+        (drawing(HEAD * (MOST_LAYERS + 1)), f"at most {MOST_LAYERS:,}. Merge"),
     ],
 )
 def test_bad_files_are_reported_in_words(data, words):
