@@ -10,7 +10,11 @@ from engine.arrays import Bytes
 
 NORMAL, PASS_THROUGH, MULTIPLY, SCREEN, VIVID_LIGHT = b"norm", b"pass", b"mul ", b"scrn", b"vLit"
 FOLDER, BELOW_ALL = 1, 3  # kinds of section dividers: a group, and where it begins from below
-DENSITY, FEATHER = 1, 2  # bits of what is said of a mask of pixels
+# Bits of what is said of a mask of pixels, and of a path.
+DENSITY, FEATHER, PATH_DENSITY, PATH_FEATHER = 1, 2, 4, 8
+ON, OFF = b"bool\1", b"bool\0"  # values in descriptors
+UNION, SUBTRACT = 1, 2  # of a path with those before
+PIXELS_SAY_NOTHING = 16  # a layer's flag
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -24,6 +28,8 @@ class Mask:
     disabled: bool = False
     density: int | None = None
     feather: float | None = None
+    path_density: int | None = None
+    path_feather: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,6 +47,7 @@ class Drawn:
     mask: Mask | None = None
     blocks: tuple[tuple[bytes, bytes], ...] = ()  # keys of four letters, and what they say
     ranges: tuple[int, int, int, int] = (0, 0, 255, 255)  # of its greys, at which it is seen
+    is_described: bool = False  # has no pixels, since its blocks say what it shows
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,6 +61,7 @@ class Folder:
     clipped: bool = False
     hidden: bool = False
     mask: Mask | None = None
+    blocks: tuple[tuple[bytes, bytes], ...] = ()
 
 
 @dataclass
@@ -101,7 +109,7 @@ def _write(written: _Written, layer: Drawn | Folder) -> None:
     _record(written, end, end.pixels, (0, 0), (_divider(BELOW_ALL),))
     for inner in layer.layers:
         _write(written, inner)
-    _record(written, layer, end.pixels, (0, 0), (_divider(FOLDER, layer.blend),))
+    _record(written, layer, end.pixels, (0, 0), (_divider(FOLDER, layer.blend), *layer.blocks))
 
 
 def _divider(kind: int, blend: bytes = b"") -> tuple[bytes, bytes]:
@@ -121,6 +129,8 @@ def _record(
     if layer.mask is not None:
         planes[-2] = layer.mask.pixels
     data = {number: struct.pack(">H", 0) + plane.tobytes() for number, plane in planes.items()}
+    if isinstance(layer, Drawn) and layer.is_described:
+        data = dict.fromkeys(planes, b"\0\0")
     name = layer.name.encode("latin-1")
     ranges = bytes(layer.ranges) if isinstance(layer, Drawn) else b""
     # Then those of what lies behind.
@@ -135,6 +145,8 @@ def _record(
     # A group's own mode is with its divider.
     blend = NORMAL if layer.blend == PASS_THROUGH else layer.blend
     flags = 2 * layer.hidden
+    if isinstance(layer, Drawn) and layer.is_described:
+        flags |= PIXELS_SAY_NOTHING
     record += b"8BIM" + blend + bytes([layer.opacity, layer.clipped, flags, 0])
     written.records.append(record + struct.pack(">I", len(extra)) + extra)
     written.channels += data.values()
@@ -145,14 +157,90 @@ def _mask(mask: Mask | None) -> bytes:
         return struct.pack(">I", 0)
     height, width = mask.pixels.shape
     box = (mask.top, mask.left, mask.top + height, mask.left + width)
-    settings = DENSITY * (mask.density is not None) + FEATHER * (mask.feather is not None)
+    said = {
+        DENSITY: (">B", mask.density),
+        FEATHER: (">d", mask.feather),
+        PATH_DENSITY: (">B", mask.path_density),
+        PATH_FEATHER: (">d", mask.path_feather),
+    }
+    settings = {
+        bit: struct.pack(form, value) for bit, (form, value) in said.items() if value is not None
+    }
     flags = 2 * mask.disabled + 16 * bool(settings)
     data = struct.pack(">iiiiBB", *box, mask.outside, flags)
     if settings:
-        data += bytes([settings])
-        data += b"" if mask.density is None else bytes([mask.density])
-        data += b"" if mask.feather is None else struct.pack(">d", mask.feather)
+        data += bytes([sum(settings)]) + b"".join(settings.values())
         data += bytes(max(0, 36 - len(data)) if len(data) > 20 else 20 - len(data))
     else:
         data += bytes(2)
     return struct.pack(">I", len(data)) + data
+
+
+Box = tuple[float, float, float, float]  # left, top, right, bottom, as shares of the canvas
+
+
+def path_block(*boxes: Box, flags: int = 0) -> tuple[bytes, bytes]:
+    """Return the block of a path, of a shape or a mask: a rectangle with rectangular holes."""
+    records = struct.pack(">H24x", 6) + struct.pack(">HH22x", 8, 0)
+    for number, (left, top, right, bottom) in enumerate(boxes):
+        does = SUBTRACT if number else UNION
+        records += struct.pack(">HHhHII10x", 0, 4, does, 1, 0, 0)
+        for x, y in ((left, top), (right, top), (right, bottom), (left, bottom)):
+            records += struct.pack(">H6i", 1, *3 * (round(y * (1 << 24)), round(x * (1 << 24))))
+    return b"vmsk", _padded(struct.pack(">II", 3, flags) + records)
+
+
+def fill_block(colour: tuple[int, int, int], kind: bytes = b"RGBC") -> tuple[bytes, bytes]:
+    """Return the block of a fill of one colour."""
+    return b"SoCo", _padded(struct.pack(">I", 16) + descriptor(b"null", _colour(colour, kind)))
+
+
+def effects_block(
+    *effects: tuple[bytes, dict[bytes, bytes]], key: bytes = b"lfx2"
+) -> tuple[bytes, bytes]:
+    """Return the block of effects, each with its kind and what it says."""
+    said = {b"masterFXSwitch": ON}
+    for kind, values in effects:
+        said[kind] = b"Objc" + descriptor(kind, {b"enab": ON, **values})
+    return key, _padded(struct.pack(">II", 0, 16) + descriptor(b"null", said))
+
+
+def overlay(
+    colour: tuple[int, int, int], percent: float = 100, mode: bytes = b"Nrml"
+) -> tuple[bytes, dict[bytes, bytes]]:
+    """Return the effect of a colour over a layer."""
+    return b"SoFi", {
+        b"Md  ": b"enum" + _key(b"BlnM") + _key(mode),
+        b"Opct": b"UntF#Prc" + struct.pack(">d", percent),
+        **_colour(colour, b"RGBC"),
+    }
+
+
+def old_effects_block(*kinds: bytes) -> tuple[bytes, bytes]:
+    """Return the block of effects as programs before 2000 wrote it, all of them overlays."""
+    colour = struct.pack(">H4H", 0, 65535, 0, 0, 0)
+    fill = struct.pack(">I4s4s", 2, b"8BIM", NORMAL) + colour + bytes([255, 1]) + colour
+    listed = b"".join(b"8BIM" + kind + struct.pack(">I", len(fill)) + fill for kind in kinds)
+    return b"lrFX", _padded(struct.pack(">HH", 0, len(kinds)) + listed)
+
+
+def descriptor(kind: bytes, said: dict[bytes, bytes]) -> bytes:
+    """Return values by their keys, each value with its type in front."""
+    listed = b"".join(_key(key) + value for key, value in said.items())
+    return struct.pack(">IH", 1, 0) + _key(kind) + struct.pack(">I", len(said)) + listed
+
+
+def _colour(colour: tuple[int, int, int], kind: bytes) -> dict[bytes, bytes]:
+    names = (b"Rd  ", b"Grn ", b"Bl  ")
+    said = {
+        name: b"doub" + struct.pack(">d", level) for name, level in zip(names, colour, strict=True)
+    }
+    return {b"Clr ": b"Objc" + descriptor(kind, said)}
+
+
+def _key(key: bytes) -> bytes:
+    return struct.pack(">I", 0 if len(key) == 4 else len(key)) + key
+
+
+def _padded(content: bytes) -> bytes:
+    return content + bytes(-len(content) % 4)

@@ -21,6 +21,7 @@ from app.editor.work.layer_runtime import LayerRuntime
 from app.errors import EMPTY_IMPORT_LOG, ImportLog, LissomError, NoticeCollector, display_name
 from app.solving import KeyResolver, start_picture_replacement
 from app.storage import (
+    LAYERED,
     ImportedLayer,
     LayeredPicture,
     Picture,
@@ -213,7 +214,7 @@ def _drawing(path: Path) -> LayeredPicture:
 
 
 def ask_pictures_to_add(session: Session) -> None:
-    suffixes = (*files.PICTURES, *files.LAYERED)
+    suffixes = (*files.PICTURES, *LAYERED)
     session.ask_file(_("Add a picture as a layer"), suffixes, lambda path: do(add_layers, [path]))
 
 
@@ -231,7 +232,7 @@ def set_drop_target(session: Session, identity: int) -> None:
 
 def drop_files(session: Session, paths: Sequence[Path]) -> None:
     """Open dropped files; ask whether pictures join the open scene."""
-    kinds = (*files.PICTURES, *files.LAYERED)
+    kinds = (*files.PICTURES, *LAYERED)
     pictures = [path for path in paths if path.suffix.lower() in kinds and not path.is_dir()]
     project = session.project
     if project is None or not pictures or len(pictures) < len(paths):

@@ -23,8 +23,22 @@ from app.storage.pictures.layered import (
     check_memory,
     corner_from_top,
     encode_png,
+    is_blank,
 )
-from app.storage.pictures.photoshop_masks import MaskedGroup, is_masked, masked_pixels
+from app.storage.pictures.photoshop_masks import (
+    TRANSPARENCY,
+    MaskedGroup,
+    is_masked,
+    masked_pixels,
+    to_rgba,
+)
+from app.storage.pictures.photoshop_paint import (
+    box_of,
+    effects_of,
+    fill_colour,
+    has_outline,
+    lay_over,
+)
 from app.storage.pictures.picture import Picture, decode_picture
 from app.texts import N_, _
 from engine.arrays import freeze
@@ -32,19 +46,23 @@ from engine.arrays import freeze
 MEBIBYTE = 1024 * 1024
 SIGNATURE = b"8BPS"
 HEADER: Final = 26  # bytes
-MOST_RECORDS: Final = 1_000
+MOST_RECORDS: Final = 4_000
 # Start of the layer list in files of more than 8 bits per channel.
 DEEP_LAYERS: Final = re.compile(rb"8B(IM|64)Lr(16|32)")
-# Names in psd-tools of layers with pixels. Shapes, placed pictures and texts come with pixels.
+# Names in psd-tools of layers with pixels. Placed pictures and texts come with pixels.
 DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
+# Blocks of adjustments that psd-tools takes for empty pictures.
+OLD_ADJUSTMENTS: Final = {b"brit", b"hue "}
 # Number of colour channels, numbered from 0; the alpha channel has number -1.
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
-TRANSPARENCY: Final = -1
 KNOCKOUT: Final = b"knko"
-PADDING: Final = 3  # bytes that may follow the merged picture
+PADDING: Final = 3  # bytes that may follow the rows of a channel
 # A layer's blending range of two black and two white levels: all levels, or unspecified.
 ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
 MODES: Final = {blend.upper().replace("-", "_"): blend for blend in BLENDS}
+DRAWN_WITHOUT: Final = N_("drawn without effects ({effects})")
+NOT_PAINTED: Final = N_("left out, because Lissom draws only shapes and fills of one color")
+MERGED_ALONE: Final = N_("the merged picture of the file, because none of its layers can be drawn")
 DAMAGED: Final = N_("it is not a Photoshop file, or it is damaged")
 DAMAGE = (
     OSError,
@@ -123,36 +141,45 @@ def _require_few_records(data: bytes) -> None:
 def _read(drawing: Any) -> LayeredPicture:
     collector, groups = NoticeCollector(), GroupPaths()
     found = list(_drawn_layers(drawing, _Place(), groups, collector))
-    check_memory([(layer.width, layer.height) for _place, layer, _clipped in found])
+    boxes = [box_of(layer) for _place, layer, _clipped in found]
+    check_memory([(right - left, bottom - top) for left, top, right, bottom in boxes])
     layers = []
-    for place, layer, is_clipped in found:
+    for (place, layer, is_clipped), box in zip(found, boxes, strict=True):
         name = layer.name.strip() or "layer"
-        if not layer.is_group():
+        if layer.has_pixels() and not layer.is_group():
             _require_channels(layer, drawing)
         # An empty layer still clips as in the file.
-        image = masked_pixels(layer, place.masks, collector) or Image.new("RGBA", (1, 1))
+        image = masked_pixels(layer, box, place.masks, collector) or Image.new("RGBA", (1, 1))
+        fill = layer.fill_opacity / 255
+        for effect in effects_of(layer):
+            if effect.overlay is not None:
+                image, fill = lay_over(image, fill, effect.overlay)
         picture = Picture(rgba=freeze(np.array(image)))
         read = ImportedLayer(
             name=name,
             data=encode_png(image),
             picture=picture,
-            corner=corner_from_top(layer.left, layer.top, picture.size, drawing.height),
+            corner=corner_from_top(box[0], box[1], picture.size, drawing.height),
             visible=layer.visible,
-            opacity=layer.opacity / 255 * layer.fill_opacity / 255,
+            opacity=layer.opacity / 255 * fill,
             blend="normal" if layer.is_group() else _blend(layer, collector),
             clipped=is_clipped,
             group=place.group,
         )
         layers.append(read)
-    if not found and not collector.import_log:
-        # A file saved without layers holds only the merged picture.
-        whole = drawing._record.image_data  # noqa: SLF001 - as of channels
-        rows = drawing.height * drawing.channels
-        _require_all_rows(whole, rows, drawing.version, padding=PADDING)
-        file = encode_png(drawing.topil().convert("RGBA"))
-        flat = decode_picture(file, _("the picture"))
-        layers = [ImportedLayer(name="picture", data=file, picture=flat)]
+    if all(is_blank(layer.picture) for layer in layers) and drawing.has_preview():
+        layers = [_merged(drawing)]
+        if found or collector.import_log:
+            collector.add_warning(layers[0].name, _(MERGED_ALONE))
     return build_layered_picture((drawing.width, drawing.height), layers, groups, collector)
+
+
+def _merged(drawing: Any) -> ImportedLayer:
+    """Return the merged picture of a file as a layer."""
+    whole = drawing._record.image_data  # noqa: SLF001 - as of channels
+    _require_all_rows(whole, drawing.height * drawing.channels, drawing.version)
+    file = encode_png(to_rgba(drawing.topil()))
+    return ImportedLayer(name="picture", data=file, picture=decode_picture(file, _("the picture")))
 
 
 def _drawn_layers(
@@ -179,7 +206,7 @@ def _drawn_layers(
                 clipped=is_clipped,
             )
             _warn_left_out(layer, name, collector)
-            if is_masked(layer, collector):
+            if is_masked(layer):
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
                 masks = (*masks, MaskedGroup(layer, canvas))
                 collector.add_note(
@@ -188,33 +215,40 @@ def _drawn_layers(
             inner = _Place(group=groups.add(place.group, group), masks=masks)
             drawn = list(_drawn_layers(layer, inner, groups, collector))
             yield from drawn or [(inner, layer, False)]
-        elif layer.kind in DRAWN:
+        elif reason := _why_left_out(layer):
+            collector.add_warning(name, reason)
+            clips = clips and _is_clipping(layer)
+            continue
+        else:
             _warn_left_out(layer, name, collector)
             if layer.kind == "type":
                 collector.add_note(name, _("drawn as a picture; its text cannot be edited"))
             yield replace(place, masks=masks), layer, is_clipped
-        else:
-            left_out = (
-                _("left out, because it is a fill layer")
-                if layer.kind.endswith("fill")
-                else _("left out, because it is an adjustment layer")
-            )
-            collector.add_warning(name, left_out)
-            clips = clips and _is_clipping(layer)
-            continue
         has_base = has_base or not is_clipped
         clips = clips or not _is_clipping(layer)
 
 
+def _why_left_out(layer: Any) -> str:
+    """Return why a layer is not drawn; empty if it is."""
+    is_described = layer.kind == "shape" or layer.kind.endswith("fill")
+    if not is_described and (
+        layer.kind not in DRAWN or any(key in layer.tagged_blocks for key in OLD_ADJUSTMENTS)
+    ):
+        return _("left out, because it is an adjustment layer")
+    if is_described and not layer.has_pixels() and fill_colour(layer) is None:
+        return _(NOT_PAINTED)
+    return ""
+
+
 def _warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
     """Add notices about unsupported features that change the look of a layer or group."""
-    if layer.has_effects():
-        effects = dict.fromkeys(
-            _split_camel_case(type(effect).__name__) for effect in layer.effects if effect.enabled
-        )
-        collector.add_warning(
-            name, _("drawn without effects ({effects})").format(effects=", ".join(effects))
-        )
+    missing = dict.fromkeys(
+        effect.name for effect in effects_of(layer) if effect.overlay is None or layer.is_group()
+    )
+    if missing:
+        collector.add_warning(name, _(DRAWN_WITHOUT).format(effects=", ".join(missing)))
+    if not layer.is_group() and not layer.has_pixels() and has_outline(layer):
+        collector.add_warning(name, _("drawn without the outline of its shape"))
     if layer.kind == "artboard":
         collector.add_warning(name, _("an artboard; its background and edges are not drawn"))
     ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
@@ -230,11 +264,6 @@ def _warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
 def _is_clipping(layer: Any) -> bool:
     """Return whether a layer or a group has the clipping flag, which psd-tools does not expose."""
     return bool(layer._record.clipping.name == "NON_BASE")  # noqa: SLF001 - as of channels
-
-
-def _split_camel_case(name: str) -> str:
-    """Return a class name such as "DropShadow" in separate words."""
-    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()
 
 
 def _blend(layer: Any, collector: NoticeCollector) -> BlendMode:
@@ -268,11 +297,11 @@ def _require_channels(layer: Any, drawing: Any) -> None:
             _require_all_rows(channel, layer.height, drawing.version)
 
 
-def _require_all_rows(channel: Any, rows: int, version: int, *, padding: int = 0) -> None:
+def _require_all_rows(channel: Any, rows: int, version: int) -> None:
     """Refuse packed rows whose total length differs from the sum of their stated lengths."""
     if channel.compression.name == "RLE":
         size = 2 * version  # bytes of a length
         lengths = np.frombuffer(channel.data[: size * rows], f">u{size}")
         left = len(channel.data) - size * rows - int(lengths.sum())
-        if len(lengths) < rows or not 0 <= left <= padding:
+        if len(lengths) < rows or not 0 <= left <= PADDING:
             raise LissomError(_("one of its channels is damaged: its rows have the wrong length"))

@@ -1,16 +1,22 @@
 """The pixels of a Photoshop layer, with its masks and those of its groups applied."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from math import ceil
 from typing import Any, Final
 
 import numpy as np
-from PIL import Image, ImageChops, ImageFilter
+from PIL import Image, ImageChops, ImageCms, ImageFilter, ImageOps
 
 from app.errors import NoticeCollector
+from app.storage.pictures.photoshop_paint import Box, draw_path, fill_colour
 from app.texts import _
 from engine.arrays import Booleans
 
+TRANSPARENCY: Final = -1  # number of the alpha channel
+OPAQUE: Final = 255
+LARGEST_MARGIN: Final = 1_000  # pixels around a layer in which a soft mask is drawn
 # Mask levels that leave a layer half transparent.
 HALF_SEEN: Final = [2 < level < 253 for level in range(256)]
 
@@ -27,24 +33,22 @@ class MaskedGroup:
 
 
 def masked_pixels(
-    layer: Any, around: Sequence[MaskedGroup], collector: NoticeCollector
+    layer: Any, box: Box, around: Sequence[MaskedGroup], collector: NoticeCollector
 ) -> Image.Image | None:
-    """Return a layer's pixels, cut by its own mask and by those of its groups.
+    """Return a layer's pixels in a box, cut by its own masks and by those of its groups.
 
     None if it has no pixels.
     """
-    if layer.width == 0 or layer.height == 0:
+    if box[0] >= box[2] or box[1] >= box[3]:
         return None
-    image = layer.topil()
-    if image is None:
+    pixels = _pixels(layer, box)
+    if pixels is None:
         return None
-    pixels: Image.Image = image.convert("RGBA")
-    corner = layer.left, layer.top
-    if is_masked(layer, collector):
-        _cut(pixels, _seen_through(layer.mask, corner, pixels.size))
+    if is_masked(layer):
+        _cut(pixels, _seen_through(layer, box))
     for each in around:
-        mask = _seen_through(each.group.mask, corner, pixels.size)
-        if _shines_through(each, corner, pixels, mask) and not each.has_warned:
+        mask = _seen_through(each.group, box)
+        if _shines_through(each, box[:2], pixels, mask) and not each.has_warned:
             each.has_warned = True
             what = _("its mask makes it half transparent, so its layers shine through each other")
             collector.add_warning(each.group.name.strip() or "layer", what)
@@ -52,15 +56,45 @@ def masked_pixels(
     return pixels
 
 
-def is_masked(layer: Any, collector: NoticeCollector) -> bool:
-    """Return whether a layer or group has a pixel mask. A vector mask gives a notice."""
-    mask = layer.mask
-    is_masked = mask is not None and not mask.disabled
-    # Programs store the result of a vector mask as a pixel mask, too.
-    is_by_paths = layer.kind != "shape" and mask is None and layer.has_vector_mask()
-    if is_by_paths and not layer.vector_mask.disabled:
-        collector.add_warning(layer.name.strip() or "layer", _("drawn without its vector mask"))
-    return is_masked
+def _pixels(layer: Any, box: Box) -> Image.Image | None:
+    """Return the own pixels of a layer in sRGB, or those that its path and colour describe."""
+    if not layer.has_pixels():
+        colour = fill_colour(layer)
+        size = box[2] - box[0], box[3] - box[1]
+        return None if colour is None else Image.new("RGBA", size, (*colour, OPAQUE))
+    image = layer.topil()
+    return None if image is None else to_rgba(image, layer.topil(TRANSPARENCY))
+
+
+def to_rgba(image: Image.Image, alpha: Image.Image | None = None) -> Image.Image:
+    """Return a picture in sRGB; Pillow has no alpha beside inks or L*a*b* colours."""
+    if image.mode == "LAB":
+        lab, srgb = ImageCms.createProfile("LAB"), ImageCms.createProfile("sRGB")
+        image = ImageCms.profileToProfile(image, lab, srgb, outputMode="RGB") or image
+    pixels = image.convert("RGBA")
+    if alpha is not None and "A" not in image.getbands():
+        pixels.putalpha(alpha.convert("L"))
+    return pixels
+
+
+def is_masked(layer: Any) -> bool:
+    """Return whether a layer or group has a mask that is in use."""
+    return _has_pixel_mask(layer) or _has_path_mask(layer)
+
+
+def _has_pixel_mask(layer: Any) -> bool:
+    return layer.mask is not None and not layer.mask.disabled
+
+
+def _has_path_mask(layer: Any) -> bool:
+    """Return whether a path cuts a layer, unless its result is stored as pixels."""
+    if not layer.has_vector_mask() or layer.vector_mask.disabled:
+        return False
+    if layer.kind == "shape" and layer.has_pixels():
+        return False
+    return layer.mask is None or not (
+        layer.mask.has_real() or layer.mask.flags.user_mask_from_render
+    )
 
 
 def _cut(pixels: Image.Image, mask: Image.Image) -> None:
@@ -85,16 +119,43 @@ def _shines_through(
     return found
 
 
-def _seen_through(mask: Any, corner: tuple[int, int], size: tuple[int, int]) -> Image.Image:
-    """Return the opacity of a mask at each pixel of a layer."""
-    seen = Image.new("L", size, mask.background_color)
+def _seen_through(layer: Any, box: Box) -> Image.Image:
+    """Return the opacity of the masks of a layer or group at each pixel of a box."""
+    settings = layer.mask.parameters if layer.mask is not None else None
+    seen = Image.new("L", (box[2] - box[0], box[3] - box[1]), OPAQUE)
+    if _has_pixel_mask(layer):
+        density, feather = (
+            (settings.user_mask_density, settings.user_mask_feather) if settings else (None, None)
+        )
+        seen = _soft(partial(_mask_pixels, layer.mask), box, density, feather)
+    if _has_path_mask(layer):
+        density, feather = (
+            (settings.vector_mask_density, settings.vector_mask_feather)
+            if settings
+            else (None, None)
+        )
+        path = _soft(partial(draw_path, layer), box, density, feather)
+        seen = ImageChops.multiply(seen, path)
+    return seen
+
+
+def _soft(
+    draw: Callable[[Box], Image.Image], box: Box, density: int | None, feather: float | None
+) -> Image.Image:
+    """Return a mask in a box, softened at its edges by the feather, and faded by the density."""
+    margin = min(ceil(3 * (feather or 0)), LARGEST_MARGIN)
+    seen = draw((box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin))
+    if feather:
+        seen = ImageOps.crop(seen.filter(ImageFilter.GaussianBlur(feather)), margin)
+    share = 1.0 if density is None else density / OPAQUE
+    return seen.point(lambda level: round(OPAQUE - share * (OPAQUE - level)))
+
+
+def _mask_pixels(mask: Any, box: Box) -> Image.Image:
     drawn = mask.topil()
+    # A mask that lacks its pixels cuts nothing.
+    outside = OPAQUE if drawn is None and all(mask.size) else mask.background_color
+    seen = Image.new("L", (box[2] - box[0], box[3] - box[1]), outside)
     if drawn is not None:
-        seen.paste(drawn.convert("L"), (mask.left - corner[0], mask.top - corner[1]))
-    settings = mask.parameters
-    if settings is not None and settings.user_mask_feather:
-        seen = seen.filter(ImageFilter.GaussianBlur(settings.user_mask_feather))
-    if settings is not None and settings.user_mask_density is not None:
-        density = settings.user_mask_density / 255
-        seen = seen.point(lambda level: round(255 - density * (255 - level)))
+        seen.paste(drawn.convert("L"), (mask.left - box[0], mask.top - box[1]))
     return seen

@@ -1,6 +1,8 @@
 """Photoshop files as other programs write them: groups, masks, clipping, modes, texts."""
 
 import contextlib
+import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,18 +11,31 @@ from numpy.testing import assert_allclose, assert_array_equal
 from photoshop_files import (
     MULTIPLY,
     NORMAL,
+    OFF,
     SCREEN,
     VIVID_LIGHT,
     Drawn,
     Folder,
     Mask,
+    descriptor,
+    effects_block,
+    fill_block,
+    old_effects_block,
+    overlay,
+    path_block,
     photoshop_file,
 )
 
 from app.document.layers.groups import BLENDS, Group
 from app.errors import ImportLog, LissomError
 from app.storage.pictures.layered import GROUPS_DEEP
-from app.storage.pictures.photoshop import DAMAGED, MOST_RECORDS, read_photoshop
+from app.storage.pictures.photoshop import (
+    DAMAGED,
+    DRAWN_WITHOUT,
+    MOST_RECORDS,
+    NOT_PAINTED,
+    read_photoshop,
+)
 
 SIZE = (100, 120)
 FULL = np.full((20, 30, 4), 255, np.uint8)
@@ -194,13 +209,150 @@ def test_masks_are_taken_into_the_pixels_of_layers_and_groups(mask):
     assert grouped.summary.notes == (() if mask.disabled else notices)
 
 
-def test_a_feathered_mask_is_soft():
+def test_feathered_mask_is_soft_at_each_of_its_edges():
     edge = Mask(pixels=HALF, left=10, top=20, feather=2.0)
     (soft,) = read(drawn("arm", mask=edge)).layers
     levels = on_canvas(soft)[30, 10:40, 3].astype(int)
-    assert (np.diff(levels) <= 0).all()
+    # The mask is clear beside the layer, too.
+    assert_array_equal(levels[:15], levels[14::-1])
+    assert (np.diff(levels[8:]) <= 0).all()
     assert abs(levels[14] - 128) < 40
-    assert (levels[[0, -1]] == (255, 0)).all()
+    assert (levels[[7, -1]] == (255, 0)).all()
+
+
+RED = (255, 0, 0)
+QUARTER = (0.1, 0.25, 0.5, 0.75)  # of 100 by 120 pixels: columns 10 to 50, rows 30 to 90
+
+
+def shape(name="shape", *, boxes=(QUARTER,), colour=RED, **more):
+    blocks = (fill_block(colour), path_block(*boxes))
+    return Drawn(name=name, pixels=EMPTY, blocks=blocks, is_described=True, **more)
+
+
+def test_shape_without_pixels_is_drawn_from_path_and_colour():
+    empty = Mask(pixels=HALF, left=10, top=20)  # described, too
+    (found,) = read(shape(colour=(12, 200, 34), opacity=51, mask=empty)).layers
+    canvas = on_canvas(found)
+    wanted = np.zeros_like(canvas)
+    wanted[30:90, 10:50] = (12, 200, 34, 255)
+    assert_array_equal(canvas[..., 3], wanted[..., 3])
+    assert_array_equal(canvas[30:90, 10:50], wanted[30:90, 10:50])
+    assert found.opacity == 0.2
+
+
+def test_shape_has_soft_edges_and_holes_and_ends_near_the_canvas():
+    (found,) = read(shape(boxes=(QUARTER, (0.2, 0.4, 0.4025, 0.6)))).layers
+    hole = on_canvas(found)[60, 19:42, 3]
+    assert_array_equal(hole, [255, *[0] * 20, 191, 255])
+    (large,) = read(shape(boxes=((-90, -90, 90, 90),))).layers
+    assert large.picture.size == (2 * SIZE[0], 2 * SIZE[1])
+
+
+def test_fill_layer_covers_the_canvas_within_its_masks():
+    fill = Drawn(name="sky", pixels=EMPTY, blocks=(fill_block(RED),))
+    (found,) = read(fill).layers
+    assert (on_canvas(found) == (*RED, 255)).all()
+    masked = replace(fill, mask=Mask(pixels=HALF, left=10, top=20))
+    (found,) = read(masked).layers
+    assert on_canvas(found)[..., 3].sum() == 255 * HALF.size
+
+
+def test_shape_of_no_single_colour_is_reported():
+    gradient = (b"GdFl", struct.pack(">I", 16) + descriptor(b"null", {}))
+    book = fill_block(RED, b"BkCl")
+    found = read(
+        drawn("arm"),
+        Drawn(name="g", pixels=EMPTY, blocks=(gradient, path_block(QUARTER)), is_described=True),
+        Drawn(name="b", pixels=EMPTY, blocks=(book,)),
+    )
+    assert [layer.name for layer in found.layers] == ["arm"]
+    assert found.summary.warnings == (f"g, b: {NOT_PAINTED}",)
+
+
+@pytest.mark.parametrize("in_group", [False, True])
+@pytest.mark.parametrize(
+    ("mask", "flags"),
+    [
+        (None, 0),
+        (None, 1),
+        (None, 4),
+        (Mask(pixels=np.full((0, 0), 0, np.uint8), outside=255, path_density=51), 0),
+        (Mask(pixels=HALF, left=10, top=20), 0),
+    ],
+)
+def test_path_masks_cut_layers_and_groups(mask, flags, in_group):
+    pixels = np.full((SIZE[1], SIZE[0], 4), 255, np.uint8)
+    block = path_block(QUARTER, flags=flags)
+    layer = Drawn(name="arm", pixels=pixels)
+    if in_group:
+        (found,) = read(Folder(name="limbs", layers=[layer], mask=mask, blocks=(block,))).layers
+    else:
+        (found,) = read(replace(layer, mask=mask, blocks=(block,))).layers
+    inside, outside = {0: (255, 0), 1: (0, 255), 4: (255, 255)}[flags]
+    wanted = np.full(pixels.shape[:2], outside)
+    wanted[30:90, 10:50] = inside
+    if mask is not None and mask.path_density is not None:
+        wanted = 255 - (255 - wanted) * mask.path_density // 255
+    elif mask is not None:
+        # Both masks cut.
+        wanted[:20], wanted[40:], wanted[:, 25:] = 0, 0, 0
+    assert_array_equal(on_canvas(found)[..., 3], wanted)
+
+
+def test_feathered_path_mask_is_soft():
+    pixels = np.full((SIZE[1], SIZE[0], 4), 255, np.uint8)
+    mask = Mask(pixels=HALF[:0, :0], outside=255, path_feather=3.0)
+    found = read(Drawn(name="arm", pixels=pixels, mask=mask, blocks=(path_block(QUARTER),)))
+    levels = on_canvas(found.layers[0])[60, :30, 3].astype(int)
+    assert (np.diff(levels) >= 0).all()
+    assert abs(levels[9:11].mean() - 128) < 2
+    assert (levels[[0, -1]] == (0, 255)).all()
+
+
+@pytest.mark.parametrize("key", [b"lfx2", b"lmfx", b"lfxs"])
+def test_effects_of_every_version_are_reported_once(key):
+    block = effects_block((b"DrSh", {}), (b"FrFX", {}), (b"IrGl", {b"enab": OFF}), key=key)
+    found = read(drawn("arm", blocks=(block,)))
+    assert found.summary.warnings == (says_effects("arm", "drop shadow, stroke"),)
+
+
+def says_effects(name, effects):
+    return f"{name}: {DRAWN_WITHOUT.format(effects=effects)}"
+
+
+def test_old_effects_and_effects_of_groups_are_reported():
+    old = old_effects_block(b"sofi")
+    assert read(drawn("arm", blocks=(old,))).summary.warnings == (
+        says_effects("arm", "color overlay"),
+    )
+    block = effects_block(overlay(RED))
+    group = Folder(name="limbs", layers=[drawn("arm")], blocks=(block,))
+    assert read(group).summary.warnings == (says_effects("limbs", "color overlay"),)
+    # Newer effects stand in the place of the old ones.
+    assert not read(drawn("arm", blocks=(old, block))).summary.warnings
+
+
+@pytest.mark.parametrize("fill", [255, 51])
+def test_colour_overlay_is_drawn(fill):
+    blocks = (effects_block(overlay(RED, 50)), (b"iOpa", bytes([fill, 0, 0, 0])))
+    found = read(drawn("arm", blocks=blocks))
+    assert not found.summary.warnings
+    (arm,) = found.layers
+    # White at the fill's opacity, then red over it at 50 %.
+    alpha = 0.5 + 0.5 * fill / 255
+    weight = 0.5 / alpha
+    assert arm.opacity == pytest.approx(alpha)
+    wanted = 255 - weight * np.array([0, 255, 255])
+    assert_allclose(arm.picture.rgba[3, 3, :3], wanted, rtol=0, atol=1)
+    multiplied = read(drawn("arm", blocks=(effects_block(overlay(RED, 50, b"Mltp")),)))
+    assert multiplied.summary.warnings == (says_effects("arm", "color overlay"),)
+
+
+def test_old_adjustments_are_called_so():
+    brightness = Drawn(name="light", pixels=EMPTY, blocks=((b"brit", bytes(8)),))
+    found = read(drawn("arm"), brightness)
+    assert found.summary.warnings == ("light: left out, because it is an adjustment layer",)
+    assert not found.summary.notes
 
 
 def test_all_supported_blend_modes_are_read():
@@ -224,7 +376,7 @@ def test_what_is_not_taken_over_is_reported_once_with_all_names():
     )
     assert found.summary.warnings == (
         "limbs, a, b: drawn normally, not in the mode 'vivid light'",
-        "paint: left out, because it is a fill layer",
+        f"paint: {NOT_PAINTED}",
         "hole: drawn over the layers behind; its knockout is ignored",
         "bright: drawn at all brightnesses; its “Blend If” setting is ignored",
     )
