@@ -4,6 +4,7 @@ import io
 from collections import Counter
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import groupby
 from typing import NamedTuple
 
@@ -16,7 +17,7 @@ from app.storage.pictures.layer_names import UniqueNames, check_name_length
 from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.picture import Picture
 from app.texts import N_, _
-from engine.arrays import readonly
+from engine.arrays import Bytes, readonly
 
 MOST_LAYERS = 1_000
 MOST_GROUPS = 10_000
@@ -24,6 +25,7 @@ EMPTY = N_("left out, because it is empty")
 # Of a layer's pixels. If the box of the opaque pixels has fewer, the rest is cut off. Every decoded
 # pixel takes memory, also on the graphics card.
 CUT_OFF = 0.8
+BACKGROUND = 0.95  # of the canvas: an opaque layer that covers as much is a background
 GROUPS_DEEP = N_("its groups are nested more than {most} deep; move some groups out")
 
 
@@ -145,7 +147,9 @@ def build_layered_picture(
         raise LissomError(_("all of its layers are empty; draw on at least one"))
     # Layers may share a picture.
     distinct = list({id(layer.picture): layer for layer in kept}.values())
-    made = run_parallel(_trimmed, distinct, (layer.picture.size for layer in distinct))
+    made = run_parallel(
+        partial(_trimmed, canvas=size), distinct, (layer.picture.size for layer in distinct)
+    )
     trimmed = {id(layer.picture): each for layer, each in zip(distinct, made, strict=True)}
     kept = [trimmed[id(layer.picture)].of(layer) for layer in kept]
     own = Counter(layer.name for layer in kept)
@@ -232,23 +236,40 @@ class _Trimmed(NamedTuple):
         return replace(layer, data=self.data, picture=self.picture, corner=corner)
 
 
-def _trimmed(layer: ImportedLayer) -> _Trimmed:
-    """Return a layer's picture without its empty margins, if these are large."""
+def _trimmed(layer: ImportedLayer, canvas: tuple[int, int]) -> _Trimmed:
+    """Return a layer's picture without its empty margins, if these are large.
+
+    A margin of one pixel stays or is added, unless the layer is a background: a fully opaque
+    picture would become a still picture.
+    """
     picture, (width, height) = layer.picture, layer.picture.size
+    if picture.is_opaque:
+        if _is_background(layer, canvas):
+            return _Trimmed(layer.data, picture, 0j)
+        return _framed(picture, np.pad(picture.rgba, ((1, 1), (1, 1), (0, 0))), -1 - 1j)
     drawn = picture.rgba[..., 3] > 0
     top, bottom = np.flatnonzero(drawn.any(axis=1))[[0, -1]].tolist()
     left, right = np.flatnonzero(drawn.any(axis=0))[[0, -1]].tolist()
-    # Keep a margin of one pixel: a fully opaque picture would become a still picture.
     top, left = max(top - 1, 0), max(left - 1, 0)
     bottom, right = min(bottom + 1, height - 1), min(right + 1, width - 1)
     if (right - left + 1) * (bottom - top + 1) > CUT_OFF * width * height:
         return _Trimmed(layer.data, picture, 0j)
-    rgba = readonly(picture.rgba[top : bottom + 1, left : right + 1])
-    return _Trimmed(
-        encode_png(Image.fromarray(rgba)),
-        replace(picture, rgba=rgba, suffix=".png"),
-        complex(left, height - 1 - bottom),
-    )
+    rgba = picture.rgba[top : bottom + 1, left : right + 1]
+    return _framed(picture, rgba, complex(left, height - 1 - bottom))
+
+
+def _is_background(layer: ImportedLayer, canvas: tuple[int, int]) -> bool:
+    """Return whether the box of a layer covers most of the canvas."""
+    left, bottom = layer.corner.real, layer.corner.imag
+    width = min(left + layer.picture.size[0], canvas[0]) - max(left, 0)
+    height = min(bottom + layer.picture.size[1], canvas[1]) - max(bottom, 0)
+    return min(width, height) > 0 and width * height >= BACKGROUND * canvas[0] * canvas[1]
+
+
+def _framed(picture: Picture, rgba: Bytes, shift: complex) -> _Trimmed:
+    rgba = readonly(rgba)
+    file = encode_png(Image.fromarray(rgba))
+    return _Trimmed(file, replace(picture, rgba=rgba, suffix=".png"), shift)
 
 
 def encode_png(image: Image.Image) -> bytes:
