@@ -43,8 +43,9 @@ READERS = {
     ".kra": read_krita,
 }
 LAYERED = tuple(READERS)
-# Minimum per layer, however many layers share the triangles.
+# Minimum per layer, however many layers share the triangles, and most of all minima together.
 FEWEST_TRIANGLES = 4_000
+MOST_TOGETHER = 1_000_000
 LARGEST_FLAT = 1_024  # pixels
 NO_SHAPE = N_("none of its layers can be posed: {reason}")
 WHOLE = CutOut(background="none")  # removes only transparent pixels
@@ -290,7 +291,8 @@ def place_as_layer(layer: Layer, replaced: Layer) -> Layer:
 def _scene(
     drawing: LayeredPicture, meshing: Meshing, cut_out: CutOut, *, is_cut_out: bool
 ) -> OpenedScene:
-    share = max(FEWEST_TRIANGLES, meshing.triangles // len(drawing.layers))
+    count = len(drawing.layers)
+    share = max(min(FEWEST_TRIANGLES, MOST_TOGETHER // count), meshing.triangles // count)
     each = replace(meshing, triangles=min(meshing.triangles, share))
 
     def shaped(*, is_cut_out: bool) -> list[tuple[Layer, tuple[str, ...]]]:

@@ -66,19 +66,25 @@ class Folder:
 
 @dataclass
 class _Written:
+    padding: int | None = None
     records: list[bytes] = field(default_factory=list)
     channels: list[bytes] = field(default_factory=list)
 
 
 def photoshop_file(
-    size: tuple[int, int], layers: Sequence[Drawn | Folder], *, in_block: bool = False
+    size: tuple[int, int],
+    layers: Sequence[Drawn | Folder],
+    *,
+    in_block: bool = False,
+    padding: int | None = None,
 ) -> bytes:
     """Return a file of a canvas of this width and height, and its layers from back to front.
 
-    They stand where layers of 16 bits a channel do, if that is wanted.
+    They stand where layers of 16 bits a channel do, if that is wanted. With a padding, channels
+    are packed row by row, and followed by so many bytes.
     """
     width, height = size
-    written = _Written()
+    written = _Written(padding)
     for layer in layers:
         _write(written, layer)
     info = struct.pack(">h", len(written.records))
@@ -128,7 +134,7 @@ def _record(
     planes = {-1: pixels[..., 3], 0: pixels[..., 0], 1: pixels[..., 1], 2: pixels[..., 2]}
     if layer.mask is not None:
         planes[-2] = layer.mask.pixels
-    data = {number: struct.pack(">H", 0) + plane.tobytes() for number, plane in planes.items()}
+    data = {number: _channel(plane, written.padding) for number, plane in planes.items()}
     if isinstance(layer, Drawn) and layer.is_described:
         data = dict.fromkeys(planes, b"\0\0")
     name = layer.name.encode("latin-1")
@@ -150,6 +156,14 @@ def _record(
     record += b"8BIM" + blend + bytes([layer.opacity, layer.clipped, flags, 0])
     written.records.append(record + struct.pack(">I", len(extra)) + extra)
     written.channels += data.values()
+
+
+def _channel(plane: Bytes, padding: int | None) -> bytes:
+    if padding is None:
+        return struct.pack(">H", 0) + plane.tobytes()
+    rows = [bytes([len(row) - 1]) + row.tobytes() for row in plane]
+    lengths = b"".join(struct.pack(">H", len(row)) for row in rows)
+    return struct.pack(">H", 1) + lengths + b"".join(rows) + bytes(padding)
 
 
 def _mask(mask: Mask | None) -> bytes:

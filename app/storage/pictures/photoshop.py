@@ -124,9 +124,11 @@ def _require_few_records(data: bytes) -> None:
     at = HEADER
     for _section in ("palette", "resources"):
         at += 4 + struct.unpack_from(">I", data, at)[0]
-    # Skip the lengths of the layer section and of the layer list.
-    at += 2 * 4 * version
-    starts = [at] if at < len(data) else []
+    length = ">I" if version == 1 else ">Q"
+    # The layer list lies in the layer section. Each is empty in some files.
+    has_section = any(struct.unpack_from(length, data, at))
+    has_list = has_section and any(struct.unpack_from(length, data, at + 4 * version))
+    starts = [at + 2 * 4 * version] if has_list else []
     starts += [block.end() + 4 * version for block in DEEP_LAYERS.finditer(data)]
     count = sum(abs(struct.unpack_from(">h", data, start)[0]) for start in starts)
     if count > MOST_RECORDS:

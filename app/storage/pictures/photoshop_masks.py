@@ -72,7 +72,7 @@ def to_rgba(image: Image.Image, alpha: Image.Image | None = None) -> Image.Image
         lab, srgb = ImageCms.createProfile("LAB"), ImageCms.createProfile("sRGB")
         image = ImageCms.profileToProfile(image, lab, srgb, outputMode="RGB") or image
     pixels = image.convert("RGBA")
-    if alpha is not None and "A" not in image.getbands():
+    if alpha is not None and image.mode not in {"LA", "RGBA"}:
         pixels.putalpha(alpha.convert("L"))
     return pixels
 

@@ -1,11 +1,13 @@
 """Photoshop files as other programs write them: groups, masks, clipping, modes, texts."""
 
 import contextlib
+import io
 import struct
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from layered import blob
 from messages import says
 from numpy.testing import assert_allclose, assert_array_equal
 from photoshop_files import (
@@ -25,6 +27,7 @@ from photoshop_files import (
     path_block,
     photoshop_file,
 )
+from psd_tools import PSDImage
 
 from app.document.layers.groups import BLENDS, Group
 from app.errors import ImportLog, LissomError
@@ -32,6 +35,7 @@ from app.storage.pictures.layered import GROUPS_DEEP
 from app.storage.pictures.photoshop import (
     DAMAGED,
     DRAWN_WITHOUT,
+    MERGED_ALONE,
     MOST_RECORDS,
     NOT_PAINTED,
     read_photoshop,
@@ -388,6 +392,66 @@ def test_forty_layers_and_one_pixel():
     assert len({layer.name for layer in found.layers}) == 41
     # With the margin of an opaque layer.
     assert found.layers[-1].corner == 98 - 1j
+
+
+def flat_file(mode, depth, planes, *, version=1, palette=b""):
+    """A file without layers, of one colour, by the bytes of each of its channels."""
+    length = struct.pack(">I" if version == 1 else ">Q", 0)
+    header = struct.pack(">H6xHIIHH", version, len(planes), 12, 16, depth, mode)
+    sections = struct.pack(">I", len(palette)) + palette + bytes(4) + length
+    return b"8BPS" + header + sections + bytes(2) + b"".join(plane * 12 * 16 for plane in planes)
+
+
+WHITE_LAB = [b"\xff", b"\x80", b"\x80"]
+
+
+@pytest.mark.parametrize("version", [1, 2])
+@pytest.mark.parametrize(
+    ("mode", "depth", "planes", "palette", "colour"),
+    [
+        (1, 8, [b"\xc8"], b"", (200, 200, 200)),
+        (2, 8, [b"\x07"], bytes(range(256)) * 3, (7, 7, 7)),
+        (3, 8, [b"\xc8", b"\x64", b"\x32"], b"", (200, 100, 50)),
+        (3, 16, [b"\xc8\0", b"\x64\0", b"\x32\0"], b"", (200, 100, 50)),
+        (4, 8, [b"\0", b"\xff", b"\xff", b"\xff"], b"", (0, 255, 255)),
+        (7, 8, [b"\xc8", b"\x64"], b"", (200, 200, 200)),
+        (8, 8, [b"\x09"], bytes(50), (9, 9, 9)),
+        (9, 8, WHITE_LAB, b"", (255, 255, 255)),
+    ],
+)
+def test_flat_files_of_each_mode_open(version, mode, depth, planes, palette, colour):
+    read = read_photoshop(flat_file(mode, depth, planes, version=version, palette=palette))
+    (layer,) = read.layers
+    assert layer.picture.size == (16, 12)
+    assert_allclose(layer.picture.rgba[5, 5], (*colour, 255), rtol=0, atol=1)
+    assert not read.summary
+
+
+def test_inks_keep_their_transparency():
+    drawing = PSDImage.new("CMYK", SIZE)
+    drawing.create_pixel_layer(blob(40, 30), name="arm", top=5, left=9)
+    file = io.BytesIO()
+    drawing.save(file)
+    (arm,) = read_photoshop(file.getvalue()).layers
+    assert_array_equal(arm.picture.rgba[..., 3], np.asarray(blob(40, 30))[..., 3])
+
+
+def test_padded_channels_are_read():
+    layer = drawn("arm")
+    plain = photoshop_file(SIZE, [layer])
+    for padding in range(4):
+        (found,) = read_photoshop(photoshop_file(SIZE, [layer], padding=padding)).layers
+        assert_array_equal(found.picture.rgba, read_photoshop(plain).layers[0].picture.rgba)
+    with pytest.raises(LissomError, match="rows have the wrong length"):
+        read_photoshop(photoshop_file(SIZE, [layer], padding=4))
+
+
+def test_file_whose_layers_are_not_drawn_opens_as_its_merged_picture():
+    curves = Drawn(name="levels", pixels=EMPTY, blocks=((b"curv", bytes(4)),))
+    read_merged = read(curves)
+    (layer,) = read_merged.layers
+    assert layer.picture.size == SIZE
+    assert f"{layer.name}: {MERGED_ALONE}" in read_merged.summary.warnings
 
 
 def test_groups_have_an_end():
