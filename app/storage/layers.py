@@ -24,10 +24,9 @@ from app.errors import LissomError, NoticeCollector, display_name, shortened
 from app.storage.files.reading import read_file
 from app.storage.opening import OpenedScene, build_scene
 from app.storage.pictures.blending import blend_pictures
-from app.storage.pictures.krita import read_krita
 from app.storage.pictures.layer_names import UniqueNames
 from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
-from app.storage.pictures.openraster import read_openraster
+from app.storage.pictures.openraster import read_krita, read_openraster
 from app.storage.pictures.parallel import run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures

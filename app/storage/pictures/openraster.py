@@ -1,6 +1,7 @@
 """Reading OpenRaster files: a zip of `stack.xml` and one PNG per layer.
 
-Krita, MyPaint and GIMP write them.
+Krita, MyPaint and GIMP write them. Krita's own files are zips with a merged picture beside layers
+in a format of their own.
 """
 
 import io
@@ -24,7 +25,7 @@ from app.storage.pictures.layered import (
     corner_from_top,
     is_blank,
 )
-from app.storage.pictures.picture import decode_pictures, stored_size
+from app.storage.pictures.picture import decode_picture, decode_pictures, stored_size
 from app.texts import N_, _
 
 MIMETYPE = b"image/openraster"
@@ -45,6 +46,14 @@ MODES: dict[str, BlendMode] = {
     **{f"krita:{blend.replace('-', '_')}": blend for blend in BLENDS},
 }
 DAMAGE = (*DAMAGED_ZIP, OSError)
+KRITA = b"application/x-krita"
+MERGED = "mergedimage.png"
+NO_KRITA = N_("it is not a Krita file, or it is damaged")
+NOT_MERGED = N_("it contains no merged picture; save the drawing as OpenRaster (.ora)")
+MERGED_ALONE = N_(
+    "only the merged picture of the file was read; for its layers save the drawing as OpenRaster "
+    "(.ora)"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,10 +74,27 @@ def read_openraster(data: bytes) -> LayeredPicture:
         raise LissomError(_("it is not an OpenRaster file, or it is damaged")) from error
 
 
+def read_krita(data: bytes) -> LayeredPicture:
+    """Read the merged picture of a Krita file as a drawing of one layer."""
+    try:
+        with open_zip(io.BytesIO(data)) as archive:
+            if _member(archive, "mimetype", 1024).strip() != KRITA:
+                raise LissomError(_(NO_KRITA))
+            if MERGED not in archive.NameToInfo:
+                raise LissomError(_(NOT_MERGED))
+            merged = _member(archive, MERGED, LARGEST_PICTURE)
+    except DAMAGE as error:
+        raise LissomError(_(NO_KRITA)) from error
+    collector = NoticeCollector()
+    collector.add_warning("picture", _(MERGED_ALONE))
+    layer = ImportedLayer(name="picture", data=merged, picture=decode_picture(merged, MERGED))
+    return build_layered_picture(layer.picture.size, [layer], GroupPaths(), collector)
+
+
 def _read(archive: zipfile.ZipFile) -> LayeredPicture:
-    if read_member(archive, "mimetype", 1024).strip() != MIMETYPE:
+    if _member(archive, "mimetype", 1024).strip() != MIMETYPE:
         raise LissomError(_("it is not an OpenRaster file"))
-    image = _parse(read_member(archive, "stack.xml", LARGEST_XML))
+    image = _parse(_member(archive, "stack.xml", LARGEST_XML))
     size = (_whole(image, "w"), _whole(image, "h"))
     stack = image.find("stack")
     if image.tag != "image" or stack is None:
@@ -91,7 +117,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     packed = sum(member.compress_size for member in archive.infolist())
     if sum(archive.getinfo(source).file_size for source in distinct) > 2 * packed + MOST_UNPACKED:
         raise LissomError(_("its pictures would unpack to too many bytes for a drawing"))
-    members = {source: read_member(archive, source, max(1 << 20, packed)) for source in distinct}
+    members = {source: _member(archive, source, max(1 << 20, packed)) for source in distinct}
     check_memory([stored_size(members[source], source) for source in sources])
     decoded = decode_pictures([(members[source], source) for source in distinct])
     pictures = dict(zip(distinct, decoded, strict=True))
@@ -225,8 +251,7 @@ def _parse(content: bytes) -> ET.Element:
         raise LissomError(_(DAMAGED_STACK)) from error
 
 
-def read_member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
-    """Return a member of a zip, of at most so many bytes."""
+def _member(archive: zipfile.ZipFile, name: str, largest: int) -> bytes:
     member = archive.getinfo(name)
     if member.file_size > largest:
         raise LissomError(

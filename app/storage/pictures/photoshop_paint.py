@@ -14,7 +14,6 @@ from app.storage.pictures.colour import to_srgb
 from app.texts import N_, _
 
 Box = tuple[int, int, int, int]  # left, top, right, bottom, on the canvas, y down
-Colour = tuple[int, int, int]
 
 SOLID_COLOUR: Final = b"SoCo"
 # Of a shape that has an outline, too.
@@ -46,10 +45,10 @@ EFFECT_NAMES: Final = {
 }
 
 
-class Overlay(NamedTuple):
+class ColourOverlay(NamedTuple):
     """A colour over the whole layer."""
 
-    colour: Colour
+    colour: tuple[int, int, int]
     opacity: float  # from 0 to 1
 
 
@@ -57,10 +56,10 @@ class Effect(NamedTuple):
     """An effect of a layer, by its name in Photoshop."""
 
     name: str
-    overlay: Overlay | None = None  # if it is drawn
+    overlay: ColourOverlay | None = None  # if it is drawn
 
 
-def fill_colour(layer: Any) -> Colour | None:
+def fill_colour(layer: Any) -> tuple[int, int, int] | None:
     """Return the colour of a shape or fill layer without pixels; None if it has no single one."""
     blocks = layer.tagged_blocks
     outline = blocks.get_data(SHAPE_OUTLINE)
@@ -104,7 +103,7 @@ def has_outline(layer: Any) -> bool:
     return outline is not None and bool(outline.get(b"strokeEnabled", False))
 
 
-def lay_over(image: Image.Image, fill: float, overlay: Overlay) -> tuple[Image.Image, float]:
+def lay_over(image: Image.Image, fill: float, overlay: ColourOverlay) -> tuple[Image.Image, float]:
     """Return pixels under a colour overlay, and their opacity; `fill` is that without overlay."""
     total = overlay.opacity + (1 - overlay.opacity) * fill
     if total == 0:
@@ -142,17 +141,17 @@ def effects_of(layer: Any) -> list[Effect]:
     ]
 
 
-def _overlay(layer: Any, effect: Any) -> Overlay | None:
+def _overlay(layer: Any, effect: Any) -> ColourOverlay | None:
     """Return a colour overlay that is drawn; None for another effect or mode."""
     mode = effect.get(b"Md  ")
     if effect.classID != COLOUR_OVERLAY or (mode is not None and mode.enum != NORMAL):
         return None
     colour = _colour(layer, effect)
     opacity = float(effect.get(b"Opct", 100.0)) / 100
-    return None if colour is None else Overlay(colour, opacity)
+    return None if colour is None else ColourOverlay(colour, opacity)
 
 
-def _colour(layer: Any, descriptor: Any) -> Colour | None:
+def _colour(layer: Any, descriptor: Any) -> tuple[int, int, int] | None:
     """Return the colour of a descriptor in sRGB; None for gradients, patterns, and colour books."""
     from psd_tools.composite.paint import draw_solid_color_fill  # noqa: PLC0415
     from psd_tools.constants import ColorMode  # noqa: PLC0415

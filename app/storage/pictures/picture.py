@@ -16,10 +16,15 @@ from PIL import Image, ImageFile, ImageOps, UnidentifiedImageError
 from app.cut_out import Mask
 from app.errors import LissomError
 from app.storage.pictures.colour import to_srgb
-from app.storage.pictures.icon import ICO, largest_icon
 from app.storage.pictures.parallel import require_memory, run_parallel
-from app.storage.pictures.png import PNG, with_clear_colour, without_damaged_chunks
 from app.storage.pictures.programs import refuse_program_file
+from app.storage.pictures.repairs import (
+    ICO,
+    PNG,
+    largest_icon,
+    with_clear_colour,
+    without_damaged_chunks,
+)
 from app.texts import N_, _, message_of
 from engine.arrays import Booleans, Bytes, Floats, freeze
 

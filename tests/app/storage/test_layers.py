@@ -22,7 +22,7 @@ from app.storage.layers import (
     open_pictures,
 )
 from app.storage.opening import open_picture
-from app.storage.pictures.krita import MERGED_ALONE, NO_KRITA, NOT_MERGED
+from app.storage.pictures.openraster import MERGED_ALONE, NO_KRITA, NOT_MERGED
 from app.storage.project_file import load_project, save_project
 from engine.domain import require_domain
 

@@ -20,6 +20,7 @@ from app.storage import decode_picture, project_file
 from app.storage.assets import sample_images
 from app.storage.autosave import SECONDS
 from app.storage.pictures import parallel
+from app.storage.pictures.programs import PROGRAM_FILE
 from app.storage.preferences import CHECKER, Preferences, load_preferences
 from app.storage.project_file import load_project, save_project
 from app.storage.thumbnail import read_thumbnail
@@ -144,6 +145,11 @@ def test_a_dropped_thing_that_cannot_be_opened_is_named(window, project, drop, t
         assert window.session.dialog is None
     drop()
     assert len(texts(window)) == 2
+    foreign = tmp_path / "walk.xcf"
+    foreign.write_bytes(b"gimp xcf v011")
+    drop(foreign)
+    advice = PROGRAM_FILE.format(name="walk.xcf", program="GIMP")
+    assert texts(window)[-1] == f"{advice}."
     assert window.session.project is project
 
 

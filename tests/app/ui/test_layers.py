@@ -33,6 +33,7 @@ from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.actions.project_files import saving
+from app.editor.actions.project_files.files import ONE_PICTURE
 from app.editor.actions.timing import keys, timeline_drag
 from app.editor.actions.viewing import close_dialog
 from app.editor.layering.layer_list import (
@@ -90,6 +91,16 @@ def scene(window, drawing):
     project = window.again(Harness.open, drawing)
     window.show_tab("Layers")
     return project
+
+
+def test_layers_are_offered_as_one_picture(window, scene):
+    (offer,) = (toast for toast in window.session.toasts if toast.label == ONE_PICTURE)
+    window.act(offer.action.apply)
+    window.settle()
+    merged = window.session.project
+    (layer,) = merged.document.layers
+    assert layer.picture.size == (WIDTH, HEIGHT)
+    assert merged.document.canvas == scene.document.canvas
 
 
 def identity(project, name):
@@ -1008,7 +1019,7 @@ def stranger(tmp_path_factory):
 
 def test_import_log_stays_in_the_panel(window, stranger):
     project = window.again(Harness.open, stranger)
-    (toast,) = window.session.toasts
+    (toast,) = (toast for toast in window.session.toasts if toast.topic == "import")
     assert "One thing looks different here" in toast.text
     log = project.document.import_log
     assert log.warnings == ("shine, glow: drawn normally, not in the mode 'vivid-light'",)

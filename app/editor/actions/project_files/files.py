@@ -30,6 +30,7 @@ from app.storage import (
     load_project,
     move_to_disk,
     open_layered,
+    open_merged,
     open_picture,
     open_pictures,
     project_digest,
@@ -44,6 +45,7 @@ PICTURES = (
     ".avif",
 )
 OPENABLE = (PROJECT, *PICTURES, *LAYERED)
+ONE_PICTURE = _("Open as one picture")
 LOOK = 2.0  # seconds between two checks whether files still exist
 
 
@@ -101,11 +103,24 @@ def open_file(session: Session, path: Path) -> None:
     If the project has unsaved changes by then, a question comes first.
     """
     meshing = session.meshing
-    kind = JobKind(
+    _open(session, path, _opening(path), lambda: _read(path, meshing))
+
+
+def open_as_one_picture(session: Session, path: Path) -> None:
+    """Read a layered drawing on the worker, and open it merged into one picture."""
+    meshing = session.meshing
+
+    def read() -> OpenedFile:
+        return with_layer_runtimes(open_merged(path, meshing))._replace(drawings=(path,))
+
+    _open(session, path, _opening(path), read)
+
+
+def _opening(path: Path) -> JobKind:
+    return JobKind(
         display_name(_("Opening {name}").format(name=path.name)),
         _("{name} cannot be opened").format(name=path.name),
     )
-    _open(session, path, kind, lambda: _read(path, meshing))
 
 
 def open_files_as_layers(session: Session, paths: Sequence[Path]) -> None:
@@ -265,13 +280,23 @@ def decode_project(document: Document, name: str) -> OpenedFile:
 def _read_picture(path: Path, meshing: Meshing) -> OpenedFile:
     read = open_layered if is_layered(path) else open_picture
     opened = with_layer_runtimes(read(path, meshing))
-    runtimes = tuple(opened.layer_runtimes.values())
-    next_step = _next_step(runtimes[0]) if len(runtimes) == 1 else None
+    next_step = _next_step(path, tuple(opened.layer_runtimes.values()))
     return opened._replace(next_step=next_step, drawings=(path,))
 
 
-def _next_step(runtime: LayerRuntime) -> NextStep | None:
-    """Return a suggestion for an opaque picture that was just opened."""
+def _next_step(path: Path, runtimes: Sequence[LayerRuntime]) -> NextStep | None:
+    """Return a suggestion for a drawing that was just opened: an opaque picture, or layers."""
+    if len(runtimes) > 1:
+        if path.parent == sample_images():
+            return None
+        return NextStep(
+            text=_("Each of the {count} layers has handles of its own.").format(
+                count=len(runtimes)
+            ),
+            label=ONE_PICTURE,
+            action=do(open_as_one_picture, path),
+        )
+    runtime = runtimes[0]
     cut = runtime.cut.value
     if runtime.is_opaque and cut.is_all:
         return NextStep(
