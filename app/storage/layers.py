@@ -20,14 +20,14 @@ from app.document import (
     is_visible,
     new_layer,
 )
-from app.errors import LissomError, NoticeCollector, display_name, shortened
+from app.errors import EMPTY_IMPORT_LOG, LissomError, NoticeCollector, display_name, shortened
 from app.storage.files.reading import read_file
 from app.storage.opening import OpenedScene, build_scene
 from app.storage.pictures.blending import blend_pictures
 from app.storage.pictures.layer_names import UniqueNames
 from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
 from app.storage.pictures.openraster import read_krita, read_openraster
-from app.storage.pictures.parallel import run_parallel
+from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
 from app.texts import N_, _, message_of
@@ -82,22 +82,40 @@ def open_layered(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> Op
 
 
 def open_merged(path: Path, meshing: Meshing, cut_out: CutOut = CutOut()) -> OpenedScene:
-    """Read a layered drawing, merged into one picture of its visible layers."""
+    """Read a layered drawing as one picture: the merged one in the file, or its visible layers."""
     drawing = read_layered(path)
+    require_memory([drawing.size])
+    whole = _file_merged(drawing)
+    import_log = EMPTY_IMPORT_LOG if whole is not None else drawing.summary
+    merged = encode_png(Image.fromarray(_flattened(drawing) if whole is None else whole))
+    opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
+    count = len(drawing.layers)
+    merged_layers = _("the {count} layers of {name} were merged into one drawing").format(
+        count=count, name=path.name
+    )
+    notices = (merged_layers,) if count > 1 else ()
+    document = replace(opened.document, import_log=import_log)
+    return opened._replace(document=document, notices=notices + opened.notices)
+
+
+def _file_merged(drawing: LayeredPicture) -> Bytes | None:
+    """Return the merged picture that a file contains, drawn with all effects of its program.
+
+    None without one: some programs write a picture of one colour in its place.
+    """
+    merged = drawing.merge()
+    if merged is None or merged.size != drawing.size or (merged.rgba == merged.rgba[0, 0]).all():
+        return None
+    return merged.rgba
+
+
+def _flattened(drawing: LayeredPicture) -> Bytes:
     layers = [
         _placed_layer(imported, index, _rectangle(imported.picture), Meshing(), WHOLE)
         for index, imported in enumerate(drawing.layers)
     ]
     textures = {index: imported.picture.rgba for index, imported in enumerate(drawing.layers)}
-    whole = flatten_layers(_document(drawing, layers), textures, largest=max(drawing.size))
-    merged = encode_png(Image.fromarray(whole))
-    opened = build_scene(merged, path.with_suffix(".png"), meshing, cut_out)
-    merged_layers = _("the {count} layers of {name} were merged into one drawing").format(
-        count=len(layers), name=path.name
-    )
-    notices = (merged_layers,) if len(layers) > 1 else ()
-    document = replace(opened.document, import_log=drawing.summary)
-    return opened._replace(document=document, notices=notices + opened.notices)
+    return flatten_layers(_document(drawing, layers), textures, largest=max(drawing.size))
 
 
 def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:

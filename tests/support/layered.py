@@ -30,6 +30,7 @@ def openraster(
     pictures: Sequence[Image.Image],
     *,
     mimetype: bytes = b"image/openraster",
+    merged: Image.Image | None = None,
 ) -> bytes:
     """Return an OpenRaster file.
 
@@ -40,6 +41,8 @@ def openraster(
         What lies in the stack, from the front; pictures are called "data/0.png" and so on.
     pictures : sequence of Image
     mimetype : bytes
+    merged : Image, optional
+        What the file says that all layers look like together.
     """
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as archive:
@@ -47,6 +50,8 @@ def openraster(
         archive.writestr(
             "stack.xml", f'<image w="{size[0]}" h="{size[1]}"><stack>{stack}</stack></image>'
         )
+        if merged is not None:
+            archive.writestr("mergedimage.png", png(merged))
         for index, picture in enumerate(pictures):
             archive.writestr(f"data/{index}.png", png(picture))
     return file.getvalue()

@@ -2,7 +2,7 @@
 
 import io
 from collections import Counter
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
@@ -74,12 +74,16 @@ class LayeredPicture:
         Back to front; never empty.
     groups : tuple of Group
         All groups of the layers; a group follows its parent.
+    merge : callable
+        Decodes the merged picture that the file contains beside its layers; None if it is missing
+        or damaged.
     """
 
     size: tuple[int, int]
     layers: tuple[ImportedLayer, ...]
     summary: ImportLog = EMPTY_IMPORT_LOG
     groups: tuple[Group, ...] = ()
+    merge: Callable[[], Picture | None] = lambda: None
 
     @property
     def is_opaque(self) -> bool:
@@ -130,6 +134,7 @@ def build_layered_picture(
     found: Sequence[ImportedLayer],
     groups: GroupPaths,
     collector: NoticeCollector,
+    merge: Callable[[], Picture | None] = lambda: None,
 ) -> LayeredPicture:
     """Return the drawing of the imported layers, each with a unique name.
 
@@ -165,6 +170,7 @@ def build_layered_picture(
         layers=tuple(layers),
         summary=collector.import_log,
         groups=groups.groups_of(layers),
+        merge=merge,
     )
 
 

@@ -8,6 +8,7 @@ import io
 import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from math import isfinite
 from xml.etree import ElementTree as ET
 
@@ -25,7 +26,12 @@ from app.storage.pictures.layered import (
     corner_from_top,
     is_blank,
 )
-from app.storage.pictures.picture import decode_picture, decode_pictures, stored_size
+from app.storage.pictures.picture import (
+    Picture,
+    decode_picture,
+    decode_pictures,
+    stored_size,
+)
 from app.texts import N_, _
 
 MIMETYPE = b"image/openraster"
@@ -143,7 +149,15 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
         found.append(
             replace(layer, clipped=layer.clipped and _clips(found, layer, size, collector))
         )
-    return build_layered_picture(size, found, groups, collector)
+    merged = _member(archive, MERGED, LARGEST_PICTURE) if MERGED in archive.NameToInfo else None
+    return build_layered_picture(size, found, groups, collector, partial(_decoded, merged))
+
+
+def _decoded(merged: bytes | None) -> Picture | None:
+    try:
+        return None if merged is None else decode_picture(merged, MERGED)
+    except LissomError:
+        return None
 
 
 def _clips(

@@ -8,6 +8,7 @@ import warnings
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -37,9 +38,10 @@ from app.storage.pictures.photoshop_paint import (
     effects_of,
     fill_colour,
     has_outline,
+    is_described,
     lay_over,
 )
-from app.storage.pictures.picture import Picture, decode_picture
+from app.storage.pictures.picture import Picture
 from app.texts import N_, _
 from engine.arrays import freeze
 
@@ -170,18 +172,30 @@ def _read(drawing: Any) -> LayeredPicture:
         )
         layers.append(read)
     if all(is_blank(layer.picture) for layer in layers) and drawing.has_preview():
-        layers = [_merged(drawing)]
+        merged = _merged(drawing)
+        layers = [
+            ImportedLayer(
+                name="picture", data=encode_png(Image.fromarray(merged.rgba)), picture=merged
+            )
+        ]
         if found or collector.import_log:
             collector.add_warning(layers[0].name, _(MERGED_ALONE))
-    return build_layered_picture((drawing.width, drawing.height), layers, groups, collector)
+    merge = partial(_merged_unless_damaged, drawing)
+    return build_layered_picture((drawing.width, drawing.height), layers, groups, collector, merge)
 
 
-def _merged(drawing: Any) -> ImportedLayer:
-    """Return the merged picture of a file as a layer."""
+def _merged(drawing: Any) -> Picture:
+    """Return the merged picture of a file."""
     whole = drawing._record.image_data  # noqa: SLF001 - as of channels
     _require_all_rows(whole, drawing.height * drawing.channels, drawing.version)
-    file = encode_png(to_rgba(drawing.topil()))
-    return ImportedLayer(name="picture", data=file, picture=decode_picture(file, _("the picture")))
+    return Picture(rgba=freeze(np.array(to_rgba(drawing.topil()))))
+
+
+def _merged_unless_damaged(drawing: Any) -> Picture | None:
+    try:
+        return _merged(drawing) if drawing.has_preview() else None
+    except (LissomError, *DAMAGE):
+        return None
 
 
 def _drawn_layers(
@@ -232,12 +246,11 @@ def _drawn_layers(
 
 def _why_left_out(layer: Any) -> str:
     """Return why a layer is not drawn; empty if it is."""
-    is_described = layer.kind == "shape" or layer.kind.endswith("fill")
-    if not is_described and (
+    if not is_described(layer) and (
         layer.kind not in DRAWN or any(key in layer.tagged_blocks for key in OLD_ADJUSTMENTS)
     ):
         return _("left out, because it is an adjustment layer")
-    if is_described and not layer.has_pixels() and fill_colour(layer) is None:
+    if is_described(layer) and not layer.has_pixels() and fill_colour(layer) is None:
         return _(NOT_PAINTED)
     return ""
 

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image, ImageChops, ImageCms, ImageFilter, ImageOps
 
 from app.errors import NoticeCollector
-from app.storage.pictures.photoshop_paint import Box, draw_path, fill_colour
+from app.storage.pictures.photoshop_paint import Box, draw_path, fill_colour, is_described
 from app.texts import _
 from engine.arrays import Booleans
 
@@ -90,7 +90,7 @@ def _has_path_mask(layer: Any) -> bool:
     """Return whether a path cuts a layer, unless its result is stored as pixels."""
     if not layer.has_vector_mask() or layer.vector_mask.disabled:
         return False
-    if layer.kind == "shape" and layer.has_pixels():
+    if is_described(layer) and layer.has_pixels():
         return False
     return layer.mask is None or not (
         layer.mask.has_real() or layer.mask.flags.user_mask_from_render

@@ -59,6 +59,11 @@ class Effect(NamedTuple):
     overlay: ColourOverlay | None = None  # if it is drawn
 
 
+def is_described(layer: Any) -> bool:
+    """Return whether a layer is a shape or a fill; its pixels, if any, were drawn from that."""
+    return bool(layer.kind == "shape" or layer.kind.endswith("fill"))
+
+
 def fill_colour(layer: Any) -> tuple[int, int, int] | None:
     """Return the colour of a shape or fill layer without pixels; None if it has no single one."""
     blocks = layer.tagged_blocks

@@ -170,6 +170,35 @@ def test_merged_drawing_keeps_its_size(tmp_path):
     assert tuple(rgba[16, LARGEST_FLAT]) == (0, 0, 255, 255)
 
 
+def test_merged_picture_of_a_file_is_preferred_if_it_shows_something(tmp_path):
+    stack = '<layer name="a" src="data/0.png" composite-op="svg:overlay"/>' + STACK
+    layers = [blob(70, 50), blob(150, 140), blob(200, 220)]
+    path, shown = tmp_path / "walk.ora", blob(200, 220, (1, 2, 3))
+
+    def opened(merged):
+        path.write_bytes(openraster((200, 220), stack, layers, merged=merged))
+        document, pictures, _notices = open_merged(path, COARSE)
+        return pictures[document.layers[0].id].rgba, document.import_log
+
+    rgba, import_log = opened(shown)
+    np.testing.assert_array_equal(rgba, np.asarray(shown))
+    # What it shows is no loss.
+    assert not import_log
+    own, import_log = opened(None)
+    assert import_log.warnings
+    for useless in (Image.new("RGBA", (200, 220), (255, 255, 255, 255)), blob(9, 9)):
+        np.testing.assert_array_equal(opened(useless)[0], own)
+
+
+def test_large_photoshop_files_open(tmp_path):
+    drawing = PSDImage.new("RGB", (60, 50))
+    drawing._record.header.version = 2
+    drawing.create_pixel_layer(blob(40, 30), name="arm", top=5, left=9)
+    drawing.save(tmp_path / "large.psb")
+    (layer,) = open_layered(tmp_path / "large.psb", COARSE).document.layers
+    assert (layer.name, layer.picture.size, layer.corner) == ("arm", (40, 30), 9 + 15j)
+
+
 def test_krita_file_is_read_as_its_merged_picture_with_advice(tmp_path):
     path = tmp_path / "a.kra"
 

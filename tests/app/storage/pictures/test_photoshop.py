@@ -31,7 +31,7 @@ from psd_tools import PSDImage
 
 from app.document.layers.groups import BLENDS, Group
 from app.errors import ImportLog, LissomError
-from app.storage.pictures.layered import GROUPS_DEEP
+from app.storage.pictures.layered import GROUPS_DEEP, MOST_LAYERS
 from app.storage.pictures.photoshop import (
     DAMAGED,
     DRAWN_WITHOUT,
@@ -491,6 +491,12 @@ def test_damaged_files_are_refused_without_a_librarys_words(seed, capfd):
     with pytest.raises(LissomError, match=f"^{DAMAGED}$"):
         read_photoshop(whole.replace(b"8BIM", b"8BXX"))
     assert capfd.readouterr() == ("", "")
+
+
+def test_a_thousand_layers_in_groups_are_read():
+    dot = Drawn(name="a", pixels=FULL[:2, :2])
+    groups = [Folder(name="g", layers=[dot, dot]) for _ in range(MOST_LAYERS // 2)]
+    assert len(read(*groups).layers) == MOST_LAYERS
 
 
 @pytest.mark.parametrize("in_block", [False, True])
