@@ -166,6 +166,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "script", metavar="SCRIPT.json", type=input_file, help=_("handles and keys")
     )
     add_out(parser, "PROJECT.lissom")
+    parser.add_argument(
+        "--one-picture",
+        action="store_true",
+        help=_("open the layers of the drawing merged into one picture"),
+    )
     add_meshing_options(parser)
     add_cut_out_options(parser)
 
@@ -179,7 +184,7 @@ def run(arguments: argparse.Namespace) -> int:
     read = arguments.picture, arguments.script, arguments.mask
     check_writable(arguments.out, sources=filter(None, read))
     script = load_pose_script(arguments.script)
-    opened = open_drawing(arguments, merges_layers=False)
+    opened = open_drawing(arguments, merges_layers=arguments.one_picture)
     with StatusLine() as status:
         document, notices = pose_document(opened.document, script, status.show)
     print_notices(notices)

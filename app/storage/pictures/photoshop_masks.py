@@ -16,7 +16,7 @@ from engine.arrays import Booleans
 
 TRANSPARENCY: Final = -1  # number of the alpha channel
 OPAQUE: Final = 255
-LARGEST_MARGIN: Final = 1_000  # pixels around a layer in which a soft mask is drawn
+LARGEST_FEATHER: Final = 250  # pixels
 # Mask levels that leave a layer half transparent.
 HALF_SEEN: Final = [2 < level < 253 for level in range(256)]
 
@@ -143,7 +143,8 @@ def _soft(
     draw: Callable[[Box], Image.Image], box: Box, density: int | None, feather: float | None
 ) -> Image.Image:
     """Return a mask in a box, softened at its edges by the feather, and faded by the density."""
-    margin = min(ceil(3 * (feather or 0)), LARGEST_MARGIN)
+    feather = min(feather or 0, LARGEST_FEATHER)
+    margin = ceil(3 * feather)
     seen = draw((box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin))
     if feather:
         seen = ImageOps.crop(seen.filter(ImageFilter.GaussianBlur(feather)), margin)

@@ -19,27 +19,34 @@ WITH_ALPHA: Final = 32  # bits per pixel
 PNG: Final = b"\x89PNG\r\n\x1a\n"
 DEPTH: Final = 24  # place of the bits per channel in the file
 BYTE: Final = 8  # bits
+EMPTY_CHUNK: Final = 12  # bytes of the length, name and checksum of a chunk
 # The bit of a chunk's name that says that the picture can be decoded without it.
 ANCILLARY: Final = 0x20
 
 
 def without_damaged_chunks(data: bytes) -> tuple[bytes, tuple[str, ...]]:
     """Return a PNG file without the ancillary chunks that have a wrong checksum, and a notice."""
-    kept, names = [data[: len(PNG)]], []
-    at = len(PNG)
-    while at + 12 <= len(data):
+    kept, names, at, begin = [], [], len(PNG), 0
+    while at + EMPTY_CHUNK <= len(data):
         length, name = struct.unpack_from(">I4s", data, at)
-        chunk, at = data[at : at + 12 + length], at + 12 + length
-        if name[0] & ANCILLARY and chunk[-4:] != struct.pack(">I", zlib.crc32(chunk[4:-4])):
+        end = at + EMPTY_CHUNK + length
+        # Critical chunks, which are large, are checked when they are decoded.
+        if name[0] & ANCILLARY and zlib.crc32(data[at + 4 : end - 4]) != _checksum(data, end):
             names.append(name.decode("latin-1"))
-        else:
-            kept.append(chunk)
+            kept.append(data[begin:at])
+            begin = end
+        at = end
     if not names:
         return data, ()
     notice = _("damaged parts of the file were ignored ({names})").format(
         names=", ".join(dict.fromkeys(names))
     )
-    return b"".join([*kept, data[at:]]), (notice,)
+    return b"".join([*kept, data[begin:]]), (notice,)
+
+
+def _checksum(data: bytes, end: int) -> int:
+    """Return the checksum of the chunk that ends here."""
+    return int.from_bytes(data[end - 4 : end], "big")
 
 
 def with_clear_colour(file: ImageFile.ImageFile, data: bytes) -> Image.Image:

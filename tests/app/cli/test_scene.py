@@ -127,6 +127,17 @@ def test_a_script_poses_the_layers_that_it_names(project):
     assert abs(own.apply(patch.map_of(patch.keys[0].pose)(at))[0] - arm_place[0]) < 1e-9 * WIDTH
 
 
+def test_pose_opens_the_layers_as_one_picture(folder, tmp_path):
+    (tmp_path / "one.json").write_text(
+        '{"schema": 1, "handles": {"foot": [80, 40]}, "keys": [{"frame": 0}]}'
+    )
+    out = tmp_path / "one.lissom"
+    arguments = [str(folder / "man.ora"), str(tmp_path / "one.json"), "--out", str(out)]
+    assert main(["pose", *arguments, "--one-picture", *FEW]) == 0
+    (layer,) = load_project(out).layers
+    assert layer.picture.size == (WIDTH, HEIGHT)
+
+
 def test_certify_tells_of_each_layer(project, capsys):
     assert main(["certify", str(project), "--json"]) == 0
     layers = json.loads(capsys.readouterr().out)["layers"]
