@@ -52,6 +52,7 @@ from app.storage.files.outputs import (
 )
 from app.storage.files.reading import read_file as read_file
 from app.storage.files.strict_json import NOT_FINITE as NOT_FINITE, strict_json as strict_json
+from app.storage.flattening import flatten_layers as flatten_layers
 from app.storage.json_values import (
     JsonObject as JsonObject,
     as_flag as as_flag,
@@ -66,7 +67,6 @@ from app.storage.json_values import (
 )
 from app.storage.layers import (
     LAYERED as LAYERED,
-    flatten_layers as flatten_layers,
     is_layered as is_layered,
     make_posable_layer as make_posable_layer,
     make_still_layer as make_still_layer,

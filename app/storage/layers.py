@@ -1,6 +1,6 @@
 """Layers of one scene, from a layered drawing or from several pictures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,21 +9,18 @@ from PIL import Image
 
 from app.cut_out import CutOut, build_picture_domain
 from app.document import (
-    CompositeGroup,
     Document,
     ExportSettings,
     Framing,
     Layer,
     Meshing,
     PictureFile,
-    composite_layers,
-    is_visible,
     new_layer,
 )
 from app.errors import EMPTY_IMPORT_LOG, LissomError, NoticeCollector, display_name, shortened
 from app.storage.files.reading import read_file
+from app.storage.flattening import flatten_layers
 from app.storage.opening import OpenedScene, build_scene
-from app.storage.pictures.blending import blend_pictures
 from app.storage.pictures.layer_names import UniqueNames
 from app.storage.pictures.layered import ImportedLayer, LayeredPicture, encode_png
 from app.storage.pictures.openraster import read_krita, read_openraster
@@ -31,7 +28,7 @@ from app.storage.pictures.parallel import require_memory, run_parallel
 from app.storage.pictures.photoshop import read_photoshop
 from app.storage.pictures.picture import Picture, decode_pictures
 from app.texts import N_, _, message_of
-from engine.arrays import Bytes, readonly
+from engine.arrays import Bytes
 from engine.domain import MeshedDomain, rectangle_domain
 from engine.errors import EngineError
 
@@ -45,7 +42,6 @@ LAYERED = tuple(READERS)
 # Minimum per layer, however many layers share the triangles, and most of all minima together.
 FEWEST_TRIANGLES = 4_000
 MOST_TOGETHER = 1_000_000
-LARGEST_FLAT = 1_024  # pixels
 NO_SHAPE = N_("none of its layers can be posed: {reason}")
 WHOLE = CutOut(background="none")  # removes only transparent pixels
 # Fields of a layer that belong to its picture, its handles and their motion.
@@ -139,79 +135,6 @@ def open_pictures(paths: Sequence[Path], meshing: Meshing) -> OpenedScene:
             collector.add_note(name, notice)
     drawing = LayeredPicture(size=size, layers=tuple(all_imported), summary=collector.import_log)
     return _scene(drawing, meshing, CutOut(), is_cut_out=False)
-
-
-def flatten_layers(
-    document: Document, textures: Mapping[int, Bytes], *, largest: int = LARGEST_FLAT
-) -> Bytes:
-    """Return the initially visible layers as one picture, as drawn; a large one is reduced.
-
-    Parameters
-    ----------
-    textures : mapping of int to uint8, shape (h, w, 4)
-        The cut-out pictures by layer id.
-    largest : int
-        A picture of at least twice as many pixels across is reduced.
-
-    Returns
-    -------
-    uint8, shape (h, w, 4)
-        Straight alpha.
-    """
-    factor = max(1, max(document.canvas) // largest)
-    if len(document.layers) == 1:
-        return np.asarray(_reduced(textures[document.layers[0].id], factor))
-    size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
-
-    def draw(layer: Layer, flat: Image.Image) -> None:
-        part, corner = _reduced(textures[layer.id], factor), layer.corner / factor
-        left, top = round(corner.real), round(size[1] - corner.imag - part.height)
-        beyond = min(max(0, -left), part.width), min(max(0, -top), part.height)
-        flat.alpha_composite(part, (max(left, 0), max(top, 0)), beyond)
-
-    def over(flat: Image.Image, parts: Sequence[Layer | CompositeGroup[Layer]]) -> Image.Image:
-        flat = flat.copy()
-        for part in parts:
-            if isinstance(part, CompositeGroup) and part.is_pass_through:
-                faded = Image.blend(
-                    flat.convert("RGBa"), over(flat, part.parts).convert("RGBa"), part.opacity
-                )
-                flat = faded.convert("RGBA")
-            elif isinstance(part, CompositeGroup):
-                flat = _blended(flat, over(Image.new("RGBA", size), part.parts), part)
-            else:
-                draw(part, flat)
-        return flat
-
-    first = document.frames.first
-    seen = {each.id: each for each in document.exported_layers if is_visible(document, each, first)}
-    painted = over(Image.new("RGBA", size), composite_layers(document, seen, first))
-    return readonly(np.asarray(painted))
-
-
-def _blended(below: Image.Image, above: Image.Image, how: CompositeGroup[Layer]) -> Image.Image:
-    """Return a layer over its backdrop ("Compositing and Blending Level 1", Section 10)."""
-    alpha = above.getchannel("A").point(lambda a: round(how.opacity * a))
-    covered = below.getchannel("A")
-    # A clipped layer meets its backdrop as if the backdrop were opaque.
-    solid = below.convert("RGB").convert("RGBA") if how.clipped else below
-    if how.blend != "normal":
-        own = above.convert("RGB")
-        mixed = blend_pictures(below.convert("RGB"), own, how.blend)
-        # Over an empty backdrop the layer keeps its colours.
-        above = Image.composite(mixed, own, solid.getchannel("A")).convert("RGBA")
-    above.putalpha(alpha)
-    flat = Image.alpha_composite(solid, above)
-    if how.clipped:
-        flat.putalpha(covered)
-    return flat
-
-
-def _reduced(rgba: Bytes, factor: int) -> Image.Image:
-    """Return a picture in which one pixel stands for `factor` × `factor` pixels."""
-    # Process a few rows at a time: a whole copy would double the memory.
-    rows = (rgba[top : top + factor] for top in range(0, len(rgba), factor))
-    return Image.fromarray(np.concatenate([Image.fromarray(row).reduce(factor) for row in rows]))
 
 
 def make_posable_layer(

@@ -195,10 +195,7 @@ def _drawn_layers(
         is_clipped = groups.is_clipped(path) if path else run[0].clipped
         if is_clipped and empty:
             for layer in run:
-                collector.add_note(
-                    layer.name,
-                    empty,
-                )
+                collector.add_note(layer.name, empty)
             continue
         drawn = (
             _drawn_layers(run, groups, collector, depth + 1)
@@ -219,15 +216,10 @@ def _drawn_layers(
 
 def _layer_unless_blank(layer: ImportedLayer, collector: NoticeCollector) -> list[ImportedLayer]:
     """Return a layer, or nothing and a notice if it is empty."""
-    is_empty = is_blank(layer.picture)
+    is_empty = layer.picture.is_blank
     if is_empty:
         collector.add_note(layer.name, _(EMPTY))
     return [] if is_empty else [layer]
-
-
-def is_blank(picture: Picture) -> bool:
-    """Return whether all pixels of a picture are transparent."""
-    return not picture.rgba[..., 3].any()
 
 
 class _Trimmed(NamedTuple):
@@ -238,8 +230,8 @@ class _Trimmed(NamedTuple):
     shift: complex
 
     def of(self, layer: ImportedLayer) -> ImportedLayer:
-        corner = layer.corner + self.shift
-        return replace(layer, data=self.data, picture=self.picture, corner=corner)
+        moved = layer.corner + self.shift
+        return replace(layer, data=self.data, picture=self.picture, corner=moved)
 
 
 def _trimmed(layer: ImportedLayer, canvas: tuple[int, int]) -> _Trimmed:
@@ -260,22 +252,23 @@ def _trimmed(layer: ImportedLayer, canvas: tuple[int, int]) -> _Trimmed:
     bottom, right = min(bottom + 1, height - 1), min(right + 1, width - 1)
     if (right - left + 1) * (bottom - top + 1) > CUT_OFF * width * height:
         return _Trimmed(layer.data, picture, 0j)
-    rgba = picture.rgba[top : bottom + 1, left : right + 1]
-    return _framed(picture, rgba, complex(left, height - 1 - bottom))
+    shift = complex(left, height - 1 - bottom)
+    return _framed(picture, picture.rgba[top : bottom + 1, left : right + 1], shift)
 
 
 def _is_background(layer: ImportedLayer, canvas: tuple[int, int]) -> bool:
     """Return whether the box of a layer covers most of the canvas."""
-    left, bottom = layer.corner.real, layer.corner.imag
-    width = min(left + layer.picture.size[0], canvas[0]) - max(left, 0)
-    height = min(bottom + layer.picture.size[1], canvas[1]) - max(bottom, 0)
-    return min(width, height) > 0 and width * height >= BACKGROUND * canvas[0] * canvas[1]
+    corner, size = (layer.corner.real, layer.corner.imag), layer.picture.size
+    covered = [
+        max(0.0, min(begin + length, whole) - max(begin, 0)) / whole
+        for begin, length, whole in zip(corner, size, canvas, strict=True)
+    ]
+    return covered[0] * covered[1] >= BACKGROUND
 
 
 def _framed(picture: Picture, rgba: Bytes, shift: complex) -> _Trimmed:
-    rgba = readonly(rgba)
-    file = encode_png(Image.fromarray(rgba))
-    return _Trimmed(file, replace(picture, rgba=rgba, suffix=".png"), shift)
+    cut = replace(picture, rgba=readonly(rgba), suffix=".png")
+    return _Trimmed(encode_png(Image.fromarray(cut.rgba)), cut, shift)
 
 
 def encode_png(image: Image.Image) -> bytes:

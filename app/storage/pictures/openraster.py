@@ -24,7 +24,6 @@ from app.storage.pictures.layered import (
     check_layer_count,
     check_memory,
     corner_from_top,
-    is_blank,
 )
 from app.storage.pictures.picture import (
     Picture,
@@ -131,7 +130,7 @@ def _read(archive: zipfile.ZipFile) -> LayeredPicture:
     for (element, place), source in zip(elements, sources, strict=True):
         member, picture = members[source], pictures[source]
         name = element.get("name", "").strip() or "layer"
-        if is_blank(picture):
+        if picture.is_blank:
             # An empty layer is no clipping base: the rest below is.
             collector.add_note(name, _(EMPTY))
             continue

@@ -24,7 +24,6 @@ from app.storage.pictures.layered import (
     check_memory,
     corner_from_top,
     encode_png,
-    is_blank,
 )
 from app.storage.pictures.photoshop_masks import (
     TRANSPARENCY,
@@ -36,10 +35,9 @@ from app.storage.pictures.photoshop_masks import (
 from app.storage.pictures.photoshop_paint import (
     box_of,
     effects_of,
-    fill_colour,
-    has_outline,
-    is_described,
     lay_over,
+    warn_left_out,
+    why_left_out,
 )
 from app.storage.pictures.picture import Picture
 from app.texts import N_, _
@@ -51,19 +49,10 @@ HEADER: Final = 26  # bytes
 MOST_RECORDS: Final = 4_000
 # Start of the layer list in files of more than 8 bits per channel.
 DEEP_LAYERS: Final = re.compile(rb"8B(IM|64)Lr(16|32)")
-# Names in psd-tools of layers with pixels. Placed pictures and texts come with pixels.
-DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
-# Blocks of adjustments that psd-tools takes for empty pictures.
-OLD_ADJUSTMENTS: Final = {b"brit", b"hue "}
 # Number of colour channels, numbered from 0; the alpha channel has number -1.
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
-KNOCKOUT: Final = b"knko"
 PADDING: Final = 3  # bytes that may follow the rows of a channel
-# A layer's blending range of two black and two white levels: all levels, or unspecified.
-ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
 MODES: Final = {blend.upper().replace("-", "_"): blend for blend in BLENDS}
-DRAWN_WITHOUT: Final = N_("drawn without effects ({effects})")
-NOT_PAINTED: Final = N_("left out, because Lissom draws only shapes and fills of one color")
 MERGED_ALONE: Final = N_("the merged picture of the file, because none of its layers can be drawn")
 DAMAGED: Final = N_("it is not a Photoshop file, or it is damaged")
 DAMAGE = (
@@ -171,7 +160,7 @@ def _read(drawing: Any) -> LayeredPicture:
             group=place.group,
         )
         layers.append(read)
-    if all(is_blank(layer.picture) for layer in layers) and drawing.has_preview():
+    if all(layer.picture.is_blank for layer in layers) and drawing.has_preview():
         merged = _merged(drawing)
         layers = [
             ImportedLayer(
@@ -221,7 +210,7 @@ def _drawn_layers(
                 blend="pass-through" if passes else _blend(layer, collector),
                 clipped=is_clipped,
             )
-            _warn_left_out(layer, name, collector)
+            warn_left_out(layer, name, collector)
             if is_masked(layer):
                 canvas = np.zeros((around._psd.height, around._psd.width), bool)  # noqa: SLF001
                 masks = (*masks, MaskedGroup(layer, canvas))
@@ -231,49 +220,17 @@ def _drawn_layers(
             inner = _Place(group=groups.add(place.group, group), masks=masks)
             drawn = list(_drawn_layers(layer, inner, groups, collector))
             yield from drawn or [(inner, layer, False)]
-        elif reason := _why_left_out(layer):
+        elif reason := why_left_out(layer):
             collector.add_warning(name, reason)
             clips = clips and _is_clipping(layer)
             continue
         else:
-            _warn_left_out(layer, name, collector)
+            warn_left_out(layer, name, collector)
             if layer.kind == "type":
                 collector.add_note(name, _("drawn as a picture; its text cannot be edited"))
             yield replace(place, masks=masks), layer, is_clipped
         has_base = has_base or not is_clipped
         clips = clips or not _is_clipping(layer)
-
-
-def _why_left_out(layer: Any) -> str:
-    """Return why a layer is not drawn; empty if it is."""
-    if not is_described(layer) and (
-        layer.kind not in DRAWN or any(key in layer.tagged_blocks for key in OLD_ADJUSTMENTS)
-    ):
-        return _("left out, because it is an adjustment layer")
-    if is_described(layer) and not layer.has_pixels() and fill_colour(layer) is None:
-        return _(NOT_PAINTED)
-    return ""
-
-
-def _warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
-    """Add notices about unsupported features that change the look of a layer or group."""
-    missing = dict.fromkeys(
-        effect.name for effect in effects_of(layer) if effect.overlay is None or layer.is_group()
-    )
-    if missing:
-        collector.add_warning(name, _(DRAWN_WITHOUT).format(effects=", ".join(missing)))
-    if not layer.is_group() and not layer.has_pixels() and has_outline(layer):
-        collector.add_warning(name, _("drawn without the outline of its shape"))
-    if layer.kind == "artboard":
-        collector.add_warning(name, _("an artboard; its background and edges are not drawn"))
-    ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
-    pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
-    if any(each not in ALL_LEVELS for pair in pairs for each in pair):
-        collector.add_warning(
-            name, _("drawn at all brightnesses; its “Blend If” setting is ignored")
-        )
-    if layer.tagged_blocks.get_data(KNOCKOUT):
-        collector.add_warning(name, _("drawn over the layers behind; its knockout is ignored"))
 
 
 def _is_clipping(layer: Any) -> bool:

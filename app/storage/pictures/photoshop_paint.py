@@ -1,4 +1,4 @@
-"""What a Photoshop file describes in place of pixels: shapes, fills, effects.
+"""What a Photoshop file describes in place of pixels: shapes, fills, effects, adjustments.
 
 Imports psd-tools, which is an extra, only when a file is read.
 """
@@ -10,6 +10,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from PIL import Image, ImageChops
 
+from app.errors import NoticeCollector
 from app.storage.pictures.colour import to_srgb
 from app.texts import N_, _
 
@@ -20,10 +21,10 @@ SOLID_COLOUR: Final = b"SoCo"
 SHAPE_CONTENT: Final = b"vscg"
 SHAPE_OUTLINE: Final = b"vstk"
 PROFILE: Final = 1039  # number of the colour profile among the file's resources
-# Blocks of effects: the newest in use, then those of older programs.
+# Blocks of effects, and the block of them in files of old programs.
 EFFECTS: Final = (b"lfx2", b"lmfx", b"lfxs")
 OLD_EFFECTS: Final = b"lrFX"
-NORMAL: Final = b"Nrml"  # a mode
+NORMAL: Final = b"Nrml"  # mode of an overlay
 COLOUR_OVERLAY: Final = b"SoFi"
 EFFECT_NAMES: Final = {
     b"DrSh": N_("drop shadow"),
@@ -43,6 +44,15 @@ EFFECT_NAMES: Final = {
     b"patternFill": N_("pattern overlay"),
     b"FrFX": N_("stroke"),
 }
+# Names in psd-tools of layers with pixels. Placed pictures and texts come with pixels.
+DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
+# Blocks of adjustments that psd-tools takes for empty pictures.
+OLD_ADJUSTMENTS: Final = {b"brit", b"hue "}
+KNOCKOUT: Final = b"knko"
+# A layer's blending range of two black and two white levels: all levels, or unspecified.
+ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
+DRAWN_WITHOUT: Final = N_("drawn without effects ({effects})")
+NOT_PAINTED: Final = N_("left out, because Lissom draws only shapes and fills of one color")
 
 
 class ColourOverlay(NamedTuple):
@@ -169,3 +179,35 @@ def _colour(layer: Any, descriptor: Any) -> tuple[int, int, int] | None:
     profile = layer._psd.image_resources.get_data(PROFILE)  # noqa: SLF001 - as above
     red, green, blue = np.asarray(to_srgb(pixel, profile)[0].convert("RGB"))[0, 0].tolist()
     return red, green, blue
+
+
+def why_left_out(layer: Any) -> str:
+    """Return why a layer is not drawn; empty if it is."""
+    if not is_described(layer) and (
+        layer.kind not in DRAWN or any(key in layer.tagged_blocks for key in OLD_ADJUSTMENTS)
+    ):
+        return _("left out, because it is an adjustment layer")
+    if is_described(layer) and not layer.has_pixels() and fill_colour(layer) is None:
+        return _(NOT_PAINTED)
+    return ""
+
+
+def warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:
+    """Add notices about unsupported features that change the look of a layer or group."""
+    missing = dict.fromkeys(
+        effect.name for effect in effects_of(layer) if effect.overlay is None or layer.is_group()
+    )
+    if missing:
+        collector.add_warning(name, _(DRAWN_WITHOUT).format(effects=", ".join(missing)))
+    if not layer.is_group() and not layer.has_pixels() and has_outline(layer):
+        collector.add_warning(name, _("drawn without the outline of its shape"))
+    if layer.kind == "artboard":
+        collector.add_warning(name, _("an artboard; its background and edges are not drawn"))
+    ranges = layer._record.blending_ranges  # noqa: SLF001 - as of channels
+    pairs = [ranges.composite_ranges or [], *(ranges.channel_ranges or [])]
+    if any(each not in ALL_LEVELS for pair in pairs for each in pair):
+        collector.add_warning(
+            name, _("drawn at all brightnesses; its “Blend If” setting is ignored")
+        )
+    if layer.tagged_blocks.get_data(KNOCKOUT):
+        collector.add_warning(name, _("drawn over the layers behind; its knockout is ignored"))

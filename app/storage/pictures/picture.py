@@ -97,6 +97,10 @@ class Picture:
         # Row by row: in most drawings the first row decides.
         return all(bool((row[:, 3] == OPAQUE).all()) for row in self.rgba)
 
+    @property
+    def is_blank(self) -> bool:
+        return not self.rgba[..., 3].any()
+
 
 def decode_picture(data: bytes, name: str) -> Picture:
     """Decode the bytes of a picture file; errors call the file `name`.

@@ -13,8 +13,8 @@ from app.cut_out import CutOut
 from app.document.channels.kinds import DEPTH
 from app.document.settings import Meshing
 from app.errors import LissomError
+from app.storage.flattening import LARGEST_FLAT
 from app.storage.layers import (
-    LARGEST_FLAT,
     NO_SHAPE,
     make_still_layer,
     open_layered,

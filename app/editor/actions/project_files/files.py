@@ -97,30 +97,18 @@ def ask_file_to_open(session: Session) -> None:
     session.ask_file(_("Open image or project"), OPENABLE, lambda path: do(open_file, path))
 
 
-def open_file(session: Session, path: Path) -> None:
+def open_file(session: Session, path: Path, *, as_one_picture: bool = False) -> None:
     """Read a picture or a project on the worker, and open it.
 
-    If the project has unsaved changes by then, a question comes first.
+    If the project has unsaved changes by then, a question comes first. The layers of a drawing
+    may be merged into one picture.
     """
     meshing = session.meshing
-    _open(session, path, _opening(path), lambda: _read(path, meshing))
-
-
-def open_as_one_picture(session: Session, path: Path) -> None:
-    """Read a layered drawing on the worker, and open it merged into one picture."""
-    meshing = session.meshing
-
-    def read() -> OpenedFile:
-        return with_layer_runtimes(open_merged(path, meshing))._replace(drawings=(path,))
-
-    _open(session, path, _opening(path), read)
-
-
-def _opening(path: Path) -> JobKind:
-    return JobKind(
+    kind = JobKind(
         display_name(_("Opening {name}").format(name=path.name)),
         _("{name} cannot be opened").format(name=path.name),
     )
+    _open(session, path, kind, lambda: _read(path, meshing, as_one_picture=as_one_picture))
 
 
 def open_files_as_layers(session: Session, paths: Sequence[Path]) -> None:
@@ -256,9 +244,15 @@ def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict
     return dict(zip(pictures, made, strict=True))
 
 
-def _read(path: Path, meshing: Meshing) -> OpenedFile:
-    is_project = path.suffix.lower() == PROJECT
-    return _read_project(path) if is_project else _read_picture(path, meshing)
+def _read(path: Path, meshing: Meshing, *, as_one_picture: bool) -> OpenedFile:
+    if path.suffix.lower() == PROJECT:
+        return _read_project(path)
+    read = open_picture
+    if is_layered(path):
+        read = open_merged if as_one_picture else open_layered
+    opened = with_layer_runtimes(read(path, meshing))
+    next_step = _next_step(path, tuple(opened.layer_runtimes.values()))
+    return opened._replace(next_step=next_step, drawings=(path,))
 
 
 def _read_project(path: Path) -> OpenedFile:
@@ -277,28 +271,15 @@ def decode_project(document: Document, name: str) -> OpenedFile:
     return OpenedFile(document, _layer_runtimes(document, pictures), motion_notices(document))
 
 
-def _read_picture(path: Path, meshing: Meshing) -> OpenedFile:
-    read = open_layered if is_layered(path) else open_picture
-    opened = with_layer_runtimes(read(path, meshing))
-    next_step = _next_step(path, tuple(opened.layer_runtimes.values()))
-    return opened._replace(next_step=next_step, drawings=(path,))
-
-
 def _next_step(path: Path, runtimes: Sequence[LayerRuntime]) -> NextStep | None:
     """Return a suggestion for a drawing that was just opened: an opaque picture, or layers."""
     if len(runtimes) > 1:
-        if path.parent == sample_images():
-            return None
-        return NextStep(
-            text=_("Each of the {count} layers has handles of its own.").format(
-                count=len(runtimes)
-            ),
-            label=ONE_PICTURE,
-            action=do(open_as_one_picture, path),
-        )
-    runtime = runtimes[0]
-    cut = runtime.cut.value
-    if runtime.is_opaque and cut.is_all:
+        text = _("Each of the {count} layers has handles of its own.")
+        merge = do(open_file, path, as_one_picture=True)
+        step = NextStep(text.format(count=len(runtimes)), ONE_PICTURE, merge)
+        return None if path.parent == sample_images() else step
+    cut = runtimes[0].cut.value
+    if runtimes[0].is_opaque and cut.is_all:
         return NextStep(
             text=_(
                 "The whole picture is the drawing. Brush the rest away, or pick the "

@@ -34,12 +34,11 @@ from app.errors import ImportLog, LissomError
 from app.storage.pictures.layered import GROUPS_DEEP, MOST_LAYERS
 from app.storage.pictures.photoshop import (
     DAMAGED,
-    DRAWN_WITHOUT,
     MERGED_ALONE,
     MOST_RECORDS,
-    NOT_PAINTED,
     read_photoshop,
 )
+from app.storage.pictures.photoshop_paint import DRAWN_WITHOUT, NOT_PAINTED
 
 SIZE = (100, 120)
 FULL = np.full((20, 30, 4), 255, np.uint8)
