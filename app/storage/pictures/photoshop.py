@@ -160,7 +160,8 @@ def _read(drawing: Any) -> LayeredPicture:
             group=place.group,
         )
         layers.append(read)
-    if all(layer.picture.is_blank for layer in layers) and drawing.has_preview():
+    is_blank = all(layer.picture.is_blank for layer in layers)
+    if is_blank and (drawing.has_preview() or not found):
         merged = _merged(drawing)
         layers = [
             ImportedLayer(

@@ -45,13 +45,15 @@ EFFECT_NAMES: Final = {
     b"FrFX": N_("stroke"),
 }
 # Names in psd-tools of layers with pixels. Placed pictures and texts come with pixels.
-DRAWN: Final = {"pixel", "shape", "smartobject", "type"}
+WITH_PIXELS: Final = {"smartobject", "type"}
+DRAWN: Final = {"pixel", "shape", *WITH_PIXELS}
 # Blocks of adjustments that psd-tools takes for empty pictures.
 OLD_ADJUSTMENTS: Final = {b"brit", b"hue "}
 KNOCKOUT: Final = b"knko"
 # A layer's blending range of two black and two white levels: all levels, or unspecified.
 ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
 DRAWN_WITHOUT: Final = N_("drawn without effects ({effects})")
+NO_PIXELS: Final = N_("left out, because the file does not contain its pixels")
 NOT_PAINTED: Final = N_("left out, because Lissom draws only shapes and fills of one color")
 
 
@@ -187,9 +189,11 @@ def why_left_out(layer: Any) -> str:
         layer.kind not in DRAWN or any(key in layer.tagged_blocks for key in OLD_ADJUSTMENTS)
     ):
         return _("left out, because it is an adjustment layer")
-    if is_described(layer) and not layer.has_pixels() and fill_colour(layer) is None:
-        return _(NOT_PAINTED)
-    return ""
+    if layer.has_pixels():
+        return ""
+    if layer.kind in WITH_PIXELS:
+        return _(NO_PIXELS)
+    return _(NOT_PAINTED) if is_described(layer) and fill_colour(layer) is None else ""
 
 
 def warn_left_out(layer: Any, name: str, collector: NoticeCollector) -> None:

@@ -20,14 +20,15 @@ PNG: Final = b"\x89PNG\r\n\x1a\n"
 DEPTH: Final = 24  # place of the bits per channel in the file
 BYTE: Final = 8  # bits
 EMPTY_CHUNK: Final = 12  # bytes of the length, name and checksum of a chunk
+LAST_CHUNK: Final = b"IEND"
 # The bit of a chunk's name that says that the picture can be decoded without it.
 ANCILLARY: Final = 0x20
 
 
 def without_damaged_chunks(data: bytes) -> tuple[bytes, tuple[str, ...]]:
     """Return a PNG file without the ancillary chunks that have a wrong checksum, and a notice."""
-    kept, names, at, begin = [], [], len(PNG), 0
-    while at + EMPTY_CHUNK <= len(data):
+    kept, names, at, begin, name = [], [], len(PNG), 0, b""
+    while name != LAST_CHUNK and at + EMPTY_CHUNK <= len(data):
         length, name = struct.unpack_from(">I4s", data, at)
         end = at + EMPTY_CHUNK + length
         # Critical chunks, which are large, are checked when they are decoded.

@@ -38,7 +38,7 @@ from app.storage.pictures.photoshop import (
     MOST_RECORDS,
     read_photoshop,
 )
-from app.storage.pictures.photoshop_paint import DRAWN_WITHOUT, NOT_PAINTED
+from app.storage.pictures.photoshop_paint import DRAWN_WITHOUT, NO_PIXELS, NOT_PAINTED
 
 SIZE = (100, 120)
 FULL = np.full((20, 30, 4), 255, np.uint8)
@@ -349,6 +349,11 @@ def test_colour_overlay_is_drawn(fill):
     assert_allclose(arm.picture.rgba[3, 3, :3], wanted, rtol=0, atol=1)
     multiplied = read(drawn("arm", blocks=(effects_block(overlay(RED, 50, b"Mltp")),)))
     assert multiplied.summary.warnings == (says_effects("arm", "color overlay"),)
+
+
+def test_placed_picture_without_pixels_is_reported():
+    placed = Drawn(name="prop", pixels=EMPTY, blocks=((b"SoLd", bytes(8)),))
+    assert read(drawn("arm"), placed).summary.warnings == (f"prop: {NO_PIXELS}",)
 
 
 def test_old_adjustments_are_called_so():

@@ -389,6 +389,8 @@ def test_png_with_a_damaged_harmless_chunk_opens_with_a_notice():
     picture = decode_picture(WHOLE[:at] + damaged + text + damaged + WHOLE[at:], "drawing")
     assert_array_equal(picture.rgba, rgba_of(WHOLE))
     assert picture.notices == ("damaged parts of the file were ignored (tEXt)",)
+    # What follows the last chunk is no part of the picture.
+    assert decode_picture(WHOLE + damaged, "drawing").notices == ()
     header = WHOLE[:29] + bytes([WHOLE[29] ^ 1]) + WHOLE[30:]
     with pytest.raises(LissomError, match=f"^{says(RARE_PICTURE, name='drawing', format='PNG')}$"):
         decode_picture(header, "drawing")
