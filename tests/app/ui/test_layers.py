@@ -998,6 +998,18 @@ def test_a_layer_that_comes_after_one_is_gone_shows_its_own_picture(window, scen
     assert pixel(window, 138 + 100j) == (250, 220, 0)
 
 
+def test_added_flat_drawing_loses_its_plain_background(window, scene, tmp_path):
+    flat = Image.new("RGBA", (90, 70), (255, 255, 255, 255))
+    flat.alpha_composite(blob(60, 40, (250, 220, 0)), (15, 15))
+    path = tmp_path / "flat.ora"
+    path.write_bytes(openraster(flat.size, '<layer name="dot" src="data/0.png"/>', [flat]))
+    window.act(add_layers, [path])
+    window.settle()
+    added = scene.document.layers[-1]
+    assert (added.name, added.still) == ("dot", False)
+    assert abs(added.domain.outline - (120 + 100j)).max() < 35
+
+
 @pytest.fixture(scope="module")
 def stranger(tmp_path_factory):
     """A drawing with what looks different here, and small matters."""
