@@ -232,7 +232,8 @@ def with_layer_runtimes(opened: OpenedScene) -> OpenedFile:
 
 def _layer_runtimes(document: Document, pictures: Mapping[int, Picture]) -> dict[int, LayerRuntime]:
     if len(pictures) > 1:
-        kept = {id(each): move_to_disk(each) for each in pictures.values()}
+        distinct = {id(each): each for each in pictures.values()}
+        kept = dict(zip(distinct, move_to_disk(list(distinct.values())), strict=True))
         pictures = {identity: kept[id(each)] for identity, each in pictures.items()}
     made = run_parallel(
         lambda identity: LayerRuntime.of(

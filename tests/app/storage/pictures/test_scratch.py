@@ -1,5 +1,8 @@
 """Pixels in a file without a name."""
 
+import tempfile
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,7 +17,7 @@ def picture():
 
 
 def test_pixels_on_disk_are_the_same_and_come_back(picture):
-    kept = move_to_disk(picture)
+    (kept,) = move_to_disk([picture])
     assert (kept.suffix, kept.notices, kept.size) == (".webp", ("read",), (300, 200))
     assert not kept.rgba.flags.writeable
     for _ in range(2):
@@ -23,11 +26,28 @@ def test_pixels_on_disk_are_the_same_and_come_back(picture):
         release_pages(kept.rgba[5:, ::2])
 
 
+def test_pictures_on_disk_share_an_open_file(picture, monkeypatch):
+    opened, open_one = [], tempfile.TemporaryFile
+
+    def counted():
+        opened.append(True)
+        return open_one()
+
+    monkeypatch.setattr("tempfile.TemporaryFile", counted)
+    pictures = [replace(picture, rgba=picture.rgba[: n + 1] + np.uint8(n)) for n in range(50)]
+    kept = move_to_disk(pictures)
+    assert opened == [True]
+    release_pages(kept[7].rgba)
+    for one, other in zip(kept, pictures, strict=True):
+        assert np.array_equal(one.rgba, other.rgba)
+
+
 def test_where_nothing_fits_on_the_disk_pixels_stay_in_memory(picture, monkeypatch):
     def full(*_, **__):
         raise OSError("no space left")
 
     monkeypatch.setattr("tempfile.TemporaryFile", full)
-    assert move_to_disk(picture) is picture
+    (kept,) = move_to_disk([picture])
+    assert kept is picture
     release_pages(picture.rgba)
     assert picture.rgba.any()
