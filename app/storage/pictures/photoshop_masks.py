@@ -63,18 +63,21 @@ def _pixels(layer: Any, box: Box) -> Image.Image | None:
         size = box[2] - box[0], box[3] - box[1]
         return None if colour is None else Image.new("RGBA", size, (*colour, OPAQUE))
     image = layer.topil()
-    return None if image is None else to_rgba(image, layer.topil(TRANSPARENCY))
+    if image is None:
+        return None
+    pixels = to_rgba(image)
+    # Pillow has no alpha beside inks and L*a*b* colours.
+    if image.mode not in {"LA", "RGBA"} and (alpha := layer.topil(TRANSPARENCY)) is not None:
+        pixels.putalpha(alpha.convert("L"))
+    return pixels
 
 
-def to_rgba(image: Image.Image, alpha: Image.Image | None = None) -> Image.Image:
-    """Return a picture in sRGB; Pillow has no alpha beside inks or L*a*b* colours."""
+def to_rgba(image: Image.Image) -> Image.Image:
+    """Return a picture of psd-tools in sRGB; Pillow converts no L*a*b* colours by itself."""
     if image.mode == "LAB":
         lab, srgb = ImageCms.createProfile("LAB"), ImageCms.createProfile("sRGB")
         image = ImageCms.profileToProfile(image, lab, srgb, outputMode="RGB") or image
-    pixels = image.convert("RGBA")
-    if alpha is not None and image.mode not in {"LA", "RGBA"}:
-        pixels.putalpha(alpha.convert("L"))
-    return pixels
+    return image.convert("RGBA")
 
 
 def is_masked(layer: Any) -> bool:

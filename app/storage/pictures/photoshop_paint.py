@@ -54,7 +54,7 @@ KNOCKOUT: Final = b"knko"
 ALL_LEVELS: Final = {(0, 0xFFFF), (0, 0)}
 DRAWN_WITHOUT: Final = N_("drawn without effects ({effects})")
 NO_PIXELS: Final = N_("left out, because the file does not contain its pixels")
-NOT_PAINTED: Final = N_("left out, because Lissom draws only shapes and fills of one color")
+NOT_PAINTED: Final = N_("left out, because Lissom draws only shapes and fills of one colour")
 
 
 class ColourOverlay(NamedTuple):
