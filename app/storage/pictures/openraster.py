@@ -55,10 +55,7 @@ KRITA = b"application/x-krita"
 MERGED = "mergedimage.png"
 NO_KRITA = N_("it is not a Krita file, or it is damaged")
 NOT_MERGED = N_("it contains no merged picture; save the drawing as OpenRaster (.ora)")
-MERGED_ALONE = N_(
-    "only the merged picture of the file was read; for its layers save the drawing as OpenRaster "
-    "(.ora)"
-)
+MERGED_ALONE = N_("only the merged picture was read; for the layers, save the drawing as .ora")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

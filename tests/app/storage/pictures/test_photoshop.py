@@ -326,11 +326,11 @@ def says_effects(name, effects):
 def test_old_effects_and_effects_of_groups_are_reported():
     old = old_effects_block(b"sofi")
     assert read(drawn("arm", blocks=(old,))).summary.warnings == (
-        says_effects("arm", "color overlay"),
+        says_effects("arm", "colour overlay"),
     )
     block = effects_block(overlay(RED))
     group = Folder(name="limbs", layers=[drawn("arm")], blocks=(block,))
-    assert read(group).summary.warnings == (says_effects("limbs", "color overlay"),)
+    assert read(group).summary.warnings == (says_effects("limbs", "colour overlay"),)
     # Newer effects stand in the place of the old ones.
     assert not read(drawn("arm", blocks=(old, block))).summary.warnings
 
@@ -348,7 +348,7 @@ def test_colour_overlay_is_drawn(fill):
     wanted = 255 - weight * np.array([0, 255, 255])
     assert_allclose(arm.picture.rgba[3, 3, :3], wanted, rtol=0, atol=1)
     multiplied = read(drawn("arm", blocks=(effects_block(overlay(RED, 50, b"Mltp")),)))
-    assert multiplied.summary.warnings == (says_effects("arm", "color overlay"),)
+    assert multiplied.summary.warnings == (says_effects("arm", "colour overlay"),)
 
 
 def test_placed_picture_without_pixels_is_reported():

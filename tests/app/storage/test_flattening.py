@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from PIL import Image
 
 from app.document.layers.groups import BLENDS
-from app.storage.pictures.blending import blend_pictures
+from app.storage.flattening import blend_pictures
 
 SIDE = 70  # more rows than are blended at a time
 
