@@ -26,6 +26,7 @@ class Mask:
     top: int = 0
     outside: int = 0
     disabled: bool = False
+    is_path: bool = False  # its pixels were drawn from a path
     density: int | None = None
     feather: float | None = None
     path_density: int | None = None
@@ -180,7 +181,7 @@ def _mask(mask: Mask | None) -> bytes:
     settings = {
         bit: struct.pack(form, value) for bit, (form, value) in said.items() if value is not None
     }
-    flags = 2 * mask.disabled + 16 * bool(settings)
+    flags = 2 * mask.disabled + 8 * mask.is_path + 16 * bool(settings)
     data = struct.pack(">iiiiBB", *box, mask.outside, flags)
     if settings:
         data += bytes([sum(settings)]) + b"".join(settings.values())

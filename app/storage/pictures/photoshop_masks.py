@@ -124,22 +124,25 @@ def _shines_through(
 
 def _seen_through(layer: Any, box: Box) -> Image.Image:
     """Return the opacity of the masks of a layer or group at each pixel of a box."""
-    settings = layer.mask.parameters if layer.mask is not None else None
     seen = Image.new("L", (box[2] - box[0], box[3] - box[1]), OPAQUE)
+    is_cut_by_path = _has_path_mask(layer)
     if _has_pixel_mask(layer):
-        density, feather = (
-            (settings.user_mask_density, settings.user_mask_feather) if settings else (None, None)
-        )
+        density, feather = _softness(layer, "user")
+        if density is None and not is_cut_by_path:
+            # The pixels may be those of the path.
+            density, _feather = _softness(layer, "vector")
         seen = _soft(partial(_mask_pixels, layer.mask), box, density, feather)
-    if _has_path_mask(layer):
-        density, feather = (
-            (settings.vector_mask_density, settings.vector_mask_feather)
-            if settings
-            else (None, None)
-        )
-        path = _soft(partial(draw_path, layer), box, density, feather)
+    if is_cut_by_path:
+        path = _soft(partial(draw_path, layer), box, *_softness(layer, "vector"))
         seen = ImageChops.multiply(seen, path)
     return seen
+
+
+def _softness(layer: Any, kind: str) -> tuple[int | None, float | None]:
+    """Return density and feather of a mask of pixels ("user") or of a path ("vector")."""
+    settings = layer.mask.parameters if layer.mask is not None else None
+    density = getattr(settings, f"{kind}_mask_density", None)
+    return density, getattr(settings, f"{kind}_mask_feather", None)
 
 
 def _soft(

@@ -302,6 +302,14 @@ def test_path_masks_cut_layers_and_groups(mask, flags, in_group):
     assert_array_equal(on_canvas(found)[..., 3], wanted)
 
 
+def test_path_mask_that_is_stored_as_pixels_cuts_once():
+    half = Mask(pixels=HALF // 2, left=10, top=20, is_path=True, path_density=51)
+    found = read(drawn("arm", mask=half, blocks=(path_block(QUARTER),)))
+    alpha = on_canvas(found.layers[0])[20:40, 10:40, 3]
+    assert_array_equal(alpha[:, :15], round(255 - 0.2 * (255 - 127)))
+    assert_array_equal(alpha[:, 15:], 255 - 51)
+
+
 def test_feathered_path_mask_is_soft():
     pixels = np.full((SIZE[1], SIZE[0], 4), 255, np.uint8)
     mask = Mask(pixels=HALF[:0, :0], outside=255, path_feather=3.0)
