@@ -171,7 +171,7 @@ def test_merged_drawing_keeps_its_size(tmp_path):
 
 
 def test_merged_picture_of_a_file_is_preferred_if_it_shows_something(tmp_path):
-    stack = '<layer name="a" src="data/0.png" composite-op="svg:overlay"/>' + STACK
+    stack = '<layer name="a" src="data/0.png" composite-op="krita:vivid_light"/>' + STACK
     layers = [blob(70, 50), blob(150, 140), blob(200, 220)]
     path, shown = tmp_path / "walk.ora", blob(200, 220, (1, 2, 3))
 
