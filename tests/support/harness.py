@@ -99,7 +99,7 @@ class Harness:
         fresh = Session(clock=self.clock, jobs=jobs, folder=self.folder)
         saving.set_project(self.session, None)
         for field in fields(Session):
-            if field.name not in {"screen", "full_detail", "graphics"}:
+            if field.name not in {"screen", "full_detail", "graphics", "revision"}:
                 setattr(self.session, field.name, getattr(fresh, field.name))
         # Small meshes, and nothing that nobody looks at, so that the tests are quick.
         self.session.meshing = Meshing(triangles=2_000, detail="coarse")

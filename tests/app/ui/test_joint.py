@@ -287,6 +287,8 @@ def swung(window, scene):
     window.act(add_handle, PALM)
     for overlay in ("paths", "onion"):
         window.act(viewing.toggle_overlay, overlay)
+    # The Export tab, which another test may have left in front, marks the frame of an export.
+    window.show_tab("Layers")
     window.settle()
     return scene
 
