@@ -8,9 +8,17 @@ import pytest
 from projects import project_of
 from scenes import PICTURE, drawn
 
-from app.document import layer_commands
+from app.document import (
+    OPACITY,
+    TINT,
+    Channel,
+    channel_commands,
+    key_commands,
+    layer_commands,
+)
 from app.editor.actions import editing, playback
 from app.editor.actions.project_files import saving
+from app.editor.work.jobs import Jobs
 from app.editor.work.revised import Revised
 from app.ui.viewport.canvas import Canvas
 from app.ui.window.window_frame import WindowFrame
@@ -19,6 +27,14 @@ OWN = str(Path(__file__).parents[3] / "app")
 MOST_CALLS = 50
 # Panels, and the picture of the drawing.
 DRAWING = {each.__code__ for each in (WindowFrame._draw_panel, WindowFrame._ask, Canvas.draw)}
+
+# Changes of a layer's look that leave its motion alone.
+LOOKS = {
+    "name": lambda layer: layer_commands.rename_layer(layer, "arm"),
+    "lock": lambda layer: layer_commands.set_locked(layer, locked=True),
+    "opacity": lambda layer: channel_commands.set_key(Channel(OPACITY, layer), 3, 0.5),
+    "tint": lambda layer: channel_commands.set_key(Channel(TINT, layer), 3, (1.0, 0.5, 0.0)),
+}
 
 
 def show_layers(window, count):
@@ -73,6 +89,22 @@ def test_window_shows_the_frame_of_a_playhead_that_was_moved(window):
     playback.scrub(window.session, last)
     window.frames(2)
     assert {each.shown.frame for each in window.session.project.layer_runtimes.values()} == {last}
+
+
+@pytest.mark.usefixtures("everything")
+@pytest.mark.parametrize("look", LOOKS)
+def test_changed_look_of_a_layer_starts_no_job_of_its_motion(window, bent, monkeypatch, look):
+    window.settle()
+    jobs, add = [], Jobs.add
+    monkeypatch.setattr(Jobs, "add", lambda queue, job: (jobs.append(job.kind), add(queue, job)))
+    window.act(editing.edit_document, LOOKS[look](bent.active))
+    window.settle()
+    assert jobs == []
+    # The queue is watched: a key of a pose starts jobs.
+    layer = bent.layer
+    window.act(editing.edit_document, key_commands.insert_key(layer.id, 30, layer.keys[0].pose))
+    window.settle()
+    assert jobs
 
 
 class Part(Revised):
