@@ -45,7 +45,7 @@ from app.document.commands.keys import (
 from app.document.commands.layers import layer_commands
 from app.document.keyframe import Target
 from app.document.settings import VARIANTS, ExportSettings, FrameRange, Meshing
-from app.editor.actions import editing, playback, viewing
+from app.editor.actions import editing, frame_update, playback, viewing
 from app.editor.actions.layer_setup import (
     cut_out_editing,
     handle_editing,
@@ -255,9 +255,25 @@ class Walk:
         for _ in range(MOST_FRAMES):
             self.window.frames()
             if is_shown(self.session) and not (wholly and self.session.jobs.kinds):
+                if wholly:
+                    self.check_rest()
                 return
             self.workers.do_all()
         raise AssertionError(f"never at rest:\n{unrest(self.session)}")
+
+    def check_rest(self) -> None:
+        """See that nothing has changed unnoticed, for which the window did not look."""
+        session, project = self.session, self.project
+        self.window.frames(2)
+        if session.jobs.kinds or frame_update.is_due_in_time(session):
+            return
+        before = project.document, [each.shown for each in project.layer_runtimes.values()]
+        frame_update.run_update_steps(session)
+        assert (
+            project.document,
+            [each.shown for each in project.layer_runtimes.values()],
+        ) == before
+        assert not session.jobs.kinds, f"late jobs: {session.jobs.kinds}"
 
     def pick(self, verbs) -> None:
         odds = np.array([weight for _, weight in verbs], dtype=float)
