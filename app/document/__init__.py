@@ -127,8 +127,8 @@ from app.document.queries.auto_pins import (
 from app.document.queries.boundary_stiffness import (
     bone_region as bone_region,
     brushed_stiffness as brushed_stiffness,
-    have_same_stiffness as have_same_stiffness,
     stiff_outline as stiff_outline,
+    stiffness_source as stiffness_source,
     with_stiffness as with_stiffness,
 )
 from app.document.queries.channel_values.channel_keys import (

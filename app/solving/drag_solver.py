@@ -12,10 +12,10 @@ from app.document import (
     Layer,
     Pose,
     Target,
-    have_same_stiffness,
     keyed_pose_at,
     segment_keys,
     segment_time_at,
+    stiffness_source,
     with_stiffness,
 )
 from app.motion import Animation, PoseSampler
@@ -62,7 +62,7 @@ class Rig:
         held = tuple(handle for handle in layer.handles if handle.id not in carried)
         if earlier is not None and earlier.layer.domain is domain:
             boundary = earlier.deformer.boundary
-            is_same = have_same_stiffness(earlier.layer, layer)
+            is_same = stiffness_source(earlier.layer) == stiffness_source(layer)
         else:
             boundary, is_same = Boundary.sample(domain), False
         if not is_same:

@@ -8,6 +8,7 @@ from app.baseline import Baseline
 from app.document.channels.easing import HOLD
 from app.document.keyframe import Pose
 from app.document.layer import Layer
+from app.document.queries.boundary_stiffness import stiffness_source
 from app.document.queries.clips import Clip
 from app.document.queries.key_segments import clip_segments
 from app.document.queries.memo import memoized_on
@@ -101,7 +102,7 @@ def _segments(
             fading.tobytes(),
             tuple(handle.position for handle in layer.handles),
             layer.has_parent,
-            id(layer.stiffness),
+            stiffness_source(layer),
             tuple(_velocity_sources(clip, each) for each in around) if len(around) > 1 else (),
             (layer.bounds.k, layer.bounds.sigma_a, layer.bounds.sigma_b),
         )

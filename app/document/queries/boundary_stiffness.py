@@ -42,13 +42,14 @@ def stiff_outline(layer: Layer) -> StiffOutline:
     return StiffOutline(np.concatenate(points), _stiffness_at(layer, points))
 
 
-def have_same_stiffness(layer: Layer, other: Layer) -> bool:
-    """Return whether two layers with the same domain have the same stiffness."""
-    own, others = (
-        [(bone.stiffness, *(each.handle(end).position for end in bone.ends)) for bone in each.bones]
-        for each in (layer, other)
-    )
-    return layer.stiffness is other.stiffness and own == others
+@memoized_on
+def stiffness_source(layer: Layer) -> tuple[object, ...]:
+    """Return the values that determine the stiffness along the boundary of a layer's domain."""
+    painted = None if layer.stiffness is None else layer.stiffness.tobytes()
+    bones = [
+        (bone.stiffness, *(layer.handle(end).position for end in bone.ends)) for bone in layer.bones
+    ]
+    return painted, tuple(bones)
 
 
 def uses_local_limits(layer: Layer, pose: Pose, share: float) -> bool:

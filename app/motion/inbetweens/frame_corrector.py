@@ -11,7 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, DistortionRange, Variant, keyed_pose_at, segment_time_at
+from app.document import (
+    Clip,
+    DistortionRange,
+    Variant,
+    keyed_pose_at,
+    segment_time_at,
+    stiffness_source,
+)
 from app.motion.inbetweens.auto_pins import AutoPins, firmness_at
 from app.motion.inbetweens.keyframe_motion import KeyframeMotion
 from app.motion.inbetweens.pose_sampler import PoseSampler, prepare_corrector
@@ -51,7 +58,7 @@ def have_same_base_frames(clip: Clip, other: Clip) -> bool:
         return (
             *(layer.id, layer.domain, layer.handles, layer.keys, layer.cycles, layer.anchor),
             *(layer.attachments, layer.has_auto_pins, layer.springs, layer.variant, layer.bounds),
-            *(id(layer.stiffness), layer.bones),
+            *(stiffness_source(layer), layer.bones),
             *(of.frames, of.loop, of.fps, of.baseline, of.parents),
         )
 

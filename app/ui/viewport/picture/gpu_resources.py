@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection
 
 import numpy as np
 
-from app.document import Layer, have_same_stiffness
+from app.document import Layer, stiffness_source
 from app.editor import HeatMap, Project
 from app.motion import DeformMesh, DisplayedFrame, Vertices
 from app.render import DrawnMesh, Renderer, shader_is_faster
@@ -116,7 +116,7 @@ class GpuResources:
             known is None
             or known[1] is not mesh
             or known[0].domain is not layer.domain
-            or not have_same_stiffness(known[0], layer)
+            or stiffness_source(known[0]) != stiffness_source(layer)
         ):
             known = self._stiff = layer, mesh, measure_vertex_stiffness(layer, mesh)
         return known[2]

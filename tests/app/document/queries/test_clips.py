@@ -11,11 +11,13 @@ from app.document import (
     LAYER_KINDS,
     TRANSFORM,
     Transform,
+    key_commands,
 )
 from app.document.channels.springs import Spring
 from app.document.commands import handle_commands
 from app.document.keyframe import LibraryPose
 from app.document.layers.groups import Group
+from app.document.queries.auto_pins import pinned_segments
 from app.document.queries.clips import UNMOVING, UNMOVING_OF_HANDLES, clip_of, motion_source
 from app.document.rig.applied_motion import UnreadMotion
 from app.document.rig.stiffness import Bone
@@ -103,6 +105,24 @@ def test_clips_differ_where_the_motion_does(field):
 def test_clips_are_equal_where_stiffness_is_painted_alike():
     one, other = (altered(DOCUMENT, stiffness=np.full(12, 2.0)) for _ in range(2))
     assert clip_of(one, 0) == clip_of(other, 0)
+
+
+def test_pins_are_known_by_the_stiffness_of_paint_and_bones():
+    document = key_commands.insert_key(0, 9, POSE)(DOCUMENT)
+
+    def content(**changes):
+        (segment,) = pinned_segments(clip_of(altered(document, **changes), 0))
+        return segment.content
+
+    assert content(stiffness=np.full(12, 2.0)) == content(stiffness=np.full(12, 2.0))
+    bone = Bone(ends=(0, 1))
+    different = [
+        content(),
+        content(stiffness=np.full(12, 2.0)),
+        content(bones=(bone,)),
+        content(bones=(replace(bone, stiffness=9.0),)),
+    ]
+    assert len(set(different)) == len(different)
 
 
 def test_names_and_groups_of_handles_are_no_motion():
