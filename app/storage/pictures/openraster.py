@@ -168,7 +168,8 @@ def _clips(
     for each in found:
         if layer.group and layer.group not in ancestor_paths(each.group):
             continue
-        covers = each.picture.is_opaque and each.picture.size >= size and each.opacity == 1
+        is_wide = all(own >= whole for own, whole in zip(each.picture.size, size, strict=True))
+        covers = each.picture.is_opaque and is_wide and each.opacity == 1
         if covers and each.visible and not each.corner:
             return False
         if not each.clipped:
@@ -200,7 +201,8 @@ def _layers(
                 opacity=_opacity(element),
                 hidden=not _is_visible(element),
                 blend="pass-through" if blend == "normal" and _passes(element) else blend,
-                clipped=_is_clipped(element),
+                # Without anything below, it is itself what clips the layers above.
+                clipped=_is_clipped(element) and element is not stack[-1],
             )
             inner = replace(place, group=groups.add(around.group, group))
             yield from _layers(element, inner, groups, collector)

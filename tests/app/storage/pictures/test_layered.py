@@ -105,6 +105,19 @@ def test_layers_that_inherit_alpha_are_clipped():
     paper = '<layer name="paper" src="data/0.png"/>'
     whole = Image.new("RGBA", (100, 120), (255, 255, 255, 255))
     assert clipped(atop.replace("0.png", "1.png") + paper, whole) == ([], ())
+    low = Image.new("RGBA", (101, 9), (255, 255, 255, 255))
+    paper = paper.replace("/>", ' y="111"/>')
+    assert clipped(atop.replace("0.png", "1.png") + paper, low) == (["head"], ())
+
+
+def test_lowest_group_clips_although_it_inherits_alpha():
+    atop = HEAD.replace("/>", ' composite-op="svg:src-atop"/>')
+    lowest = f'<stack name="base" alpha-preserve="true">{BODY}</stack>'
+    read = read_openraster(drawing(atop + lowest))
+    assert [group.clipped for group in read.groups] == [False]
+    assert [layer.clipped for layer in read.layers] == [False, True]
+    read = read_openraster(drawing(lowest + HEAD))
+    assert [group.clipped for group in read.groups] == [True]
 
 
 def test_layers_of_one_name_are_reported_apart():
