@@ -51,6 +51,7 @@ MOST_RECORDS: Final = 4_000
 DEEP_LAYERS: Final = re.compile(rb"8B(IM|64)Lr(16|32)")
 # Number of colour channels, numbered from 0; the alpha channel has number -1.
 COLOURS: Final = {"GRAYSCALE": 1, "RGB": 3, "CMYK": 4, "LAB": 3}
+CLEAR_INDEX: Final = 1047  # number of the palette's transparent colour among the file's resources
 PADDING: Final = 3  # bytes that may follow the rows of a channel
 MODES: Final = {blend.upper().replace("-", "_"): blend for blend in BLENDS}
 MERGED_ALONE: Final = N_("the merged picture of the file, because none of its layers can be drawn")
@@ -178,7 +179,12 @@ def _merged(drawing: Any) -> Picture:
     """Return the merged picture of a file."""
     whole = drawing._record.image_data  # noqa: SLF001 - as of channels
     _require_all_rows(whole, drawing.height * drawing.channels, drawing.version)
-    return Picture(rgba=freeze(np.array(to_rgba(drawing.topil()))))
+    pixels = to_rgba(drawing.topil())
+    clear = drawing.image_resources.get_data(CLEAR_INDEX)
+    if drawing.color_mode.name == "INDEXED" and clear is not None:
+        indices = np.asarray(drawing.topil(0))
+        pixels.putalpha(Image.fromarray(indices != clear).convert("L"))
+    return Picture(rgba=freeze(np.array(pixels)))
 
 
 def _merged_unless_damaged(drawing: Any) -> Picture | None:

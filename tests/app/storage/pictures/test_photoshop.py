@@ -33,6 +33,7 @@ from app.document.layers.groups import BLENDS, Group
 from app.errors import ImportLog, LissomError
 from app.storage.pictures.layered import GROUPS_DEEP, MOST_LAYERS
 from app.storage.pictures.photoshop import (
+    CLEAR_INDEX,
     DAMAGED,
     MERGED_ALONE,
     MOST_RECORDS,
@@ -406,11 +407,12 @@ def test_forty_layers_and_one_pixel():
     assert found.layers[-1].corner == 98 - 1j
 
 
-def flat_file(mode, depth, planes, *, version=1, palette=b""):
+def flat_file(mode, depth, planes, *, version=1, palette=b"", resources=b""):
     """A file without layers, of one colour, by the bytes of each of its channels."""
     length = struct.pack(">I" if version == 1 else ">Q", 0)
     header = struct.pack(">H6xHIIHH", version, len(planes), 12, 16, depth, mode)
-    sections = struct.pack(">I", len(palette)) + palette + bytes(4) + length
+    sections = struct.pack(">I", len(palette)) + palette
+    sections += struct.pack(">I", len(resources)) + resources + length
     return b"8BPS" + header + sections + bytes(2) + b"".join(plane * 12 * 16 for plane in planes)
 
 
@@ -437,6 +439,14 @@ def test_flat_files_of_each_mode_open(version, mode, depth, planes, palette, col
     assert layer.picture.size == (16, 12)
     assert_allclose(layer.picture.rgba[5, 5], (*colour, 255), rtol=0, atol=1)
     assert not read.summary
+
+
+def test_transparent_colour_of_a_palette_is_clear():
+    number = struct.pack(">4sHHIH", b"8BIM", CLEAR_INDEX, 0, 2, 7)
+    data = flat_file(2, 8, [b"\x07"], palette=bytes(range(256)) * 3, resources=number)
+    (layer,) = read_photoshop(data[:-1] + b"\x09").layers
+    assert tuple(layer.picture.rgba[-1, -1]) == (9, 9, 9, 255)
+    assert not layer.picture.rgba[:-1, :, 3].any()
 
 
 def test_inks_keep_their_transparency():
