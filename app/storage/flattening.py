@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageChops
 
 from app.document import BlendMode, CompositeGroup, Document, Layer, composite_layers, is_visible
 from engine.arrays import Bytes, Floats, readonly
@@ -33,8 +33,6 @@ def flatten_layers(
         Straight alpha.
     """
     factor = max(1, max(document.canvas) // largest)
-    if len(document.layers) == 1:
-        return np.asarray(_reduced(textures[document.layers[0].id], factor))
     size = -(-document.canvas[0] // factor), -(-document.canvas[1] // factor)
 
     def draw(layer: Layer, flat: Image.Image) -> None:
@@ -69,6 +67,9 @@ def _blended(below: Image.Image, above: Image.Image, how: CompositeGroup[Layer])
     covered = below.getchannel("A")
     # A clipped layer meets its backdrop as if the backdrop were opaque.
     solid = below.convert("RGB").convert("RGBA") if how.clipped else below
+    if "layer_tint" in how.effects:
+        tint = tuple(round(255 * level) for level in how.effects["layer_tint"])
+        above = ImageChops.multiply(above, Image.new("RGBA", above.size, (*tint, 255)))
     if how.blend != "normal":
         own = above.convert("RGB")
         mixed = blend_pictures(below.convert("RGB"), own, how.blend)

@@ -170,6 +170,16 @@ def test_merged_drawing_keeps_its_size(tmp_path):
     assert tuple(rgba[16, LARGEST_FLAT]) == (0, 0, 255, 255)
 
 
+def test_merged_drawing_of_one_layer_shows_its_canvas(tmp_path):
+    stack = '<layer name="a" src="data/0.png" x="60" y="10" opacity="0.5"/>'
+    path = tmp_path / "one.ora"
+    path.write_bytes(openraster((200, 220), stack, [blob(70, 50)]))
+    opened = open_merged(path, COARSE)
+    rgba = opened.pictures[0].rgba
+    assert rgba.shape == (220, 200, 4)
+    assert tuple(rgba[10 + 25, 60 + 35]) == (200, 60, 30, 128)
+
+
 def test_merged_picture_of_a_file_is_preferred_if_it_shows_something(tmp_path):
     stack = '<layer name="a" src="data/0.png" composite-op="krita:vivid_light"/>' + STACK
     layers = [blob(70, 50), blob(150, 140), blob(200, 220)]
