@@ -31,7 +31,7 @@ from app.editor.actions import editing, playback, viewing
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.actions.project_files import recovery
-from app.editor.layering.layer_list import move_layer
+from app.editor.layering.layer_list import move_layer, toggle_clipping
 from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
 from app.editor.layering.pictures import add_layers
@@ -405,6 +405,18 @@ def placed(project, name, frame, place):
     )
     own = animation.frame(frame).positions
     return complex(joints.placement(layer.id, frame).apply(own)[0])
+
+
+def test_layers_clipped_to_a_still_one_have_ghosts(window, nodding):
+    window.act(viewing.set_onion_skin_in_front, True)  # noqa: FBT003 - of an action
+    _plain, own = ghosts_of(window)
+    window.act(toggle_clipping, identity(nodding, "body"))
+    window.settle()
+    _plain, clipped = ghosts_of(window)
+    for frame, place in {0: 105 + 60j, 24: 66 + 168j}.items():
+        at = placed(nodding, "body", frame, place)
+        was, now = (around(window, each, at) for each in (own, clipped))
+        np.testing.assert_array_equal(now, was)
 
 
 def test_ghosts_are_of_all_layers_where_their_joints_have_them_then(window, nodding):

@@ -10,6 +10,7 @@ from app.document import (
     composite_layers,
     is_visible,
     segment_time_at,
+    without_foreign_clips,
 )
 from app.editor import Project, Session
 from app.render import Ghost
@@ -35,13 +36,21 @@ def make_ghosts(session: Session, project: Project, drawing: GpuResources) -> tu
         for step in range(count, 0, -1):
             number += 1
             at = now + direction * step * preferences.ghost_step
+            frame = project.document.loop_frame(at)
             poses = {
                 layer.id: _ghost(project, drawing, layer, now, at, number)
                 for layer in project.document.layers
             }
             seen = {layer: pose for layer, pose in poses.items() if pose is not None}
             if seen:
-                meshes = composite_layers(project.document, seen, project.document.loop_frame(at))
+                # What is clipped to a layer that looks the same has a ghost, too.
+                hidden = {
+                    each.id
+                    for each in project.document.layers
+                    if not is_visible(project.document, each, frame)
+                }
+                cut = without_foreign_clips(project.document, seen.keys() | hidden)
+                meshes = composite_layers(cut, seen, frame)
                 ghosts.append(Ghost(meshes=meshes, tint=tint, opacity=GHOST_OPACITY / step**0.5))
     return tuple(ghosts)
 
