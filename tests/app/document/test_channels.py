@@ -57,6 +57,7 @@ from app.document import (
     scene_commands,
     source_frame,
     track_at,
+    track_commands,
     with_repeats,
 )
 from app.document.commands.keys.stored_keys import put_keys
@@ -484,6 +485,36 @@ def test_baked_repeats_show_what_was_shown(channel, data, until):
         *_before, last = (key.frame for key in keys_in(baked, channel) if key.frame < end)
         frames -= {*range(CYCLE.first + 1, row[0].frame), *range(last + 1, end)}
     require_same(baked, document, channel, [(at, at) for at in sorted(frames)])
+
+
+@every_layer_channel
+@settings(max_examples=20)
+@given(data=st.data())
+def test_keys_in_repeats_show_the_same_when_poses_are_baked(channel, data):
+    eased = tuple(each for each in EASINGS if each != HOLD)
+    row = data.draw(keys(channel.kind, first=42, last=57, easings=eased))
+    document = cycling(keyed(channel, row))
+    baked = cycle_commands.bake_cycle(LAYER, CYCLE.first, EMPTY.frames.last)(document)
+    (left,) = baked.layer(LAYER).cycles  # of an incomplete repeat
+    assert left.contains(row[0].frame)
+    assert left.contains(row[-1].frame)
+    require_same(baked, document, channel, [(at, at) for at in range(EMPTY.frames.last + 1)])
+
+
+@pytest.mark.parametrize("delay", [0, 5])
+@settings(max_examples=20)
+@given(data=st.data(), until=UNTIL)
+def test_baked_track_shows_what_was_shown(delay, data, until):
+    channel = channel_of(TRACK)
+    row = data.draw(in_cycle(TRACK, easings=(LINEAR,), least=2))
+    row = (
+        replace(key, tangent_mode=TangentMode.CORNER, velocity=None) for key in filling_cycle(row)
+    )
+    document = cycling(keyed(channel, tuple(row)), until)
+    document = track_commands.set_delay(LAYER, 0, delay)(document)
+    end = EMPTY.frames.last if until is None else until
+    baked = cycle_commands.bake_cycle(LAYER, CYCLE.first, EMPTY.frames.last)(document)
+    require_same(baked, document, channel, [(at, at) for at in range(CYCLE.first, end + 1)])
 
 
 @every_layer_channel

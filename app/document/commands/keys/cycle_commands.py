@@ -1,6 +1,6 @@
 """Commands on cycles: create, delete, and bake repeats into keys."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -16,13 +16,16 @@ from app.document.layer import Layer
 from app.document.layers.attachments import repeated_joints
 from app.document.model import Document
 from app.document.queries.channel_values.repeats import (
+    held_key_at,
     repeated_keys,
     repeating_cycle,
     rest_value,
     switch_cycle,
     with_repeats,
 )
+from app.document.queries.channel_values.tracks_at import track_at, velocity_at
 from app.document.queries.channel_values.values_at import interpolated_value
+from app.document.queries.clips import clip_of
 from app.document.queries.pose_tangents import have_same_map
 from app.errors import LissomError
 from app.texts import N_, _
@@ -131,10 +134,12 @@ def _with_baked_keys(document: Document, layer: Layer, first: int, end: int) -> 
         keys=sorted_by_frame((*layer.keys, *copies)),
         cycles=_ordered((*others, *left)),
         tracks=tuple(
-            _repeated(layer, track, cycle, starts) if cycle.repeats_keys(track.keys) else track
+            _repeated(document, layer, track, cycle, until)
+            if cycle.repeats_keys(track.keys)
+            else track
             for track in layer.tracks
         ),
-        channels=_baked_channels(document, layer, cycle, until),
+        channels=_baked_channels(document, layer, cycle, until, left=left),
         attachments=repeated_joints(layer.attachments, (cycle,), until),
     )
 
@@ -213,19 +218,32 @@ def _ordered(cycles: Iterable[Cycle]) -> tuple[Cycle, ...]:
 
 
 def _baked_channels(
-    document: Document, layer: Layer, cycle: Cycle, until: int, *, held: bool = True
+    document: Document,
+    layer: Layer,
+    cycle: Cycle,
+    until: int,
+    *,
+    held: bool = True,
+    left: tuple[Cycle, ...] = (),
 ) -> ChannelKeys:
     """Return a layer's channels with their keys in each repeat until a frame, if they repeat.
 
-    Without `held`, keys that hold stay as they are.
+    Without `held`, keys that hold stay as they are. Keys that do not repeat with `cycle` do not
+    begin to repeat with the cycles that are left.
     """
     baked: dict[tuple[str, int | str | None], tuple[Key[Any], ...]] = {}
     for (name, part), keys in layer.channels.items():
         kind, row = LAYER_KINDS[name], keys
         if not kind.is_held:
-            row = _copied(document, layer, kind, keys, cycle, until)
+            row = _copied(document, layer, kind, keys, cycle, until, left=left)
         elif held:
-            row = repeated_keys(keys, (cycle,), until, rest_value(layer, kind, part))
+            rest = rest_value(layer, kind, part)
+            row = repeated_keys(keys, (cycle,), until, rest)
+            own = {key.frame: key for key in row}
+            row = tuple(
+                own.get(key.frame) or replace(held_key_at(row, key.frame) or key, frame=key.frame)
+                for key in repeated_keys(row, left, until, rest)
+            )
         baked[name, part] = row
     return baked
 
@@ -237,13 +255,17 @@ def _copied(
     keys: tuple[Key[V], ...],
     cycle: Cycle,
     until: int,
+    *,
+    left: tuple[Cycle, ...],
 ) -> tuple[Key[V], ...]:
     """Return interpolated keys with copies in each repeat until a frame, if they repeat.
 
     Keys that do not fill the cycle get keys at both ends of its repeats, with the values there.
+    Keys that would begin to repeat with a cycle that is left get a key at the end of its repeats.
     """
     if repeating_cycle(kind, keys, layer.cycles) is not cycle:
-        return keys
+        ends = {until} if repeating_cycle(kind, keys, left) else set[int]()
+        return sorted_by_frame((*keys, *_keys_at(document, layer, kind, keys, ends)))
     first, last = keys[0], keys[-1]
     is_whole = last.frame - first.frame == cycle.period
     copies: list[Key[V]] = []
@@ -260,21 +282,29 @@ def _copied(
                 copy = replace(copy, value=kind.join(*grown))
             copies += [copy] if copy.frame <= until else []
     ends = {cycle.first, until} - {key.frame for key in copies}
-    values = {at: interpolated_value(document, kind, keys, at, layer.cycles) for at in ends}
-    copies += [
-        kind.key(at, value, tangent_mode=TangentMode.CORNER)
-        for at, value in values.items()
-        if value is not None
-    ]
-    return sorted_by_frame(copies)
+    return sorted_by_frame((*copies, *_keys_at(document, layer, kind, keys, ends)))
 
 
-def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Track:
-    """Return a track with its keys in each repeat."""
+def _keys_at(
+    document: Document,
+    layer: Layer,
+    kind: ChannelKind[V],
+    keys: tuple[Key[V], ...],
+    frames: Iterable[int],
+) -> Iterator[Key[V]]:
+    """Yield corners with the interpolated values of keys at some frames."""
+    for frame in frames:
+        value = interpolated_value(document, kind, keys, frame, layer.cycles)
+        if value is not None:
+            yield kind.key(frame, value, tangent_mode=TangentMode.CORNER)
+
+
+def _repeated(document: Document, layer: Layer, track: Track, cycle: Cycle, until: int) -> Track:
+    """Return a track with its keys in each repeat until a frame, at the frames that show them."""
     first, last = track.keys[0], track.keys[-1]
     is_whole = first.frame == cycle.first and last.frame == cycle.last
     acts = [max(abs(key.place), abs(key.turn)) > SAME_POSE_DISTANCE for key in (first, last)]
-    if not is_whole and starts and (track.is_scene_space or any(acts)):
+    if not is_whole and until > cycle.last and (track.is_scene_space or any(acts)):
         raise LissomError(
             _(
                 "The track of {handle!r} covers only a part of {cycle}, so its repeats cannot "
@@ -289,10 +319,23 @@ def _repeated(layer: Layer, track: Track, cycle: Cycle, starts: list[int]) -> Tr
         )
     # If the track fills the cycle, its last key equals its first.
     own = track.keys[:-1] if is_whole else track.keys
-    keys: list[TrackKey] = []
-    for at in (cycle.first, *starts):
-        keys += [replace(key, frame=key.frame + at - cycle.first) for key in own]
-    if is_whole:
-        shift = (starts or [cycle.first])[-1] - cycle.first
-        keys.append(replace(last, frame=last.frame + shift))
-    return replace(track, keys=sorted_by_frame(keys))
+    delay = track.delay % cycle.period
+    keys = {
+        key.frame + at: replace(key, frame=key.frame + at)
+        for at in range(delay and delay - cycle.period, until - cycle.first + 1, cycle.period)
+        for key in own
+        if cycle.first <= key.frame + at <= until
+    }
+    clip = clip_of(document, layer.id)
+    for at in {cycle.first, until} - keys.keys():
+        sample = track_at(replace(track, enabled=True), clip, at)
+        if sample is not None:
+            velocity = velocity_at(track, clip, at)
+            keys[at] = TrackKey(
+                frame=at,
+                place=sample.place,
+                turn=sample.turn,
+                velocity=velocity,
+                tangent_mode=TangentMode.CORNER,
+            )
+    return replace(track, keys=sorted_by_frame(keys.values()), delay=0)
