@@ -8,6 +8,7 @@ from messages import says
 from app.document import (
     LINEAR,
     OPACITY,
+    PRESETS,
     Channel,
     FrameRange,
     channel_commands,
@@ -96,6 +97,13 @@ def drag_end_of_bar(window, project, by):
 
     window.run(drag)
     window.settle()
+
+
+def test_key_that_repeats_is_eased_in_its_repeats(window, cycling):
+    editing.deselect_keys(window.session)
+    playback.seek(window.session, 52)  # of the segment from frame 0 to 24
+    window.act(keys.ease_selected_keys, PRESETS["in"])
+    assert [key.easing for key in cycling.layer.keys] == [PRESETS["in"], LINEAR]
 
 
 def test_the_menu_of_chosen_keys_lets_them_repeat(window, swinging):

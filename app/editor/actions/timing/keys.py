@@ -9,7 +9,6 @@ from app.document import (
     MARKER,
     PARENT,
     POSE,
-    TRACK,
     Channel,
     Command,
     Easing,
@@ -135,11 +134,14 @@ def ease_selected_keys(session: Session, project: Project, easing: Easing) -> No
 
 
 def _selected_or_at_playhead(session: Session, project: Project) -> KeysByChannel:
-    """Return the selected keys, or the selected channel's key at or before the playhead."""
+    """Return the selected keys, or the selected channel's key at or before the playhead.
+
+    In repeats, it is the key that repeats.
+    """
     if project.selected_keys:
         return project.selected_keys
     here, channel = playback.current_frame(session, project), project.channel
-    own = source_frame(project.document, channel, here) if channel.kind is TRACK else here
+    own = source_frame(project.document, channel, here)
     here = project.document.frames.first if own is None else own
     frames = frames_in(project.document, channel)
     frame = max((each for each in frames if each <= here), default=min(frames))
