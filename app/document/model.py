@@ -158,6 +158,13 @@ class Document:
         """Return the switch group of the layer with this id, if any."""
         return self._switch_groups.get(identity)
 
+    @property
+    def keyed_range(self) -> tuple[int, int]:
+        """The first and the last frame of all keys that the document's frames contain."""
+        frames = [frame for layer in self.layers for frame in layer.keyed_range]
+        frames += [key.frame for key in self.camera]
+        return min(frames), max(frames)
+
     def marker(self, frame: int) -> Marker:
         for marker in self.markers:
             if marker.frame == frame:

@@ -38,9 +38,7 @@ def set_frames(document: Document, frames: FrameRange) -> Document:
     """Set the first and last frame and clip all ranges to them; a key outside is refused."""
     if frames == document.frames:
         return document
-    ends = [frame for layer in document.layers for frame in layer.keyed_range]
-    ends += [key.frame for key in document.camera]
-    outside = next((frame for frame in ends if frame not in frames), None)
+    outside = next((frame for frame in document.keyed_range if frame not in frames), None)
     if outside is not None:
         raise LissomError(
             _(KEY_OUTSIDE).format(frame=outside, first=frames.first, last=frames.last)

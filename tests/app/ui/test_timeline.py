@@ -9,6 +9,7 @@ from projects import project_of
 
 from app.document import (
     CAMERA,
+    Camera,
     Channel,
     camera_at,
     channel_commands,
@@ -400,6 +401,12 @@ def test_preview_range_and_end_are_dragged(window, project, play):
     assert project.document.preview is None
     assert undo_all(window) == 6
     assert project.document is first
+
+
+def test_dragged_end_stops_at_the_last_camera_key(window, play):
+    shot = CAMERA.key(52, Camera(CENTRE))
+    window.act(editing.edit_document, channel_commands.insert_keys({Channel(CAMERA): [shot]}))
+    assert play(lambda hand: hand.drag("animation end", 10)).frames == FrameRange(0, 52)
 
 
 def test_menu_reverses_and_scales(window, project, play):

@@ -238,8 +238,7 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
     frame = frames.clamp(round(pointed))
     match drag.edge:
         case "animation end":
-            last_key = max(layer.keyed_range[1] for layer in document.layers)
-            least = max(last_key, frames.first + 1)
+            least = max(document.keyed_range[1], frames.first + 1)
             last = min(max(round(pointed), least), LAST_FRAME)
             return scene_commands.set_frames(FrameRange(frames.first, last))
         case "preview start":
