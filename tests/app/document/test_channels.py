@@ -501,6 +501,33 @@ def test_keys_in_repeats_show_the_same_when_poses_are_baked(channel, data):
     require_same(baked, document, channel, [(at, at) for at in range(EMPTY.frames.last + 1)])
 
 
+@pytest.mark.parametrize("shown", [2, 3])
+def test_switch_keys_in_repeats_stay_when_poses_are_baked(shown):
+    """At the end of the cycle that is left, its first layer is visible again, or another one."""
+    switch = channel_of(SWITCH)
+    document = keyed(switch, tuple(map(SWITCH.key, (0, 44, 50), (2, 1, shown))))
+    for each in OTHERS:
+        pose = replace(document.layer(each).keys[0], frame=CYCLE.first)
+        layer = replace(document.layer(each), keys=(pose,), cycles=(CYCLE,))
+        document = document.with_layer(layer)
+    baked = document
+    for each in OTHERS:
+        baked = cycle_commands.bake_cycle(each, CYCLE.first, EMPTY.frames.last)(baked)
+    assert baked.layer(1).cycles == (Cycle(first=42, last=58, until=70),)
+    frames = [(at, at) for at in range(EMPTY.frames.last + 1)]
+    require_same(baked, document, switch, frames)
+
+
+@every_layer_channel
+@given(data=st.data())
+@settings(max_examples=5)
+def test_cycle_without_repeats_ends_as_it_began(channel, data):
+    document = cycling(keyed(channel, data.draw(in_cycle(channel.kind, least=2))))
+    frames = [(at, at) for at in range(CYCLE.first, CYCLE.last + 1)]
+    ended = cycle_commands.delete_cycle(LAYER, CYCLE.first)(document)
+    require_same(ended, document, channel, frames if channel.kind.is_held else frames[-1:])
+
+
 @pytest.mark.parametrize("delay", [0, 5])
 @settings(max_examples=20)
 @given(data=st.data(), until=UNTIL)

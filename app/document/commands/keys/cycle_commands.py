@@ -7,11 +7,11 @@ from typing import Any, TypeVar
 from app.document.channels.cycles import Cycle
 from app.document.channels.key import Key
 from app.document.channels.kind import ChannelKeys, ChannelKind
-from app.document.channels.kinds import LAYER_KINDS
+from app.document.channels.kinds import LAYER_KINDS, SWITCH
 from app.document.channels.tangent_mode import TangentMode
 from app.document.channels.tracks import Track, TrackKey
 from app.document.commands.command import command, layer_command
-from app.document.commands.keys.retime import nearest_frame, sorted_by_frame
+from app.document.commands.keys.retime import nearest_frame, sorted_by_frame, with_overwritten_keys
 from app.document.layer import Layer
 from app.document.layers.attachments import repeated_joints
 from app.document.model import Document
@@ -80,7 +80,7 @@ def _without_cycle(document: Document, layer: Layer, first: int) -> Layer:
         layer,
         keys=keys,
         cycles=cycles,
-        channels=_baked_channels(document, layer, cycle, cycle.last, held=False),
+        channels=_baked_channels(document, layer, cycle, cycle.last),
         attachments=repeated_joints(
             layer.attachments, (replace(cycle, until=cycle.last),), cycle.last
         ),
@@ -100,7 +100,21 @@ def bake_cycle(document: Document, identity: int, first: int, end: int) -> Docum
     document = _with_baked_switch(
         document, identity, cycle, end if cycle.until is None else cycle.until
     )
-    return document.with_layer(_with_baked_keys(document, document.layer(identity), first, end))
+    baked = document.with_layer(_with_baked_keys(document, document.layer(identity), first, end))
+    return _with_switch_as_before(baked, document, identity)
+
+
+def _with_switch_as_before(document: Document, before: Document, identity: int) -> Document:
+    """Return a document whose cycles do not repeat switch keys that did not repeat before."""
+    choice = document.switch_group_of(identity)
+    cycle = None if choice is None else switch_cycle(document, choice)
+    if choice is None or cycle is None or switch_cycle(before, choice) is not None:
+        return document
+    at = cycle.last + (choice.layer_at(cycle.last) == choice.layer_at(cycle.first))
+    key = SWITCH.key(at, choice.layer_at(at))
+    stopped = replace(choice, keys=with_overwritten_keys(choice.keys, (key,)))
+    choices = tuple(stopped if each is choice else each for each in document.switch_groups)
+    return replace(document, switch_groups=choices)
 
 
 def _with_baked_switch(document: Document, identity: int, cycle: Cycle, end: int) -> Document:
@@ -222,21 +236,18 @@ def _baked_channels(
     layer: Layer,
     cycle: Cycle,
     until: int,
-    *,
-    held: bool = True,
     left: tuple[Cycle, ...] = (),
 ) -> ChannelKeys:
     """Return a layer's channels with their keys in each repeat until a frame, if they repeat.
 
-    Without `held`, keys that hold stay as they are. Keys that do not repeat with `cycle` do not
-    begin to repeat with the cycles that are left.
+    Keys that do not repeat with `cycle` do not begin to repeat with the cycles that are left.
     """
     baked: dict[tuple[str, int | str | None], tuple[Key[Any], ...]] = {}
     for (name, part), keys in layer.channels.items():
         kind, row = LAYER_KINDS[name], keys
         if not kind.is_held:
             row = _copied(document, layer, kind, keys, cycle, until, left=left)
-        elif held:
+        else:
             rest = rest_value(layer, kind, part)
             row = repeated_keys(keys, (cycle,), until, rest)
             own = {key.frame: key for key in row}
