@@ -261,6 +261,24 @@ def test_escape_cancels_the_drag_of_a_key(window, project, play, channel):
     assert project.history.undo_label is None
 
 
+def test_drag_is_one_undo_step_when_its_lane_vanishes(window, project, play):
+    window.act(editing.edit_document, channel_commands.delete_keys({JOINTS: {LATE}}))
+    before = project.document
+
+    def drag(hand):
+        y = hand.place(JOINTS, EARLY).y
+        hand.robot.mouse_move(hand.name(JOINTS, EARLY))
+        hand.robot.mouse_down(0)
+        # A single parent from the first frame on has no lane.
+        for frame in (3, 0, 5, 8):
+            hand.go_to(frame, y)
+        hand.robot.mouse_up(0)
+
+    assert frames_in(play(drag), JOINTS) == {8}
+    window.act(editing.undo)
+    assert project.document is before
+
+
 @by_channel
 def test_a_click_on_a_key_selects_it_and_shows_its_frame(window, project, play, channel):
     before = project.document
