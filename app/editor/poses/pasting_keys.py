@@ -16,6 +16,7 @@ from app.document import (
     Transform,
     channel_commands,
     mirrored_name,
+    source_frame,
 )
 from app.editor.poses.paste_destinations import (
     PasteMode,
@@ -62,9 +63,15 @@ def pasteable_keys(session: Session, project: Project, way: PasteMode) -> Pasted
 def paste_keys(
     session: Session, project: Project, pasted: Pasted, by: int, gesture: object
 ) -> None:
-    """Paste keys `by` frames later, and select them."""
+    """Paste keys `by` frames later, and select them.
+
+    A single key of a channel changes all repeats, as a single pose does.
+    """
     for channel, keys in pasted.items():
         moved = [key.retimed(key.frame + by, 1.0) for key in keys]
+        if len(moved) == 1:
+            source = source_frame(project.document, channel, moved[0].frame)
+            moved = [each if source is None else each.retimed(source, 1.0) for each in moved]
         try:
             project.history.do(channel_commands.insert_keys({channel: moved}), gesture=gesture)
         except LissomError as error:

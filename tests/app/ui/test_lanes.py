@@ -44,6 +44,8 @@ from app.editor.actions import editing, playback
 from app.editor.actions.editing import FIRST_KEY_STAYS
 from app.editor.actions.timing import timeline_drag
 from app.editor.layering.layer_selection import set_active_layer
+from app.editor.poses.copying import copy_keys
+from app.editor.poses.pasting import paste_copied
 from app.ui.timeline import menus
 
 EARLY, LATE, LAST = 6, 18, 24
@@ -332,6 +334,17 @@ def test_a_copied_key_is_pasted_at_the_playhead(window, project, play, channel):
     assert project.selected_keys == {channel: {30}}
     window.act(editing.undo)
     assert project.document is before
+
+
+@pytest.mark.parametrize("channel", [OWN[1], OWN[3]], ids=lambda channel: channel.kind.name)
+def test_copied_key_is_pasted_into_all_repeats(window, project, channel):
+    window.act(editing.edit_document, cycle_commands.set_cycle(FIRST, 0, LAST))
+    editing.select_channel_keys(window.session, {channel: frozenset({EARLY})})
+    copy_keys(window.session)
+    playback.seek(window.session, LAST + 12)
+    window.act(paste_copied)
+    assert frames_in(project.document, channel) == {EARLY, 12, LATE}
+    assert project.selected_keys == {channel: {12}}
 
 
 @pytest.mark.parametrize("kind", [TRANSFORM, OPACITY], ids=lambda kind: kind.name)
