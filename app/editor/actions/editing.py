@@ -38,9 +38,11 @@ UNDONE, REDONE = _("Undone: {step}"), _("Redone: {step}")
 
 
 @with_project
-def edit_document(_: Session, project: Project, command: Command) -> None:
-    """Run a command; commands of one use of a widget are one undo step."""
-    project.history.do(command, gesture=project.gesture)
+def edit_document(
+    _: Session, project: Project, command: Command, *, gesture: object = None
+) -> None:
+    """Run a command; commands of one gesture, by default one use of a widget, are one undo step."""
+    project.history.do(command, gesture=gesture or project.gesture)
     _forget_what_is_gone(project)
 
 

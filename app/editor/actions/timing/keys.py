@@ -45,10 +45,12 @@ GOES_ON_SMOOTHLY = N_(
 
 
 @with_project
-def edit_timing(session: Session, project: Project, command: Command) -> None:
+def edit_timing(
+    session: Session, project: Project, command: Command, *, gesture: object = None
+) -> None:
     """Run a command that changes frames; the playhead stays at its frame or the nearest one."""
     before = playback.current_frame(session, project)
-    editing.edit_document(session, command)
+    editing.edit_document(session, command, gesture=gesture)
     frame = project.document.frames.clamp(before)
     if playback.current_frame(session, project) != frame:
         project.playhead = project.playhead.seek(frame, session.clock())

@@ -105,7 +105,7 @@ def cancel_timeline_drag(session: Session, project: Project) -> None:
     if isinstance(gesture, KeyBox):
         editing.select_channel_keys(session, gesture.keeps)
     elif isinstance(gesture, TimeDrag) and project.document is gesture.after:
-        _become(session, gesture.before, _("Drag"))
+        _become(session, gesture.before, gesture.before, _("Drag"))
         if isinstance(gesture, KeyDrag):
             editing.select_channel_keys(session, gesture.keys)
     end_timeline_drag(session)
@@ -188,7 +188,7 @@ def _drag(session: Session, project: Project, drag: TimeDrag, frame: float) -> N
     except LissomError:
         # Keys before a cycle stay where they are.
         return
-    _become(session, document, command.label)
+    _become(session, drag.before, document, command.label)
     if isinstance(drag, KeyDrag):
         by = drag.by
         chosen = {
@@ -252,6 +252,9 @@ def _trim(drag: EdgeDrag, pointed: float) -> Command:
     return scene_commands.set_preview(None if preview == frames else preview)
 
 
-def _become(session: Session, document: Document, label: str) -> None:
-    """Set the document, within the gesture's single undo step."""
-    edit_timing(session, Command(label, lambda _: document))
+def _become(session: Session, before: Document, document: Document, label: str) -> None:
+    """Set the document, within the gesture's single undo step.
+
+    The document before the gesture identifies it: the dragged item may vanish meanwhile.
+    """
+    edit_timing(session, Command(label, lambda _: document), gesture=before)
