@@ -56,7 +56,7 @@ def texts(window):
 @pytest.mark.parametrize(
     ("name", "content", "reason"),
     [
-        ("torn.png", b"\x89PNG\r\n\x1a\n and no more", "not a picture"),
+        ("torn.png", b"\x89PNG\r\n\x1a\n and no more", "is damaged"),
         ("torn.lissom", b"PK no zip at all", NO_PROJECT),
         ("missing.png", None, "cannot read"),
     ],
