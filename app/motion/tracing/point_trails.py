@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.document import Clip, Pose, keyed_pose_at, pose_segments, segment_time_at
+from app.document import Clip, Pose, keyed_pose_at, segment_time_at
 from app.motion.inbetweens.animation import Animation
 from app.motion.inbetweens.frame_corrector import needs_correction
 from app.motion.inbetweens.pose_sampler import PoseSampler
-from app.motion.inbetweens.segment_keys import segment_key
+from app.motion.inbetweens.segment_keys import segment_key, segment_poses
 from app.motion.inbetweens.spring_offsets import ParentMotion
 from engine.arrays import Complexes
 
@@ -73,8 +73,7 @@ class PointTrails:
             key = (id(resting.phi), id(resting.psi)), 0.0
         if key not in self.known:
             moved = self._animate().frame(frame)
-            keys = pose_segments(self.clip)[moment.segment].keys if resting is None else ()
-            poses = (resting,) if resting is not None else tuple(each.pose for each in keys)
+            poses = segment_poses(self.clip, moment.segment) if resting is None else (resting,)
             self.known[key] = TrailFrame(moved.positions, moved.fz, poses)
             self.worked_out += 1
         return self.known[key]
