@@ -156,15 +156,18 @@ def place_displayed_frames(
     """Return the displayed frames with the layers' placements in the scene.
 
     `shown` and `poses` have layer ids as keys; `poses` are displayed poses that are not in the
-    document. Without the document's `joints`, placements have the accuracy of the meshes. Until
-    they exist, the transforms of an earlier document serve attachments with `keep_world_transform`.
+    document. Without the document's `joints`, placements have the accuracy of the meshes. So do
+    children of a displayed pose with a correction, which the joints do not contain. Until joints
+    exist, the transforms of an earlier document serve attachments with `keep_world_transform`.
     """
-    placed = {}
+    placed, corrected = {}, {each for each in poses if shown[each].correction is not None}
     for identity, each in shown.items():
         layer = document.layer(identity)
         if not layer.attachments:
             placement = transform_at(document, layer, each.frame)
-        elif joints is None:
+        elif joints is None or any(
+            each.id in corrected for each in document.all_ancestors(identity)
+        ):
             chain = parent_links(document, identity, each.frame)
             kept = partial(_earlier_transform, earlier, each.frame)
             placement = compose_chain(

@@ -36,6 +36,7 @@ from app.editor.layering.layer_selection import set_active_layer
 from app.editor.layering.parenting import PARENT_IS_DESCENDANT, detach_layer
 from app.editor.layering.pictures import add_layers
 from app.motion import ParentTransforms
+from app.motion.displayed_frame import place_displayed_frames
 from app.motion.parenting.parent_transforms import layer_animation
 from app.storage import Autosave, SourceInfo, make_still_layer
 from app.ui.style.theme import PALETTES
@@ -291,6 +292,21 @@ def swung(window, scene):
     window.show_tab("Layers")
     window.settle()
     return scene
+
+
+def test_child_of_a_posed_parent_is_placed_with_the_correction(swung):
+    arm, body = identity(swung, "arm"), identity(swung, "body")
+    shown = {each: runtime.shown for each, runtime in swung.layer_runtimes.items()}
+    # The pose alone is elsewhere than the parent, which is drawn with a correction.
+    poses = {body: swung.document.layer(body).keys[0].pose}
+    shown[body] = replace(shown[body], correction=object())
+    joints = swung.current_parent_transforms
+    placed = place_displayed_frames(swung.document, shown, joints, poses)
+    drawn = place_displayed_frames(swung.document, shown, None, poses)
+    assert placed[arm].placement == drawn[arm].placement
+    shown[body] = replace(shown[body], correction=None)
+    alone = place_displayed_frames(swung.document, shown, joints, poses)
+    assert abs(alone[arm].placement.shift - drawn[arm].placement.shift) > 5
 
 
 def ways(window, project):

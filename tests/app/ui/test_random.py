@@ -105,7 +105,7 @@ FAR = {3: 1_000}  # steps of walks that go farther than the others
 MOST_FRAMES = 400  # until the worker has caught up
 REMEMBERED = 20  # actions that are reported when the walk fails
 # Steps between two looks at the invariants, between two saves, and until all work is done.
-LOOKED_AT, SAVED, RESTED = 10, 100, 50
+LOOKED_AT, SAVED, RESTED = 10, 100, 500
 USUAL, SMALL = (1280, 800), (800, 560)
 MOST_HANDLES, MOST_KEYS, MOST_LAYERS = 4, 5, 3
 LAST = 16  # frame beyond which the walk does not go
