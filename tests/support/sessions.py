@@ -8,10 +8,16 @@ from projects import project_of
 from app.document import Document
 from app.editor import Jobs, Session, pending_changes
 from app.editor.actions import playback
-from app.editor.actions.frame_update import run_update_steps
+from app.editor.actions.frame_update import STEPS
 from engine.arrays import Bytes
 
 BLANK = np.zeros((90, 120, 4), np.uint8)
+
+
+def run_update_steps(session: Session) -> None:
+    """Do what the window does in a frame after a change."""
+    for step in STEPS:
+        step(session)
 
 
 def session_of(

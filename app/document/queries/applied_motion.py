@@ -11,7 +11,7 @@ from app.texts import ngettext
 
 
 def keys_of_motion(layer: Layer, motion: AppliedMotion) -> tuple[Keyframe, ...]:
-    """Return the keys that a motion preset made, wherever they are now."""
+    """Return the keys of a motion preset, also those that were moved."""
     return tuple(key for key in layer.keys if key.motion == motion.id)
 
 

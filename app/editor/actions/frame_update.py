@@ -122,11 +122,6 @@ STEPS: tuple[Callable[[Session], None], ...] = (
 )
 
 
-def run_update_steps(session: Session) -> None:
-    for step in STEPS:
-        step(session)
-
-
 def session_revision(session: Session) -> tuple[object, ...]:
     """Return a value that differs after any change that a step of the frame depends on."""
     project, own = session.project, (session.revision, session.jobs.revision)

@@ -3,14 +3,13 @@
 from dataclasses import replace
 
 import pytest
-from sessions import session_of, settle
+from sessions import run_update_steps, session_of, settle
 from still_poses import posed
 from unrest import is_shown, unrest
 
 from app.document import cycle_commands, scene_commands
 from app.document.keyframe import Target
 from app.editor.actions import editing, playback
-from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.handles import add_handle
 from app.editor.actions.posing.inserting import insert_key
 from app.editor.actions.posing.pose_commit import NO_POSE

@@ -8,7 +8,7 @@ from documents import altered
 from key_rows import row
 from numpy.testing import assert_allclose
 from projects import project_of
-from sessions import session_of, settle
+from sessions import run_update_steps, session_of, settle
 
 from app.document.channels.tangent_mode import TangentMode
 from app.document.commands.keys import (
@@ -19,7 +19,7 @@ from app.document.queries.channel_values.channel_keys import pose_channel
 from app.document.queries.clips import clip_of
 from app.document.settings import FrameRange
 from app.editor.actions import editing, viewing
-from app.editor.actions.frame_update import STREAMING, due_jobs, run_update_steps
+from app.editor.actions.frame_update import STREAMING, due_jobs
 from app.editor.actions.timing import keys
 from app.editor.session import Session
 from app.editor.work.jobs import Jobs

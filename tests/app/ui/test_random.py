@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from invariants import check_invariants
 from layered import openraster
 from PIL import Image, ImageDraw
+from sessions import run_update_steps
 from unrest import is_shown, unrest
 
 from app.cut_out import Stroke
@@ -268,7 +269,7 @@ class Walk:
         if session.jobs.kinds or frame_update.is_due_in_time(session):
             return
         before = project.document, [each.shown for each in project.layer_runtimes.values()]
-        frame_update.run_update_steps(session)
+        run_update_steps(session)
         assert (
             project.document,
             [each.shown for each in project.layer_runtimes.values()],

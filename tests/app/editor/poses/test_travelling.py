@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from invariants import check_invariants
-from sessions import go, session_of, settle
+from sessions import go, run_update_steps, session_of, settle
 from walkers import AXIS, FAR, leg, walker
 
 from app.document import (
@@ -26,7 +26,6 @@ from app.document import (
     track_commands,
 )
 from app.editor.actions import editing, playback
-from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.layer_setup import handle_editing, stiffness_editing
 from app.editor.actions.posing.pose_drag import nudge_handles
 from app.editor.layering.layer_list import rename_layer

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from animations import still_document, within
 from PIL import Image, ImageDraw
-from sessions import session_of, settle
+from sessions import run_update_steps, session_of, settle
 
 from app.document import NATURAL, RUBBERY
 from app.document.commands import handle_commands, shape_commands, stiffness_commands
 from app.editor.actions import editing, playback
-from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.pose_drag import solve_pose_again
 from app.editor.actions.posing.reach_limit import STOPPED_AT_LIMIT
 from app.editor.tools import tool_pointer

@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from animations import moving_document, round_document
-from sessions import session_of, settle
+from sessions import run_update_steps, session_of, settle
 
 from app.document.commands import handle_commands, shape_commands
 from app.editor.actions import editing, playback
-from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.pose_drag import set_targets
 from app.editor.layering.layer_list import duplicate_layer, toggle_layers_locked
 from app.editor.layering.layer_selection import set_active_layer

@@ -6,12 +6,11 @@ from itertools import product
 import numpy as np
 import pytest
 from animations import round_document
-from sessions import session_of, settle
+from sessions import run_update_steps, session_of, settle
 
 from app.document.commands import handle_commands, scene_commands
 from app.editor import BoxOverlay, RotationOverlay
 from app.editor.actions import editing, playback
-from app.editor.actions.frame_update import run_update_steps
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.tools import tool_pointer
 from app.editor.tools.table import TOOLS

@@ -71,7 +71,7 @@ def _motion_request(draft: MotionSetup, *, is_first: bool) -> MotionRequest:
 def _without(document: Document, draft: MotionSetup) -> Document:
     """Return a document without the motion that a draft replaces.
 
-    Only its own keys are deleted, wherever they are now. One of them stays if the layer has no
+    Only its own keys are deleted, also those that were moved. One of them stays if the layer has no
     other.
     """
     given, layer = draft.applied_motion, document.layer(draft.layer)
