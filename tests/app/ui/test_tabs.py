@@ -6,6 +6,7 @@ from documents import CENTRE, RADIUS, altered, disc_document
 from imgui_bundle import ImVec2, imgui
 from PIL import Image
 from projects import project_of
+from sessions import run_update_steps
 
 from app.document import channel_commands, pose_channel
 from app.document.commands.keys import (
@@ -14,7 +15,7 @@ from app.document.commands.keys import (
 from app.document.commands.scene_commands import set_export
 from app.document.keyframe import Handle, Keyframe, Pose, Target
 from app.document.settings import NATURAL, RUBBERY, STIFF, Meshing
-from app.editor.actions import editing, frame_update, playback
+from app.editor.actions import editing, playback
 from app.editor.actions.layer_setup.resolving import SOLVING_KEYS
 from app.editor.actions.posing.handles import remove_handles
 from app.editor.actions.posing.pose_drag import set_targets
@@ -251,7 +252,7 @@ def test_curves_of_an_older_document_are_not_kept(window, project, tab):
         window.session, channel_commands.move_keys({pose_channel(0): frozenset({24})}, 4)
     )
     older = project.document
-    frame_update.run_update_steps(window.session)
+    run_update_steps(window.session)
     editing.edit_document(
         window.session, channel_commands.move_keys({pose_channel(0): frozenset({28})}, 4)
     )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from harness import PATIENCE
 from imgui_bundle import ImVec2, imgui
+from sessions import run_update_steps
 
 from app.document import channel_commands, pose_channel
 from app.document.channels.tangent_mode import TangentMode
@@ -556,7 +557,7 @@ WAITING = {
     frame_update.SPANNING: lambda session: (
         setattr(session.project, "extent", Derived(None)),
         export_settings.preview_export_frame(session, BoundingBox(0j, 1 + 1j)),
-        frame_update.run_update_steps(session),
+        run_update_steps(session),
     ),
     resolving.SOLVING_KEYS: resolving.solve_keys_again,
     POSING: lambda session: set_targets(session, {1: Target(position=900 + 50j)}),
